@@ -1,0 +1,1 @@
+"""The numeric core: numpy, scipy and numba only, no ROS, files, clock or logging."""

@@ -1,0 +1,1 @@
+"""Methods for one key segment, side by side: one file a method."""

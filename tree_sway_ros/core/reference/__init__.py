@@ -1,0 +1,1 @@
+"""Slow and plain models that the reduced tree is measured against."""

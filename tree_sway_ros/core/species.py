@@ -1,0 +1,91 @@
+"""
+What a tree is made of: wood, damping and drag of each species, with the sources.
+
+Modulus and density are of green wood: ForestGALES species tables, the BIOMASS wood density table and the
+field table of Jackson et al. (2019). Drag is C U^-N between 10 and 20 m/s: Mayhead (1973) for conifers,
+Vollsinger et al. (2005) for broadleaves. Entries marked as estimates have no measurement behind them.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tree_sway_ros.errors import SpeciesError
+
+
+@dataclass(frozen=True)
+class Species:
+    """
+    Wood, damping and drag of a species.
+
+    Parameters
+    ----------
+    key, title
+        Name in the table and name for people.
+    modulus
+        Young's modulus of green wood in [Pa].
+    density
+        Density of green wood in [kg/m^3].
+    damping_bare, damping_in_leaf
+        Damping ratio without and with leaves in [-]; air drag on moving branches comes on top.
+    drag_coefficient
+        C of the drag law Cd = C U^-N in leaf, U in [m/s].
+    drag_exponent
+        N of the drag law in [-]: how much the crown streamlines.
+    is_estimate
+        True where modulus or density is a guess to be calibrated.
+
+    """
+
+    key: str
+    title: str
+    modulus: float
+    density: float
+    damping_bare: float = 0.04
+    damping_in_leaf: float = 0.10
+    drag_coefficient: float = 1.2
+    drag_exponent: float = 0.0
+    is_estimate: bool = False
+
+
+_TABLE = {
+    s.key: s
+    for s in (
+        Species("benjamina", "Ficus benjamina", 8.3e9, 950.0, is_estimate=True),
+        Species("goldcrest", "Cupressus macrocarpa 'Goldcrest'", 6.0e9, 950.0, is_estimate=True),
+        Species("broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True),
+        Species("spruce", "Norway spruce", 6.3e9, 850.0, drag_coefficient=2.35, drag_exponent=0.51),
+        Species("sitka", "Sitka spruce", 5.9e9, 850.0, drag_coefficient=2.35, drag_exponent=0.51),
+        Species("pine", "Scots pine", 7.3e9, 850.0, drag_coefficient=3.07, drag_exponent=0.75),
+        Species("douglas_fir", "Douglas-fir", 8.3e9, 850.0, drag_coefficient=2.40, drag_exponent=0.70),
+        Species("birch", "birch", 9.9e9, 900.0, drag_coefficient=1.9627, drag_exponent=0.881),
+        Species("oak", "oak", 9.4e9, 1010.0, drag_coefficient=2.6575, drag_exponent=0.846),
+        Species("beech", "beech", 9.8e9, 1158.0, drag_coefficient=2.4141, drag_exponent=0.904),
+        Species("ash", "ash", 9.5e9, 801.0),
+        Species("sycamore", "sycamore", 8.4e9, 721.0),
+        Species("walnut", "walnut", 11.3e9, 805.0),
+    )
+}
+
+
+def species_named(key: str) -> Species:
+    """
+    Look a species up.
+
+    Raises
+    ------
+    SpeciesError
+        If no species has that key; the error lists those that exist.
+
+    """
+    try:
+        return _TABLE[key]
+    except KeyError:
+        known = ", ".join(sorted(_TABLE))
+        raise SpeciesError(f"unknown species '{key}'", cure=f"use one of: {known}") from None
+
+
+def species_keys() -> tuple[str, ...]:
+    """Keys of every species in the table."""
+    return tuple(_TABLE)

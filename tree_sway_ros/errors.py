@@ -1,0 +1,58 @@
+"""
+What can go wrong, as types: every error names what, where and the cure.
+
+The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. An error carries
+the offending values as attributes, so that a program can act on them without reading the text.
+
+"""
+
+from __future__ import annotations
+
+
+class TreeSwayError(Exception):
+    """
+    Root of every error that this package raises on purpose.
+
+    Parameters
+    ----------
+    what
+        What is wrong, with the offending value.
+    where
+        The file, line, segment, branch or parameter it was found at; may be empty.
+    cure
+        What to do about it; may be empty.
+
+    """
+
+    def __init__(self, what: str, *, where: str = "", cure: str = "") -> None:
+        """Join the three parts into one line."""
+        self.what = what
+        self.where = where
+        self.cure = cure
+        place = f"{where}: " if where else ""
+        advice = f"; {cure}" if cure else ""
+        super().__init__(f"{place}{what}{advice}")
+
+
+class TreeError(TreeSwayError):
+    """A tree that cannot be: cyclic, orphaned, zero length, not finite, buckling."""
+
+
+class FormatError(TreeSwayError):
+    """A file that does not hold what its format promises."""
+
+
+class ParameterError(TreeSwayError):
+    """A parameter out of its range or of a wrong kind."""
+
+
+class SpeciesError(TreeSwayError):
+    """A species that no table knows."""
+
+
+class MissingDependencyError(TreeSwayError):
+    """An optional part, such as ROS itself, that is asked for and not there."""
+
+
+class TransportError(TreeSwayError):
+    """A port, domain or middleware that cannot be used."""

@@ -1,0 +1,1 @@
+"""Files into core objects: trees and wind records, one file a format."""

@@ -1,0 +1,1 @@
+"""The four ROS 2 executables: anemometer, wind, solver, player."""

@@ -1,0 +1,1 @@
+"""What is drawn: pictures of a tree and of its motion."""
