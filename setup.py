@@ -1,0 +1,86 @@
+"""Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
+
+import re
+import sys
+from glob import glob
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = "tree_sway_ros"
+NODES = ("anemometer", "wind", "solver", "player")
+LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
+
+
+def version():
+    """Return the version, which is written in the package's ``__init__.py`` and nowhere else."""
+    text = Path(PACKAGE, "__init__.py").read_text(encoding="utf-8")
+    return re.search(r'^__version__ = "(.+)"$', text, re.MULTILINE).group(1)
+
+
+def launchers():
+    """
+    Write one small executable a node, to stand in ``lib/tree_sway_ros/``, and return their paths.
+
+    ``ros2 run`` looks there. colcon installs the console scripts there itself (setup.cfg); pip puts
+    them in ``bin/``, so a wheel brings these along, which go on to ``bin/``.
+    """
+    folder = Path("build", "launchers")
+    folder.mkdir(parents=True, exist_ok=True)
+    for node in NODES:
+        path = folder / node
+        path.write_text(LAUNCHER, encoding="utf-8")
+        path.chmod(0o755)
+    return [str(folder / node) for node in NODES]
+
+
+data_files = [
+    ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+    (f"share/{PACKAGE}", ["package.xml"]),
+    (f"share/{PACKAGE}/launch", sorted(glob("launch/*.launch.py"))),
+    (f"share/{PACKAGE}/config", sorted(glob("config/*"))),
+]
+if {"bdist_wheel", "editable_wheel"} & set(sys.argv):
+    data_files.append((f"lib/{PACKAGE}", launchers()))
+
+LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
+extras = {
+    # The real rclpy and Fast DDS as wheels; `pip -c .ci/constraints-ros-jazzy.txt` pins the rest.
+    "ros": [
+        f"ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}",
+        f"ros-jazzy-common-interfaces==5.3.6{LINUX}",
+    ],
+    "bag": ["rosbags>=0.10"],
+    "plot": ["matplotlib>=3.6"],
+    "gltf": ["pygltflib>=1.16"],
+    "h5": ["h5py>=3.7"],
+    # colcon runs pytest only where an extra of this name asks for it.
+    "test": ["pytest>=7,<9", "hypothesis>=6.60", "mpmath>=1.2"],
+    "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML"],
+}
+
+setup(
+    name=PACKAGE,
+    version=version(),
+    description="Trees that sway in measured wind, solved in real time and streamed over ROS 2",
+    long_description=Path("README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
+    author="Tree Sway maintainers",
+    author_email="maintainers@users.noreply.github.com",
+    maintainer="Tree Sway maintainers",
+    maintainer_email="maintainers@users.noreply.github.com",
+    license="Apache-2.0",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={"": ["py.typed", "*.html", "*.css", "*.js", "*.yaml", "*.json"]},
+    data_files=data_files,
+    python_requires=">=3.10",
+    install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "numba>=0.59", "PyYAML>=6"],
+    extras_require=extras,
+    zip_safe=False,
+    entry_points={
+        "console_scripts": [
+            *(f"{node} = {PACKAGE}.nodes.{node}:main" for node in NODES),
+            f"tree-sway = {PACKAGE}.tools.cli:main",
+        ],
+    },
+)
