@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+"""
+Run a command in this checkout's own virtual environment, made first if it is not there.
+
+    python3 .ci/in_venv.py tree-sway demo
+    python3 .ci/in_venv.py pytest
+
+Needs Python 3.10-3.13 on x86_64 Linux, and the network the first time. The package is installed in
+editable form with everything the demo and the tests use, the real rclpy and Fast DDS among it, in
+the versions of constraints-ros-jazzy.txt. The environment is made anew when the Python differs and
+brought up to date when a file that describes the installation has changed. TREE_SWAY_VENV names
+another place for it than .venv.
+
+"""
+
+import fcntl
+import hashlib
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+VENV = Path(os.environ.get("TREE_SWAY_VENV") or ROOT / ".venv").absolute()
+CONSTRAINTS = ROOT / ".ci" / "constraints-ros-jazzy.txt"
+EXTRAS = "ros,bag,plot,gltf,h5,test,lint"
+PYTHONS = ((3, 10), (3, 13))
+#: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
+ROS_NAMES = (
+    "AMENT_PREFIX_PATH",
+    "CMAKE_PREFIX_PATH",
+    "COLCON_PREFIX_PATH",
+    "LD_LIBRARY_PATH",
+    "PYTHONPATH",
+    "ROS_DISTRO",
+    "ROS_ETC_DIR",
+    "ROS_PYTHON_VERSION",
+    "ROS_VERSION",
+)
+
+
+def main(command):
+    """Make the environment ready and become the command in it."""
+    if not command:
+        stop("no command given", "for example: python3 .ci/in_venv.py tree-sway demo")
+    check_machine()
+    environment = without_ros(dict(os.environ))
+    environment.pop("PYTHONHOME", None)
+    with open(__file__) as lock:  # one set-up at a time, however many start at once
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        make_ready(environment)
+    programs = str(VENV / "bin")
+    environment.update(
+        VIRTUAL_ENV=str(VENV),
+        AMENT_PREFIX_PATH=str(VENV),
+        PATH=os.pathsep.join([programs, environment.get("PATH", os.defpath)]),
+    )
+    program = shutil.which(command[0], path=environment["PATH"])
+    if program is None:
+        stop("no such command: " + command[0], "what is installed stands in " + programs)
+    os.execve(program, [program] + command[1:], environment)
+
+
+def stop(what, cure):
+    """Say what is wrong and what to do about it, on one line, and end."""
+    print("in_venv: %s; %s" % (what, cure), file=sys.stderr)
+    sys.exit(2)
+
+
+def check_machine():
+    """Refuse a Python or a machine that the ROS wheels are not made for."""
+    if not PYTHONS[0] <= sys.version_info[:2] <= PYTHONS[1]:
+        fitting = [shutil.which("python3.%d" % minor) for minor in (12, 11, 13, 10)]
+        found = next(filter(None, fitting), None)
+        stop(
+            "Python %d.%d does not fit, 3.10 to 3.13 do" % sys.version_info[:2],
+            "run it with %s" % (found or "one of those, from your system or python.org"),
+        )
+    if (sys.platform, platform.machine()) != ("linux", "x86_64"):
+        stop(
+            "the ROS wheels are for x86_64 Linux, not %s %s" % (platform.machine(), sys.platform),
+            "use a ROS installation (README), or `pip install .` for the solver without ROS",
+        )
+
+
+def without_ros(environment):
+    """Take a sourced ROS installation out of the environment, and say so."""
+    if not environment.get("ROS_DISTRO") and not environment.get("AMENT_PREFIX_PATH"):
+        return environment
+    if environment.get("AMENT_PREFIX_PATH") != str(VENV):
+        distro = environment.get("ROS_DISTRO", "ROS")
+        print("in_venv: leaving the sourced %s aside, as .venv has its own" % distro, file=sys.stderr)
+    kept = {name: value for name, value in environment.items() if name not in ROS_NAMES}
+    search = environment.get("PATH", "").split(os.pathsep)
+    kept["PATH"] = os.pathsep.join(p for p in search if not p.startswith("/opt/ros/"))
+    return kept
+
+
+def wanted():
+    """Return what the environment must have been made from, as one line."""
+    files = [ROOT / name for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml")]
+    files += [CONSTRAINTS, Path(__file__).resolve()]
+    files += sorted(ROOT.glob("launch/*")) + sorted(ROOT.glob("config/*"))
+    digest = hashlib.sha256()
+    for path in files:
+        if path.is_file():
+            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return "%d.%d %s %s" % (sys.version_info[0], sys.version_info[1], ROOT, digest.hexdigest())
+
+
+def make_ready(environment):
+    """Create the environment and install into it, unless it is there and up to date."""
+    stamp = VENV / "tree_sway_ros.stamp"
+    made_from = stamp.read_text() if stamp.is_file() else ""
+    if made_from == wanted():
+        return
+    began = time.monotonic()
+    same_python = made_from.split()[:1] == wanted().split()[:1]
+    if not same_python or not (VENV / "bin" / "pip").exists():
+        say("setting up %s: a minute or two, once, about 1 GB" % VENV)
+        make_venv(environment)
+    else:
+        say("bringing %s up to date" % VENV)
+    pip(environment, "setuptools>=70.1,<81")
+    target = "%s[%s]" % (ROOT, EXTRAS)
+    pip(environment, "-c", str(CONSTRAINTS), "--no-build-isolation", "-e", target)
+    stamp.write_text(wanted())
+    say("ready after %.0f s" % (time.monotonic() - began))
+
+
+def make_venv(environment):
+    """Create an empty virtual environment with pip in it."""
+    try:
+        import ensurepip  # noqa: F401
+        import venv  # noqa: F401
+    except ImportError:
+        stop(
+            "this Python cannot make virtual environments (ensurepip is missing)",
+            "on Debian or Ubuntu: sudo apt install python3-venv",
+        )
+    result = subprocess.run(
+        [sys.executable, "-m", "venv", "--clear", str(VENV)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        universal_newlines=True,
+    )
+    if result.returncode:
+        reason = (result.stdout.strip() or "no reason given").splitlines()[-1]
+        stop("cannot create %s: %s" % (VENV, reason), "make room or rights there and run this again")
+
+
+def pip(environment, *arguments):
+    """Install with pip, one line of progress; its own words go to a log beside the environment."""
+    log = VENV / "setup.log"
+    command = [str(VENV / "bin" / "python"), "-m", "pip", "install", "--progress-bar", "off"]
+    command += ["--disable-pip-version-check"] + list(arguments)
+    process = subprocess.Popen(
+        command,
+        cwd=str(ROOT),
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        universal_newlines=True,
+    )
+    seen = []
+    count = 0
+    with log.open("w") as record:
+        for line in process.stdout:
+            record.write(line)
+            seen.append(line)
+            words = line.split()
+            if words[:1] == ["Collecting"]:
+                count += 1
+                progress("  %3d packages, now %s" % (count, words[1][:40]))
+            elif words[:2] == ["Installing", "collected"]:
+                progress("  installing %d packages" % line.count(","))
+    progress("")
+    if process.wait():
+        stop(*failure("".join(seen), log))
+
+
+def failure(words, log):
+    """Return what went wrong and the cure, from pip's words."""
+    signs = ("NewConnectionError", "Name or service", "name resolution", "ConnectTimeout", "ProxyError")
+    if any(sign in words for sign in signs):
+        return "no network: the package index cannot be reached", "connect, or set a proxy, and run again"
+    if "No space left" in words:
+        return "the disk is full", "make about 1 GB of room at %s" % VENV
+    errors = [line for line in words.splitlines() if line.startswith("ERROR")]
+    return (errors or ["pip failed"])[0], "pip's own words stand in %s" % log
+
+
+def say(text):
+    """Print a line for people; standard output belongs to the command."""
+    print("in_venv: " + text, file=sys.stderr, flush=True)
+
+
+def progress(text):
+    """Show a line that the next one replaces, where there is a terminal."""
+    if sys.stderr.isatty():
+        print("\r\033[K" + text, end="", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1:])
+    except KeyboardInterrupt:
+        sys.exit("in_venv: interrupted; run it again to go on")
