@@ -40,7 +40,7 @@ data_files = [
     (f"share/{PACKAGE}/launch", sorted(glob("launch/*.launch.py"))),
     (f"share/{PACKAGE}/config", sorted(glob("config/*"))),
 ]
-if {"bdist_wheel", "editable_wheel"} & set(sys.argv):
+if "bdist_wheel" in sys.argv:
     data_files.append((f"lib/{PACKAGE}", launchers()))
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'

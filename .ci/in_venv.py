@@ -61,27 +61,27 @@ def main(command):
     program = shutil.which(command[0], path=environment["PATH"])
     if program is None:
         stop("no such command: " + command[0], "what is installed stands in " + programs)
-    os.execve(program, [program] + command[1:], environment)
+    os.execve(program, [program, *command[1:]], environment)
 
 
 def stop(what, cure):
     """Say what is wrong and what to do about it, on one line, and end."""
-    print("in_venv: %s; %s" % (what, cure), file=sys.stderr)
+    print(f"in_venv: {what}; {cure}", file=sys.stderr)
     sys.exit(2)
 
 
 def check_machine():
     """Refuse a Python or a machine that the ROS wheels are not made for."""
     if not PYTHONS[0] <= sys.version_info[:2] <= PYTHONS[1]:
-        fitting = [shutil.which("python3.%d" % minor) for minor in (12, 11, 13, 10)]
+        fitting = [shutil.which(f"python3.{minor}") for minor in (12, 11, 13, 10)]
         found = next(filter(None, fitting), None)
         stop(
-            "Python %d.%d does not fit, 3.10 to 3.13 do" % sys.version_info[:2],
-            "run it with %s" % (found or "one of those, from your system or python.org"),
+            f"Python {platform.python_version()} does not fit, 3.10 to 3.13 do",
+            f"run it with {found or 'one of those, from your system or python.org'}",
         )
     if (sys.platform, platform.machine()) != ("linux", "x86_64"):
         stop(
-            "the ROS wheels are for x86_64 Linux, not %s %s" % (platform.machine(), sys.platform),
+            f"the ROS wheels are for x86_64 Linux, not {platform.machine()} {sys.platform}",
             "use a ROS installation (README), or `pip install .` for the solver without ROS",
         )
 
@@ -92,7 +92,7 @@ def without_ros(environment):
         return environment
     if environment.get("AMENT_PREFIX_PATH") != str(VENV):
         distro = environment.get("ROS_DISTRO", "ROS")
-        print("in_venv: leaving the sourced %s aside, as .venv has its own" % distro, file=sys.stderr)
+        say(f"leaving the sourced {distro} aside, as .venv has its own")
     kept = {name: value for name, value in environment.items() if name not in ROS_NAMES}
     search = environment.get("PATH", "").split(os.pathsep)
     kept["PATH"] = os.pathsep.join(p for p in search if not p.startswith("/opt/ros/"))
@@ -103,32 +103,53 @@ def wanted():
     """Return what the environment must have been made from, as one line."""
     files = [ROOT / name for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml")]
     files += [CONSTRAINTS, Path(__file__).resolve()]
-    files += sorted(ROOT.glob("launch/*")) + sorted(ROOT.glob("config/*"))
     digest = hashlib.sha256()
     for path in files:
         if path.is_file():
             digest.update(path.name.encode() + b"\0" + path.read_bytes())
-    return "%d.%d %s %s" % (sys.version_info[0], sys.version_info[1], ROOT, digest.hexdigest())
+    version = ".".join(platform.python_version_tuple()[:2])
+    return f"{version} {ROOT} {digest.hexdigest()}"
 
 
 def make_ready(environment):
     """Create the environment and install into it, unless it is there and up to date."""
     stamp = VENV / "tree_sway_ros.stamp"
-    made_from = stamp.read_text() if stamp.is_file() else ""
+    runs = (VENV / "bin" / "python").exists() and (VENV / "bin" / "pip").exists()
+    made_from = stamp.read_text() if runs and stamp.is_file() else ""
     if made_from == wanted():
         return
     began = time.monotonic()
-    same_python = made_from.split()[:1] == wanted().split()[:1]
-    if not same_python or not (VENV / "bin" / "pip").exists():
-        say("setting up %s: a minute or two, once, about 1 GB" % VENV)
+    if made_from.split()[:1] != wanted().split()[:1]:
+        say(f"setting up {VENV}: about two minutes and 1 GB, once")
         make_venv(environment)
     else:
-        say("bringing %s up to date" % VENV)
+        say(f"bringing {VENV} up to date")
     pip(environment, "setuptools>=70.1,<81")
-    target = "%s[%s]" % (ROOT, EXTRAS)
+    target = f"{ROOT}[{EXTRAS}]"
     pip(environment, "-c", str(CONSTRAINTS), "--no-build-isolation", "-e", target)
+    link_resources()
     stamp.write_text(wanted())
-    say("ready after %.0f s" % (time.monotonic() - began))
+    say(f"ready after {time.monotonic() - began:.0f} s")
+
+
+def link_resources():
+    """Put in place what an editable installation omits: the ament index, share/ and lib/."""
+    index = VENV / "share" / "ament_index" / "resource_index" / "packages"
+    share = VENV / "share" / "tree_sway_ros"
+    executables = VENV / "lib" / "tree_sway_ros"
+    for folder in (index, share, executables):
+        folder.mkdir(parents=True, exist_ok=True)
+    links = {index / "tree_sway_ros": ROOT / "resource" / "tree_sway_ros"}
+    links.update({share / name: ROOT / name for name in ("package.xml", "launch", "config")})
+    for entry_points in VENV.glob("lib/python*/site-packages/tree_sway_ros-*/entry_points.txt"):
+        for line in entry_points.read_text().splitlines():
+            if "= tree_sway_ros.nodes." in line:
+                name = line.split()[0]
+                links[executables / name] = VENV / "bin" / name
+    for link, target in links.items():
+        if link.is_symlink() or link.exists():
+            link.unlink()
+        link.symlink_to(target)
 
 
 def make_venv(environment):
@@ -146,25 +167,25 @@ def make_venv(environment):
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        universal_newlines=True,
+        text=True,
     )
     if result.returncode:
         reason = (result.stdout.strip() or "no reason given").splitlines()[-1]
-        stop("cannot create %s: %s" % (VENV, reason), "make room or rights there and run this again")
+        stop(f"cannot create {VENV}: {reason}", "make room or rights there and run this again")
 
 
 def pip(environment, *arguments):
     """Install with pip, one line of progress; its own words go to a log beside the environment."""
     log = VENV / "setup.log"
     command = [str(VENV / "bin" / "python"), "-m", "pip", "install", "--progress-bar", "off"]
-    command += ["--disable-pip-version-check"] + list(arguments)
+    command += ["--disable-pip-version-check", *arguments]
     process = subprocess.Popen(
         command,
         cwd=str(ROOT),
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        universal_newlines=True,
+        text=True,
     )
     seen = []
     count = 0
@@ -175,9 +196,9 @@ def pip(environment, *arguments):
             words = line.split()
             if words[:1] == ["Collecting"]:
                 count += 1
-                progress("  %3d packages, now %s" % (count, words[1][:40]))
+                progress(f"  {count:3d} packages, now {words[1][:40]}")
             elif words[:2] == ["Installing", "collected"]:
-                progress("  installing %d packages" % line.count(","))
+                progress(f"  installing {len(words) - 3} packages")
     progress("")
     if process.wait():
         stop(*failure("".join(seen), log))
@@ -189,9 +210,9 @@ def failure(words, log):
     if any(sign in words for sign in signs):
         return "no network: the package index cannot be reached", "connect, or set a proxy, and run again"
     if "No space left" in words:
-        return "the disk is full", "make about 1 GB of room at %s" % VENV
+        return "the disk is full", f"make about 1 GB of room at {VENV}"
     errors = [line for line in words.splitlines() if line.startswith("ERROR")]
-    return (errors or ["pip failed"])[0], "pip's own words stand in %s" % log
+    return (errors or ["pip failed"])[0], f"pip's own words stand in {log}"
 
 
 def say(text):
