@@ -33,6 +33,9 @@ class Species:
         C of the drag law Cd = C U^-N in leaf, U in [m/s].
     drag_exponent
         N of the drag law in [-]: how much the crown streamlines.
+    shear_ratio
+        Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood is nearer to
+        1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the twist of stems alone.
     is_estimate
         True where modulus or density is a guess to be calibrated.
 
@@ -46,6 +49,7 @@ class Species:
     damping_in_leaf: float = 0.10
     drag_coefficient: float = 1.2
     drag_exponent: float = 0.0
+    shear_ratio: float = 1.0 / 2.6
     is_estimate: bool = False
 
 

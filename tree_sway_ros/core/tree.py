@@ -13,12 +13,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+_Number = TypeVar("_Number", np.float64, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +130,6 @@ class Tree:
         return slice(int(self.branch_first[branch]), int(self.branch_first[branch + 1]))
 
 
-def _read_only(array: NDArray) -> NDArray:
+def _read_only(array: NDArray[_Number]) -> NDArray[_Number]:
     array.setflags(write=False)
     return array

@@ -1,0 +1,227 @@
+"""
+One branch as a beam: quadrature along its segments, bending by a load, slope and displacement.
+
+Each segment carries five Gauss-Legendre points, at which the diameter is known from the linear taper between its
+two ends. Integrals are taken on those points, so the result does not depend on how finely a branch is cut.
+
+Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M / EI
+curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.polynomial.legendre import leggauss
+
+from tree_sway_ros.core.tree import Floats, Ints
+
+N_POINTS = 5
+
+
+def _integration_rows(places: Floats) -> Floats:
+    """Weights w of ``integral from 0 to xi of f = w . f(points)`` for each place xi in 0 .. 1."""
+    columns = []
+    for i, node in enumerate(_POINTS):
+        others = np.delete(_POINTS, i)
+        basis = Polynomial.fromroots(others) / np.prod(node - others)
+        columns.append(basis.integ()(places))
+    return np.stack(columns, axis=-1)
+
+
+_ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
+_POINTS = (_ROOTS + 1.0) / 2.0
+_WEIGHTS = _ROOT_WEIGHTS / 2.0
+_TO_POINTS = _integration_rows(_POINTS)
+
+
+@dataclass(frozen=True)
+class Attachments:
+    """
+    Where the children of a branch sit, and what they carry.
+
+    Parameters
+    ----------
+    segment
+        Segment within the branch, (c,).
+    fraction
+        Place along that segment in [0, 1], (c,).
+
+    """
+
+    segment: Ints
+    fraction: Floats
+
+
+class BranchBeam:
+    """
+    A branch as a clamped beam.
+
+    Parameters
+    ----------
+    start, end
+        Nodes of its segments in [m], (m, 3).
+    base_diameter, tip_diameter
+        In [m], (m,).
+    children
+        Places of its children.
+
+    """
+
+    def __init__(
+        self, start: Floats, end: Floats, base_diameter: Floats, tip_diameter: Floats, children: Attachments
+    ) -> None:
+        """Set the quadrature points along the branch."""
+        step = end - start
+        self.length = np.linalg.norm(step, axis=1)
+        self.tangent = step / self.length[:, None]
+        self.children = children
+        self.node = np.concatenate([[0.0], np.cumsum(self.length)])
+        self.place = self.node[:-1, None] + self.length[:, None] * _POINTS
+        self.weight = self.length[:, None] * _WEIGHTS
+        self.diameter = base_diameter[:, None] + (tip_diameter - base_diameter)[:, None] * _POINTS
+        self.point = start[:, None, :] + step[:, None, :] * _POINTS[:, None]
+        self.child_place = self.node[children.segment] + children.fraction * self.length[children.segment]
+        self.child_point = start[children.segment] + children.fraction[:, None] * step[children.segment]
+        self._child_rows = _integration_rows(children.fraction)
+        chord = end[-1] - start[0]
+        self.chord_length = float(np.linalg.norm(chord))
+        self.chord = chord / self.chord_length if self.chord_length > 1e-9 else self.tangent[0]
+
+    @property
+    def area(self) -> Floats:
+        """Cross-section at each point in [m^2], (m, 5)."""
+        return np.pi / 4.0 * self.diameter**2
+
+    @property
+    def second_moment(self) -> Floats:
+        """Second moment of area at each point in [m^4], (m, 5)."""
+        return np.pi / 64.0 * self.diameter**4
+
+    def integral(self, values: Floats) -> Floats:
+        """Integral over the branch of values at the points, (m, 5, ...)."""
+        return np.tensordot(self.weight, values, axes=((0, 1), (0, 1)))
+
+    def from_base(self, values: Floats) -> tuple[Floats, Floats, Floats]:
+        """
+        Integrate from the base.
+
+        Parameters
+        ----------
+        values
+            At the points, (m, 5).
+
+        Returns
+        -------
+        tuple
+            The integral up to each point (m, 5), each node (m + 1,) and each child (c,).
+
+        """
+        whole = (self.weight * values).sum(axis=1)
+        nodes = np.concatenate([[0.0], np.cumsum(whole)])
+        points = nodes[:-1, None] + self.length[:, None] * (values @ _TO_POINTS.T)
+        segment = self.children.segment
+        within = np.einsum("ci,ci->c", self._child_rows, values[segment])
+        return points, nodes, nodes[segment] + self.length[segment] * within
+
+    def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
+        """
+        Bending moment under a transverse load.
+
+        Parameters
+        ----------
+        load
+            Load per length at the points, (m, 5).
+        force, moment
+            Force and moment that each child hands over, (c,).
+
+        Returns
+        -------
+        Floats
+            At the points, (m, 5).
+
+        """
+        points, nodes, _ = self.from_base(load)
+        shear = nodes[-1] - points
+        points, nodes, _ = self.from_base(shear)
+        bending: Floats = nodes[-1] - points
+        if len(force) > 0:
+            lever = np.maximum(self.child_place - self.place[..., None], 0.0)
+            bending += lever @ force + (lever > 0.0) @ moment
+        return bending
+
+    def slope_shape(self, bending: Floats) -> SlopeShape:
+        """
+        Shape of the branch bent by a moment, in units of the chord's rotation.
+
+        Parameters
+        ----------
+        bending
+            Bending moment at the points, (m, 5), in any unit.
+
+        """
+        curvature = bending / self.second_moment
+        slope, _, _ = self.from_base(curvature)
+        along = self.tangent @ self.chord
+        chord_rotation = float((self.weight * slope).sum(axis=1) @ along) / max(self.chord_length, 1e-9)
+        arc_rotation = float(self.integral(slope)) / float(self.node[-1])
+        scale = chord_rotation if chord_rotation > 0.2 * abs(arc_rotation) else arc_rotation
+        return SlopeShape(self, curvature / scale)
+
+    def unit_shape(self, curvature: Floats) -> SlopeShape:
+        """Shape of a given curvature, scaled so that its largest slope is 1."""
+        slope, nodes, _ = self.from_base(curvature)
+        return SlopeShape(self, curvature / max(np.abs(slope).max(), np.abs(nodes).max()))
+
+
+class SlopeShape:
+    """
+    A way for a branch to bend: slope psi(s) per unit of its coordinate.
+
+    Parameters
+    ----------
+    beam
+        The branch.
+    curvature
+        d psi / d s at the points in [1/m], (m, 5).
+
+    """
+
+    def __init__(self, beam: BranchBeam, curvature: Floats) -> None:
+        """Integrate curvature to slope and slope to displacement."""
+        self.beam = beam
+        self.curvature = curvature
+        self.slope, self.node_slope, self.child_slope = beam.from_base(curvature)
+        whole = (beam.weight * self.slope).sum(axis=1)
+        self.segment_slope = whole / beam.length
+        self.deflection, self.node_deflection, _ = beam.from_base(self.slope)
+
+    def stiffness(self, other: SlopeShape, modulus: float) -> float:
+        """Bending energy between two shapes, the integral of E I kappa kappa', in [N m/rad]."""
+        return float(
+            self.beam.integral(modulus * self.beam.second_moment * self.curvature * other.curvature)
+        )
+
+    def displacement(self, rotation: Floats) -> tuple[Floats, Floats, Floats]:
+        """
+        Displacement for a unit of the coordinate about a rotation axis.
+
+        Parameters
+        ----------
+        rotation
+            Unit rotation vector, (3,).
+
+        Returns
+        -------
+        tuple
+            At the points (m, 5, 3), nodes (m + 1, 3) and children (c, 3), in [m/rad].
+
+        """
+        beam = self.beam
+        direction = np.cross(rotation, beam.tangent)
+        moved = [beam.from_base(self.slope * direction[:, k, None]) for k in range(3)]
+        points, nodes, children = (np.stack(parts, axis=-1) for parts in zip(*moved, strict=True))
+        return points, nodes, children
