@@ -1,0 +1,55 @@
+"""
+The trees that come with the package: the paper's two pot plants and a small broadleaf.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from difflib import get_close_matches
+from types import MappingProxyType
+
+import numpy as np
+
+from tree_sway_ros.core.growth.benjamina import grow_benjamina
+from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
+from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
+from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.errors import ParameterError
+
+_GENERATORS: MappingProxyType[str, Callable[[np.random.Generator], Tree]] = MappingProxyType(
+    {"benjamina": grow_benjamina, "goldcrest": grow_goldcrest, "broadleaf": grow_broadleaf}
+)
+
+BUILTIN_TREES: tuple[str, ...] = tuple(_GENERATORS)
+"""Names that `builtin_tree` knows."""
+
+
+def builtin_tree(name: str, seed: int = 0) -> Tree:
+    """
+    Grow a tree of the package by its name.
+
+    Parameters
+    ----------
+    name
+        One of `BUILTIN_TREES`.
+    seed
+        The same seed gives the same tree; not negative.
+
+    Raises
+    ------
+    ParameterError
+        If there is no tree of that name, or the seed is negative.
+
+    """
+    if name not in _GENERATORS:
+        close = get_close_matches(name.lower(), BUILTIN_TREES, n=1)
+        guess = f"did you mean '{close[0]}'? " if close else ""
+        raise ParameterError(
+            f"no built-in tree is called '{name}'",
+            where="tree",
+            cure=f"{guess}use one of: {', '.join(BUILTIN_TREES)}",
+        )
+    if seed < 0:
+        raise ParameterError(f"seed {seed} is negative", where="seed", cure="give 0 or more")
+    return _GENERATORS[name](np.random.default_rng(seed))

@@ -1,0 +1,149 @@
+"""
+A plausible tree of any size for a user who has no scan of one.
+
+Without a measured diameter the stem is as slender as open-grown stems are: 45 lengths of its diameter, as
+first-order axes of scanned broadleaves (allometry of 4,824 scanned branches), or 60 for a conifer, below the
+70 that foresters hold for a stable stem (Wang, Titus & LeMay 1998).
+
+"""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+
+from tree_sway_ros.core.growth.benjamina import grow_benjamina
+from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
+from tree_sway_ros.core.growth.conifer import grow_conifer
+from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
+from tree_sway_ros.core.species import Species, species_named
+from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.errors import ParameterError
+
+Habit = Literal["conifer", "broadleaf", "pot"]
+HABITS: tuple[Habit, ...] = get_args(Habit)
+"""Habits that `grow` knows."""
+
+_SLENDERNESS: dict[Habit, float] = {"conifer": 60.0, "broadleaf": 45.0, "pot": 48.0}
+_HEIGHTS: dict[Habit, tuple[float, float]] = {
+    "conifer": (1.0, 60.0),
+    "broadleaf": (1.0, 50.0),
+    "pot": (0.2, 4.0),
+}
+_CONIFERS = ("spruce", "sitka", "pine", "douglas_fir")
+_POT_PLANTS = ("benjamina", "goldcrest")
+_CLEAR_BOLE = {"pine": 0.45, "douglas_fir": 0.2}
+_GRAVITY = 9.81
+
+
+def grow(
+    species: str,
+    height: float,
+    diameter: float | None = None,
+    habit: Habit | None = None,
+    *,
+    rng: np.random.Generator,
+    name: str | None = None,
+) -> Tree:
+    """
+    Grow a tree of a species from its height and the thickness of its stem.
+
+    Parameters
+    ----------
+    species
+        Key in the species table.
+    height
+        Height in [m].
+    diameter
+        Diameter in [m] at breast height, 1.3 m; at the base of a pot plant and of a tree below
+        2.6 m. From the height if None.
+    habit
+        ``conifer``, ``broadleaf`` or ``pot``; that of the species if None.
+    rng
+        Source of randomness; the same state gives the same tree.
+    name
+        What the tree is called; the species' key if None.
+
+    Returns
+    -------
+    Tree
+        Of exactly that height and diameter.
+
+    Raises
+    ------
+    SpeciesError
+        If no table knows the species.
+    ParameterError
+        If habit, height or diameter is out of range, or the stem would not stand.
+
+    """
+    wood = species_named(species)
+    kind = habit if habit is not None else habit_of(species)
+    if kind not in HABITS:
+        raise ParameterError(
+            f"unknown habit '{kind}'", where="habit", cure=f"use one of: {', '.join(HABITS)}"
+        )
+    low, high = _HEIGHTS[kind]
+    if not low <= height <= high:
+        raise ParameterError(
+            f"height {height:g} m is out of range for the habit '{kind}'",
+            where="height",
+            cure=f"give {low:g} to {high:g} m",
+        )
+    if diameter is None:
+        diameter = height / _SLENDERNESS[kind]
+    _check_stem(wood, height, diameter)
+    called = name if name is not None else species
+    if kind == "conifer":
+        return grow_conifer(
+            rng,
+            height=height,
+            diameter=diameter,
+            crown_base=_CLEAR_BOLE.get(species, 0.1),
+            name=called,
+            species=species,
+        )
+    if kind == "broadleaf":
+        generator = grow_broadleaf
+    else:
+        generator = grow_goldcrest if species == "goldcrest" else grow_benjamina
+    return generator(rng, height=height, diameter=diameter, name=called, species=species)
+
+
+def habit_of(species: str) -> Habit:
+    """Habit of a species that the table knows."""
+    if species in _POT_PLANTS:
+        return "pot"
+    return "conifer" if species in _CONIFERS else "broadleaf"
+
+
+def greenhill_length(modulus: float, density: float, diameter: float) -> float:
+    """
+    Length in [m] at which an upright uniform rod buckles under its own weight (Greenhill 1881).
+
+    Parameters
+    ----------
+    modulus, density, diameter
+        Of the wood in [Pa] and [kg/m^3], and of the rod in [m].
+
+    """
+    return float((7.837 * modulus * diameter**2 / (16.0 * density * _GRAVITY)) ** (1.0 / 3.0))
+
+
+def _check_stem(wood: Species, height: float, diameter: float) -> None:
+    thinnest = _thinnest(wood, height)
+    thickest = height / 5.0
+    if not thinnest <= diameter <= thickest:
+        why = "would bend over under its own weight" if diameter < thinnest else "is no stem"
+        raise ParameterError(
+            f"diameter {diameter:.4g} m at a height of {height:g} m {why}",
+            where="diameter",
+            cure=f"give {thinnest:.3g} to {thickest:.3g} m",
+        )
+
+
+def _thinnest(wood: Species, height: float) -> float:
+    """Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve."""
+    stout = (height / 0.8) ** 3 * 16.0 * wood.density * _GRAVITY / (7.837 * wood.modulus)
+    return float(np.sqrt(stout))

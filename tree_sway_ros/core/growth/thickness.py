@@ -1,0 +1,95 @@
+"""
+How thick each branch is: the pipe model, anchored at one measured diameter.
+
+A cross-section carries the conduits of all wood beyond it (Shinozaki et al. 1964). With W the length of
+all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p)``. Exponent p is 2 where areas
+add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as ours, lie between. The
+length w follows from the one diameter that is given, at the base or at breast height.
+
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway_ros.core.growth.skeleton import Shoot, Skeleton
+from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.errors import ParameterError
+
+BREAST_HEIGHT = 1.3
+"""Where foresters measure a stem in [m]."""
+
+INSERTION_RATIO = 0.76
+"""Largest ratio of a branch's diameter to its parent's where it sits, in [-]."""
+
+
+def carried_length(skeleton: Skeleton) -> list[Floats]:
+    """Length of all shoots beyond each node in [m], one (k + 1,) a shoot."""
+    shoots = skeleton.shoots
+    added = [np.zeros(len(shoot.nodes)) for shoot in shoots]
+    beyond: list[Floats] = [np.empty(0)] * len(shoots)
+    for i in range(len(shoots) - 1, -1, -1):
+        shoot = shoots[i]
+        added[i][:-1] += np.linalg.norm(np.diff(shoot.nodes, axis=0), axis=1)
+        beyond[i] = np.cumsum(added[i][::-1])[::-1]
+        if shoot.parent >= 0:
+            added[shoot.parent][shoot.at] += beyond[i][0]
+    return beyond
+
+
+def node_diameters(
+    skeleton: Skeleton,
+    diameter: float,
+    *,
+    at_height: float,
+    tip_diameter: float,
+    exponent: float = 2.5,
+) -> list[Floats]:
+    """
+    Diameter of every node by the pipe model.
+
+    Parameters
+    ----------
+    skeleton
+        The shoots; the first one is the stem.
+    diameter
+        Diameter of the stem in [m].
+    at_height
+        Height above the root where the stem has it in [m].
+    tip_diameter
+        Diameter of a shoot's tip in [m].
+    exponent
+        p above in [-].
+
+    Returns
+    -------
+    list
+        One (k + 1,) a shoot in [m], falling from base to tip.
+
+    Raises
+    ------
+    ParameterError
+        If the stem is to be thinner than twice its tips.
+
+    """
+    if not diameter > 2.0 * tip_diameter:
+        raise ParameterError(
+            f"diameter {diameter:.4g} m is too thin for a stem with tips of {tip_diameter:.4g} m",
+            where="diameter",
+            cure=f"give more than {2.0 * tip_diameter:.4g} m",
+        )
+    beyond = carried_length(skeleton)
+    stem = skeleton.shoots[0]
+    carried = _at_height(stem, beyond[0], at_height)
+    w = carried / ((diameter / tip_diameter) ** exponent - 1.0)
+    diameters = [tip_diameter * (1.0 + each / w) ** (1.0 / exponent) for each in beyond]
+    # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
+    diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)
+    for shoot, own in zip(skeleton.shoots[1:], diameters[1:], strict=True):
+        limit = INSERTION_RATIO * diameters[shoot.parent][shoot.at]
+        own *= min(1.0, limit / own[0])
+    return diameters
+
+
+def _at_height(stem: Shoot, values: Floats, height: float) -> float:
+    return float(np.interp(height, stem.nodes[:, 2] - stem.nodes[0, 2], values))

@@ -1,0 +1,72 @@
+"""
+Twigs: shoots of a single segment, in groups that are alike.
+
+Neighbours on the same side of a branch grow the same way and to the same length, so that a solver that
+computes one of them may reuse its motion for the others (Kanda & Ohya, 3.3). Each half of the parent
+has its own length and direction, as the parent bends.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tree_sway_ros.core.growth.axis import UP, aim
+from tree_sway_ros.core.growth.skeleton import Skeleton
+
+
+def add_twigs(
+    skeleton: Skeleton,
+    shoot: int,
+    *,
+    length: float,
+    polar: float,
+    sides: Sequence[float],
+    first_node: int = 1,
+    alternate: bool = False,
+    lift: float = 0.0,
+    outer_ratio: float = 0.75,
+) -> None:
+    """
+    Put twigs on the nodes of a shoot.
+
+    Parameters
+    ----------
+    skeleton, shoot
+        The tree, and the number of the shoot that gets them.
+    length
+        Length of those on the inner half in [m].
+    polar
+        Angle from the shoot in [rad].
+    sides
+        Angles about the shoot in [rad], as `aim` takes them: two for a flat spray.
+    first_node
+        First node that carries any.
+    alternate
+        One side a node in turn, in place of all sides at each node.
+    lift
+        How much they turn up (positive) or hang (negative), in [-]; 1 is half-way.
+    outer_ratio
+        Length on the outer half over that on the inner half in [-].
+
+    """
+    parent = skeleton.shoots[shoot]
+    last = parent.n_segments
+    middle = (last + 1) // 2
+    halves = ((0, middle, 1.0), (middle, last, outer_ratio))
+    for start, stop, ratio in halves:
+        if start == stop:
+            continue
+        along = parent.nodes[stop] - parent.nodes[start]
+        along = along / np.linalg.norm(along)
+        offsets = []
+        for side in sides:
+            way = aim(along, polar, side) + lift * UP
+            offsets.append(ratio * length / np.linalg.norm(way) * way)
+        for node in range(max(start + 1, first_node), stop + 1):
+            chosen = [offsets[node % len(sides)]] if alternate else offsets
+            for offset in chosen:
+                base = parent.nodes[node]
+                skeleton.add(np.stack([base, base + offset]), shoot, node)
