@@ -1,0 +1,186 @@
+"""
+The parameters of each node, one table a node.
+
+Defaults stand here and nowhere else: the files in ``config/`` hold overrides only.
+
+"""
+
+from __future__ import annotations
+
+from tree_sway_ros.ros.parameters import Parameter, Table
+
+WIND_TYPE_NAMES = (
+    "geometry_msgs/Vector3Stamped",
+    "geometry_msgs/TwistStamped",
+    "geometry_msgs/TwistWithCovarianceStamped",
+    "geometry_msgs/Vector3",
+)
+
+
+def _convention(verb: str) -> Parameter:
+    sentence = (
+        f"{verb} vectors that say where the wind blows `to` (ROS) or comes `from` (meteorology)."
+    )
+    choices = ("to", "from")
+    return Parameter("direction_convention", "to", sentence, choices=choices, source="REP-103")
+
+
+_FRAME = Parameter("frame_id", "map", "Frame of what is published.", source="REP-105")
+
+ANEMOMETER: Table = (
+    Parameter("rate", 20.0, "Samples a second.", "Hz", 1.0, 100.0, source="sensors seen: 1-80 Hz"),
+    Parameter("output_type", WIND_TYPE_NAMES[0], "Message type.", choices=WIND_TYPE_NAMES),
+    _convention("Writes"),
+    _FRAME,
+    Parameter("mean_speed", 6.0, "Mean wind speed.", "m/s", 0.0, 40.0, live=True),
+    Parameter(
+        "direction",
+        0.0,
+        "Where the mean wind blows to, from east to north.",
+        "rad",
+        -6.3,
+        6.3,
+        live=True,
+    ),
+    Parameter(
+        "intensity",
+        0.2,
+        "Standard deviation along the wind over the mean.",
+        "",
+        0.0,
+        0.6,
+        live=True,
+    ),
+    Parameter("height", 10.0, "Height of the anemometer.", "m", 0.5, 200.0),
+    Parameter(
+        "spectrum",
+        "kaimal",
+        "Spectrum of the turbulence.",
+        choices=("kaimal", "von_karman", "none"),
+        source="IEC 61400-1",
+    ),
+    Parameter("period", 600.0, "Length of the turbulence before it repeats.", "s", 10.0, 3600.0),
+    Parameter("seed", 0, "Of the turbulence.", "", 0, 2**31 - 1),
+    Parameter(
+        "gust",
+        "none",
+        "A gust on top, from time to time.",
+        choices=("none", "one_minus_cos", "extreme", "step", "turn"),
+        live=True,
+    ),
+    Parameter("gust_speed", 6.0, "Rise of the gust.", "m/s", 0.0, 40.0, live=True),
+    Parameter("gust_turn", 1.57, "Turn of the wind, for `turn`.", "rad", -3.2, 3.2, live=True),
+    Parameter("gust_duration", 5.0, "Length of the gust.", "s", 0.1, 60.0, live=True),
+    Parameter("gust_interval", 20.0, "From one gust to the next.", "s", 1.0, 3600.0, live=True),
+)
+
+WIND: Table = (
+    Parameter("input_type", WIND_TYPE_NAMES[0], "Message type of `wind`.", choices=WIND_TYPE_NAMES),
+    _convention("Reads"),
+    Parameter(
+        "speed_scale",
+        1.0,
+        "Unit of the speed: knots .514444, km/h .277778.",
+        "",
+        0.001,
+        1000.0,
+        live=True,
+    ),
+    Parameter(
+        "yaw_offset",
+        0.0,
+        "Turn of the mast or of north, counter-clockwise.",
+        "rad",
+        -6.3,
+        6.3,
+        live=True,
+    ),
+    Parameter(
+        "plane_normal",
+        (0.0, 0.0, 1.0),
+        "Normal of the force plane.",
+        "",
+        -1.0,
+        1.0,
+        source="the paper, 3.2",
+    ),
+    Parameter("fixed_frame", "map", "Frame of what is published; no transform is applied."),
+    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, 200.0),
+    Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
+    Parameter("longest_refusal", 0.5, "After so long a change is taken as true.", "s", 0.05, 10.0),
+    Parameter("frozen_after", 10.0, "Equal samples for so long are reported.", "s", 1.0, 3600.0),
+    Parameter(
+        "timeout",
+        2.0,
+        "Without a good sample for so long: WARN; ten times: STALE.",
+        "s",
+        0.1,
+        60.0,
+        live=True,
+    ),
+)
+
+SOLVER: Table = (
+    Parameter("tree", "benjamina", "Built-in name or file."),
+    Parameter("species", "", "Key of the wood; empty for the tree's own."),
+    Parameter("rate", 60.0, "Steps a second.", "Hz", 1.0, 1000.0),
+    Parameter(
+        "publish_every", 1, "Frames: one in so many steps is published.", "", 1, 1000, live=True
+    ),
+    Parameter(
+        "fidelity",
+        "branch",
+        "Model of the sway, from the least to the most.",
+        choices=("frozen", "branch", "subtree", "modes", "coupled"),
+        source="the paper is `branch`",
+    ),
+    Parameter(
+        "stiffness",
+        "beam",
+        "Stiffness of a branch from its beam, or from its volume.",
+        choices=("beam", "volume_rule"),
+        source="volume_rule: the paper, 3.3",
+    ),
+    Parameter("damping_ratio", 0.0, "Of every branch; 0 for the species' own.", "", 0.0, 1.0),
+    Parameter(
+        "interpolation",
+        "linear",
+        "The wind between two samples.",
+        choices=("linear", "hold"),
+    ),
+    Parameter(
+        "wind_delay",
+        0.1,
+        "The wind is felt so much later; a period of the anemometer makes it smooth.",
+        "s",
+        0.0,
+        2.0,
+        live=True,
+    ),
+    Parameter("timeout", 2.0, "The last wind is held for so long.", "s", 0.1, 60.0),
+    Parameter("decay", 3.0, "Time constant of the force after that.", "s", 0.1, 60.0),
+    _FRAME,
+    Parameter("marker_rate", 20.0, "Markers a second; 0 for none.", "Hz", 0.0, 20.0),
+    Parameter("marker_classes", 6, "Line widths of the markers.", "", 1, 32),
+    Parameter("publish_tf", False, "Publish a frame a segment as well; needs tf2_msgs."),
+)
+
+PLAYER: Table = (
+    Parameter("file", "", "The wind record: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
+    Parameter("output_type", WIND_TYPE_NAMES[0], "Message type.", choices=WIND_TYPE_NAMES),
+    _convention("Writes"),
+    _FRAME,
+    Parameter("speed", 1.0, "Times real time.", "", 0.01, 1000.0),
+    Parameter("loop", True, "Start again at the end; time goes on."),
+    Parameter("start", 0.0, "Skip so much of the record.", "s", 0.0),
+    Parameter("publish_clock", False, "Publish /clock, for nodes with `use_sim_time`."),
+    Parameter("clock_rate", 250.0, "Clock messages a second of real time.", "Hz", 10.0, 1000.0),
+    Parameter("wait_for_subscriber", True, "Start when somebody listens."),
+)
+
+NODE_PARAMETERS: dict[str, Table] = {
+    "anemometer": ANEMOMETER,
+    "wind": WIND,
+    "solver": SOLVER,
+    "player": PLAYER,
+}

@@ -1,0 +1,185 @@
+"""
+A thread that works at a fixed rate, on a grid of absolute times of a ROS clock.
+
+Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same record tick at the
+same times. The number of periods since the last tick is counted from the clock, never from the calls: a late
+tick reports how many it stands for, and what was missed is skipped, never made up for in a burst. Simulated
+time is followed: paused, nothing ticks; set back, the next tick says so.
+
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+LONGEST_STEP = 500_000_000
+"""A tick never stands for more time than this [ns]: a clock that jumped forward is no long step."""
+_BACK = 100_000_000
+_WINDOW = 600
+_log = logging.getLogger(__name__)
+
+
+class Tick(NamedTuple):
+    """
+    One tick.
+
+    Parameters
+    ----------
+    time
+        Time on the grid in [ns].
+    periods
+        How many periods have passed since the last tick: 1 unless late.
+    restarted
+        True for the first tick, and for the first after the clock was set back.
+
+    """
+
+    time: int
+    periods: int
+    restarted: bool
+
+
+class Pace(NamedTuple):
+    """
+    How well the pace was kept lately: rate [Hz], lateness [s], work [s], and counts since the start.
+
+    `skipped` are frames on the grid that never came, `clamped` jumps forward, `restarts` jumps back.
+
+    """
+
+    rate: float
+    late_p50: float
+    late_p95: float
+    late_max: float
+    work_mean: float
+    ticks: int
+    skipped: int
+    clamped: int
+    restarts: int
+
+
+class Pacer:
+    """
+    Calls `work` at a fixed rate in a thread of its own.
+
+    Parameters
+    ----------
+    clock
+        A node's clock, wall or simulated.
+    rate
+        In [Hz].
+    work
+        Called with each tick.
+    on_error
+        Called with what `work` raised; the thread then ends.
+
+    """
+
+    def __init__(
+        self,
+        clock: Any,
+        rate: float,
+        work: Callable[[Tick], None],
+        on_error: Callable[[Exception], None],
+    ) -> None:
+        self.period = round(1e9 / rate)
+        self._clock = clock
+        self._work = work
+        self._on_error = on_error
+        self._last: int | None = None
+        self._wake = threading.Event()
+        self._stopping = False
+        self._recent: deque[tuple[float, int, float]] = deque(maxlen=_WINDOW)
+        self._ticks = self._skipped = self._clamped = self._restarts = 0
+        self._thread = threading.Thread(target=self._run, name="pacer", daemon=True)
+        self._jumps: Any = None
+
+    def start(self) -> None:
+        """Start ticking."""
+        from rclpy.clock import JumpThreshold
+        from rclpy.duration import Duration
+
+        # Simulated time moves by jumps; each wakes the thread.
+        smallest = Duration(nanoseconds=1)
+        threshold = JumpThreshold(
+            min_forward=smallest, min_backward=Duration(nanoseconds=-1), on_clock_change=True
+        )
+        self._jumps = self._clock.create_jump_callback(
+            threshold, post_callback=lambda _jump: self._wake.set()
+        )
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop ticking and wait for the work under way."""
+        self._stopping = True
+        self._wake.set()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(timeout=5.0)
+        if self._jumps is not None:
+            self._jumps.unregister()
+            self._jumps = None
+
+    def pace(self) -> Pace:
+        """How well the pace was kept over the last 600 ticks."""
+        recent = list(self._recent)
+        counts = (self._ticks, self._skipped, self._clamped, self._restarts)
+        if len(recent) < 2:
+            return Pace(0.0, 0.0, 0.0, 0.0, 0.0, *counts)
+        table = np.array(recent)
+        p50, p95 = np.quantile(table[:, 1], (0.5, 0.95)) * 1e-9
+        duration = table[-1, 0] - table[0, 0]
+        rate = (len(table) - 1) / duration if duration > 0.0 else 0.0
+        latest = float(table[:, 1].max() * 1e-9)
+        work = float(table[:, 2].mean())
+        return Pace(float(rate), float(p50), float(p95), latest, work, *counts)
+
+    def _run(self) -> None:
+        try:
+            while not self._stopping:
+                self._wake.clear()
+                now = self._clock.now().nanoseconds
+                tick = self._due(now)
+                if tick is None:
+                    self._wake.wait(self._until_next(now))
+                    continue
+                begin = time.perf_counter()
+                self._work(tick)
+                self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
+                self._ticks += 1
+        except Exception as error:
+            _log.debug("pacer stopped", exc_info=True)
+            if not self._stopping:
+                self._on_error(error)
+
+    def _due(self, now: int) -> Tick | None:
+        """The tick that is due, if one is."""
+        if now <= 0:  # simulated time that has not begun
+            return None
+        index = now // self.period
+        if self._last is None or now < self._last * self.period - _BACK:
+            self._restarts += self._last is not None
+            self._last = index
+            return Tick(index * self.period, 1, True)
+        periods = index - self._last
+        if periods <= 0:
+            return None
+        self._last = index
+        most = max(1, LONGEST_STEP // self.period)
+        if periods > most:
+            self._clamped += 1
+        elif not self._clock.ros_time_is_active:
+            self._skipped += periods - 1
+        return Tick(index * self.period, min(periods, most), False)
+
+    def _until_next(self, now: int) -> float | None:
+        """Longest sleep in [s]; simulated time wakes the thread by itself."""
+        if self._clock.ros_time_is_active or self._last is None:
+            return 0.5
+        return max(0.0, ((self._last + 1) * self.period - now) * 1e-9)

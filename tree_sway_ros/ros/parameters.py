@@ -1,0 +1,236 @@
+"""
+What a node can be told: each parameter is defined once, here in form and in `node_parameters` in fact.
+
+The ROS declaration, the check of values and of YAML files, and the table in the README come from the same
+definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
+
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tree_sway_ros.errors import ParameterError
+
+Value = Any  # bool | int | float | str | tuple[float, ...]
+
+# What every ROS 2 node has besides its own.
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_OF_EVERY_NODE_PREFIX = "qos_overrides."
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """
+    One parameter of a node.
+
+    Parameters
+    ----------
+    name
+        As in ROS.
+    default
+        Its kind (bool, int, float, str, tuple of floats) is the kind that is accepted; whole
+        numbers are accepted for floats.
+    description
+        One sentence for people.
+    unit
+        SI unit, empty if it has none.
+    minimum, maximum
+        Closed range of a number, of each number of a tuple; None for no bound.
+    choices
+        The strings that are accepted; empty for any.
+    live
+        Whether it may change while the node runs.
+    source
+        Where the default or the range comes from; may be empty.
+
+    """
+
+    name: str
+    default: Value
+    description: str
+    unit: str = ""
+    minimum: float | None = None
+    maximum: float | None = None
+    choices: tuple[str, ...] = ()
+    live: bool = False
+    source: str = ""
+
+    def checked(self, value: Value) -> Value:
+        """
+        Convert a value to the parameter's kind.
+
+        Raises
+        ------
+        ParameterError
+            Wrong kind, not finite, out of range, or not among the choices; says what is right.
+
+        """
+        kind = type(self.default)
+        if kind is tuple:
+            return self._checked_tuple(value)
+        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if type(value) is not kind:
+            raise self._error(f"{value!r} is not {_KINDS[kind]}")
+        if kind in (float, int):
+            self._check_range(value)
+        if self.choices and value not in self.choices:
+            raise self._error(f"'{value}' is not among its choices", _nearest(value, self.choices))
+        return value
+
+    @property
+    def range_text(self) -> str:
+        """The accepted values, for people: ``0 .. 40``, ``to | from``; empty if anything goes."""
+        if self.choices:
+            return " | ".join(choice or '""' for choice in self.choices)
+        if self.minimum is None and self.maximum is None:
+            return ""
+        low = "" if self.minimum is None else f"{self.minimum:g}"
+        high = "" if self.maximum is None else f"{self.maximum:g}"
+        return f"{low} .. {high}"
+
+    def _checked_tuple(self, value: Value) -> tuple[float, ...]:
+        size = len(self.default)
+        try:
+            numbers = tuple(float(item) for item in value)
+        except (TypeError, ValueError):
+            numbers = ()
+        if isinstance(value, str | bytes) or len(numbers) != size:
+            raise self._error(f"{value!r} is not {size} numbers")
+        for number in numbers:
+            self._check_range(number)
+        return numbers
+
+    def _check_range(self, value: float) -> None:
+        if not math.isfinite(value):
+            raise self._error(f"{value} is not finite")
+        below = self.minimum is not None and value < self.minimum
+        above = self.maximum is not None and value > self.maximum
+        if below or above:
+            raise self._error(f"{value:g} is out of range")
+
+    def _error(self, what: str, advice: str = "") -> ParameterError:
+        limits = f" {self.range_text}" if self.range_text else f" {_KINDS[type(self.default)]}"
+        unit = f" [{self.unit}]" if self.unit else ""
+        cure = f"give{limits}{unit}{advice}"
+        return ParameterError(what, where=f"parameter '{self.name}'", cure=cure)
+
+
+_KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a string"}
+_KINDS[tuple] = "a list of numbers"
+
+Table = tuple[Parameter, ...]
+
+
+def defaults(table: Table) -> dict[str, Value]:
+    """Default of each parameter by name."""
+    return {parameter.name: parameter.default for parameter in table}
+
+
+def checked_values(
+    table: Table, values: Mapping[str, Value], *, where: str = ""
+) -> dict[str, Value]:
+    """
+    Check values by name, such as those of a YAML file; defaults are not filled in.
+
+    Raises
+    ------
+    ParameterError
+        A name the table does not have (with the nearest that it has), or a value it refuses.
+
+    """
+    by_name = {parameter.name: parameter for parameter in table}
+    unknown = unknown_names(table, values)
+    if unknown:
+        raise unknown_parameter(table, unknown[0], where=where)
+    return {name: by_name[name].checked(value) for name, value in values.items() if name in by_name}
+
+
+def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
+    """Names that neither the table nor every ROS node has."""
+    known = {parameter.name for parameter in table} | set(_OF_EVERY_NODE)
+    return [n for n in names if n not in known and not n.startswith(_OF_EVERY_NODE_PREFIX)]
+
+
+def unknown_parameter(table: Table, name: str, *, where: str = "") -> ParameterError:
+    """The error for a name that a table does not have, with the nearest that it has."""
+    names = [parameter.name for parameter in table]
+    near = _nearest(name, names).removeprefix(": ")
+    cure = near or f"known are: {', '.join(names)}"
+    return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)
+
+
+def check_parameter_file(content: Any, tables: Mapping[str, Table], *, where: str = "") -> None:
+    """
+    Check the content of a ROS parameter file, ``{node: {ros__parameters: {...}}}``.
+
+    Parameters
+    ----------
+    content
+        As read from YAML. Node names are compared without their namespace; ``/**`` is every node,
+        whose parameters must be known to one of the tables.
+    tables
+        Table of each node by the node's name.
+    where
+        The file's name, for errors.
+
+    Raises
+    ------
+    ParameterError
+        A node or parameter nobody knows, a value out of range, a layout that ROS would ignore.
+
+    """
+    if not isinstance(content, Mapping):
+        raise ParameterError("not a parameter file", where=where, cure="start with 'solver:'")
+    for node, body in content.items():
+        if not isinstance(body, Mapping) or set(body) != {"ros__parameters"}:
+            raise ParameterError(
+                f"'{node}' must hold exactly 'ros__parameters:'",
+                where=where,
+                cure="indent the parameters below 'ros__parameters:' (two underscores)",
+            )
+        name = str(node).rsplit("/", 1)[-1]
+        values = body["ros__parameters"] or {}
+        if name == "**":
+            _check_for_any(values, tables, where)
+        elif name in tables:
+            checked_values(tables[name], values, where=f"{where}: {node}" if where else str(node))
+        else:
+            advice = _nearest(name, tables).removeprefix(": ") or f"known are: {', '.join(tables)}"
+            raise ParameterError(f"unknown node '{node}'", where=where, cure=advice)
+
+
+def _check_for_any(values: Mapping[str, Value], tables: Mapping[str, Table], where: str) -> None:
+    union = tuple(parameter for table in tables.values() for parameter in table)
+    for name in unknown_names(union, values)[:1]:
+        raise unknown_parameter(union, name, where=f"{where}: /**" if where else "/**")
+
+
+def markdown_table(table: Table) -> str:
+    """Render a table of parameters for the README."""
+    lines = ["| parameter | default | unit | range | live | description |"]
+    lines.append("|---|---|---|---|---|---|")
+    for p in table:
+        limits = p.range_text.replace("|", "\\|")
+        note = f" ({p.source})" if p.source else ""
+        cells = (f"`{p.name}`", f"`{_text(p.default)}`", p.unit, limits, "yes" if p.live else "")
+        lines.append(f"| {' | '.join(cells)} | {p.description}{note} |")
+    return "\n".join(lines) + "\n"
+
+
+def _text(value: Value) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return "[" + ", ".join(f"{number:g}" for number in value) + "]"
+    return '""' if value == "" else str(value)
+
+
+def _nearest(name: str, names: Iterable[str]) -> str:
+    near = difflib.get_close_matches(str(name), list(names), n=1, cutoff=0.5)
+    return f": did you mean '{near[0]}'?" if near else ""

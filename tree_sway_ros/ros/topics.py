@@ -1,0 +1,141 @@
+"""
+The topics: name, type and quality of service of each, for the nodes and for the README.
+
+Names are relative, so that a namespace holds one tree. Poses and markers are RELIABLE because RViz and
+Unity ask for that and see nothing otherwise; queues are short because a reliable queue replays everything
+it holds once a broken link is back.
+
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Topic:
+    """
+    One topic.
+
+    Parameters
+    ----------
+    name
+        Relative name, remapped by launch files.
+    type_name
+        ROS type as ``package/msg/Name``; the default where a parameter chooses.
+    description
+        One sentence for people.
+    reliable
+        Whether a sample that was lost is sent again.
+    latched
+        Whether a late subscriber receives the last sample (TRANSIENT_LOCAL).
+    depth
+        Samples kept.
+
+    """
+
+    name: str
+    type_name: str
+    description: str
+    reliable: bool = True
+    latched: bool = False
+    depth: int = 1
+
+    @property
+    def qos_text(self) -> str:
+        """Quality of service, for people."""
+        reliability = "reliable" if self.reliable else "best effort"
+        return f"{reliability}{', latched' if self.latched else ''}, last {self.depth}"
+
+
+WIND = Topic(
+    "wind",
+    "geometry_msgs/msg/Vector3Stamped",
+    "The wind as measured; the type is chosen by `input_type` or `output_type`.",
+    reliable=False,
+    depth=50,
+)
+WIND_FILTERED = Topic(
+    "wind/filtered",
+    "geometry_msgs/msg/Vector3Stamped",
+    "The wind that the trees feel, blowing TO, ENU [m/s]: bad samples refused.",
+    depth=10,
+)
+FORCE_PLANE = Topic(
+    "wind/force_plane",
+    "geometry_msgs/msg/PoseStamped",
+    "The plane of the force: x along the wind, z the plane's normal.",
+)
+SEGMENT_POSES = Topic(
+    "segment_poses",
+    "geometry_msgs/msg/PoseArray",
+    "A pose a segment: origin at its root-side node, x along it [m].",
+    depth=2,
+)
+MARKERS = Topic(
+    "markers",
+    "visualization_msgs/msg/MarkerArray",
+    "The tree for RViz: one LINE_LIST a radius class, ids fixed.",
+)
+TREE_DESCRIPTION = Topic(
+    "tree_description",
+    "std_msgs/msg/String",
+    "JSON: name, parent, length, radii and branch of each segment; repeated every 5 s.",
+    latched=True,
+)
+DIAGNOSTICS = Topic(
+    "/diagnostics",
+    "diagnostic_msgs/msg/DiagnosticArray",
+    "Rates, age and refusals of the wind, jitter, overruns, the model in use.",
+    depth=10,
+)
+CLOCK = Topic(
+    "/clock",
+    "rosgraph_msgs/msg/Clock",
+    "The time of the record, where the player's `publish_clock` asks for it.",
+    reliable=False,
+)
+TF = Topic(
+    "/tf", "tf2_msgs/msg/TFMessage", "A frame a segment, where `publish_tf` asks for it.", depth=10
+)
+
+TOPICS = (
+    WIND,
+    WIND_FILTERED,
+    FORCE_PLANE,
+    SEGMENT_POSES,
+    MARKERS,
+    TREE_DESCRIPTION,
+    DIAGNOSTICS,
+    CLOCK,
+    TF,
+)
+
+
+def markdown_table() -> str:
+    """Render the topics for the README."""
+    lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
+    for topic in TOPICS:
+        cells = (f"`{topic.name}`", f"`{topic.type_name}`", topic.qos_text, topic.description)
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def qos_profile(topic: Topic) -> Any:
+    """Quality of service of a topic as rclpy's object."""
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=topic.depth,
+        reliability=ReliabilityPolicy.RELIABLE if topic.reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if topic.latched else DurabilityPolicy.VOLATILE,
+    )
+
+
+def message_class(topic: Topic) -> Any:
+    """Class of a topic's messages."""
+    package, _, name = topic.type_name.split("/")
+    return getattr(importlib.import_module(f"{package}.msg"), name)
