@@ -1,0 +1,85 @@
+"""
+Text of a file, or one error that says why not.
+
+Every importer reads through here, so that a missing file, a folder, a binary file or a huge one gives
+the same short answer for each format.
+
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+from tree_sway_ros.errors import FormatError
+
+MAX_BYTES = 256 * 1024 * 1024
+"""Larger files are refused, so that no input takes the memory of the machine [bytes]."""
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+def read_bytes(path: Path, at_most: int = -1) -> bytes:
+    """
+    Read a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    at_most
+        Number of bytes wanted from its beginning; all of them if negative.
+
+    Raises
+    ------
+    FormatError
+        If it is missing, not a file, not readable or larger than `MAX_BYTES`.
+
+    """
+    if not path.exists():
+        raise FormatError("no such file", where=str(path), cure="check the path")
+    if not path.is_file():
+        raise FormatError("not a file", where=str(path), cure="name a file")
+    if at_most < 0 and path.stat().st_size > MAX_BYTES:
+        raise FormatError(
+            f"larger than {MAX_BYTES >> 20} MiB", where=str(path), cure="cut it into smaller files"
+        )
+    try:
+        with path.open("rb") as stream:
+            return stream.read(at_most)
+    except OSError as error:
+        raise FormatError(f"cannot be read: {error.strerror}", where=str(path)) from error
+
+
+def read_text(path: Path) -> str:
+    """
+    Read a text file in UTF-8, with or without a byte order mark.
+
+    Raises
+    ------
+    FormatError
+        As `read_bytes`, and if it is not UTF-8 text.
+
+    """
+    try:
+        return read_bytes(path).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FormatError(
+            f"not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}",
+            where=str(path),
+            cure="save it as UTF-8",
+        ) from None
+
+
+def read_lines(path: Path) -> list[str]:
+    """Read a text file as lines, ended by LF, CRLF or CR, without their ends."""
+    return re.split(r"\r\n|\n|\r", read_text(path))
+
+
+def finite(text: str) -> float | None:
+    """Read a plain decimal number; None if it is anything else, such as empty, NaN or infinite."""
+    if _NUMBER.fullmatch(text.strip()) is None:
+        return None
+    value = float(text)
+    return value if math.isfinite(value) else None

@@ -1,0 +1,50 @@
+"""A tree by name or by path: what the command line and the nodes call TREE."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Any
+
+from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.species import species_named
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.importers.tree_file import read_tree
+
+
+def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile:
+    """
+    Open a built-in tree or a tree file.
+
+    Parameters
+    ----------
+    name_or_path
+        One of `BUILTIN_TREES`, or the path of a file; a file of the name of a built-in tree is
+        meant by ``./name``.
+    seed
+        Seed of a built-in tree.
+    **options
+        Options of the file's reader; see `read_tree`.
+
+    Raises
+    ------
+    FormatError
+        Neither a built-in tree nor a file.
+    TreeSwayError
+        What reading the file may raise.
+
+    """
+    text = str(name_or_path)
+    if text in BUILTIN_TREES:
+        tree = builtin_tree(text, seed)
+        return TreeFile(tree, species_named(tree.species), text)
+    path = Path(text).expanduser()
+    if not path.exists():
+        close = difflib.get_close_matches(text, BUILTIN_TREES, n=1)
+        guess = f"did you mean '{close[0]}'? " if close else ""
+        raise FormatError(
+            f"no tree '{text}'",
+            cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",
+        )
+    return read_tree(path, **options)
