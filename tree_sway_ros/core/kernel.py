@@ -1,0 +1,41 @@
+"""The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numba import njit
+from numba.core import types
+from numba.extending import overload
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def kernel(function: _F) -> _F:
+    """
+    Compile a function of numbers and arrays to machine code at its first call.
+
+    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released; the
+    code is cached beside the module. The plain function stays reachable as ``py_func``.
+
+    """
+    return cast(_F, njit(cache=True, error_model="numpy", nogil=True)(function))
+
+
+def like(value: float, model: Any) -> Any:
+    """
+    Return a constant in the precision of a model number, so that a kernel serves float32 and float64.
+
+    Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
+
+    """
+    return value
+
+
+@overload(like, inline="always")
+def _like(value, model):  # type: ignore[no-untyped-def]
+    if model == types.float32:
+        return lambda value, model: np.float32(value)
+    return lambda value, model: value

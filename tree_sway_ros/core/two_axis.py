@@ -1,0 +1,256 @@
+"""
+A branch on two axes: its force, its gyroscopic term and one guarded step of the exact propagator.
+
+The state is the rotation vector (x, y) in [rad] in the branch's own rest frame (b along the chord, e1
+and e2 across): the chord points along ``u = cos|e| b + sinc|e| (x e1 + y e2)``. In steady wind it moves
+in one plane, the paper's; when the wind turns it needs no plane and has no singular direction. With
+t = x^2 + y^2 and W the force times its lever, in [N m], Lagrange's equations on the sphere are::
+
+    I (e'' - gyroscopic) + k2 e' + k1 e = true_force
+    true_force = W_perp / sinc + e (e.W)(cos - 1 / sinc) / t - W_b sinc e
+    gyroscopic = E L^2 e + 2 B L (-vy, vx),   L = x vy - y vx
+
+The second line of the kinetic energy, T = I/2 (|v|^2 + (sinc^2 - 1) L^2 / t), is analytic in (x, y);
+so is what follows from it, and in this form nothing is divided by t. With sinc = 1 + t s and
+cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
+
+**Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right to
+3e-9 up to the guard; no root, sine or cosine is taken.
+**Guard.** t is held at T_MAX, where sinc = .3 (2.36 rad): beyond it the moment is bounded, not right.
+The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max k1, and the
+gyroscopic term is left out where w h >= .5, where a step sees no ellipse. A bounded moment on an exact,
+stable propagator is a bounded motion, for any wind and any step.
+
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.kernel import kernel, like
+
+Floats = NDArray[np.float64]
+
+T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = .3
+LOAD_MAX = 3.0  # s_max: largest load over stiffness that is followed, |W| / k1 [rad]
+MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
+GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
+
+
+@kernel
+def _series(t: float) -> tuple[float, float, float, float]:
+    """Return s, c of the module's text and their tails s', c': s = -1/6 + t s', c = -1/2 + t c'."""
+    s = like(1.5032424712277569e-10, t)
+    s = s * t - like(2.5002780465942419e-8, t)
+    s = s * t + like(2.7556346133638428e-6, t)
+    s = s * t - like(1.9841263105038876e-4, t)
+    s = s * t + like(8.3333333258591991e-3, t)
+    c = like(1.9343564401159469e-9, t)
+    c = c * t - like(2.7483756547269252e-7, t)
+    c = c * t + like(2.4800137070434030e-5, t)
+    c = c * t - like(1.3888878852585004e-3, t)
+    c = c * t + like(4.1666666555315840e-2, t)
+    return s * t - like(1.0 / 6.0, t), c * t - like(0.5, t), s, c
+
+
+@kernel
+def true_force(
+    x: float, y: float, wb: float, w1: float, w2: float
+) -> tuple[float, float]:
+    """
+    Moment of a force on the two axes, at any deflection.
+
+    Parameters
+    ----------
+    x, y
+        Rotation vector in [rad].
+    wb, w1, w2
+        Force times lever along b, e1, e2 in [N m].
+
+    Returns
+    -------
+    fx, fy
+        Generalised force over the inertia of each direction, in [N m]; (w1, w2) at zero.
+
+    """
+    t = min(x * x + y * y, like(T_MAX, x))
+    s, c, _, _ = _series(t)
+    one = like(1.0, x)
+    sinc = one + t * s
+    inverse = one / sinc
+    along = (x * w1 + y * w2) * (s + c + t * s * c) * inverse - wb * sinc
+    return w1 * inverse + x * along, w2 * inverse + y * along
+
+
+@kernel
+def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
+    """
+    Acceleration that the sphere itself asks for: great circles at constant speed.
+
+    Parameters
+    ----------
+    x, y
+        Rotation vector in [rad].
+    vx, vy
+        Its rate in [rad/s].
+
+    Returns
+    -------
+    ax, ay
+        Acceleration in [rad/s^2]; zero for motion in one plane.
+
+    """
+    t = min(x * x + y * y, like(T_MAX, x))
+    s, c, s1, c1 = _series(t)
+    one, two, three = like(1.0, x), like(2.0, x), like(3.0, x)
+    inverse = one / (one + t * s)
+    b = (s - c) * inverse
+    e = (three * s1 - c1 + s * c + s * (s + c + t * s * c)) * inverse
+    spin = x * vy - y * vx
+    radial, turn = e * spin * spin, two * b * spin
+    return radial * x - turn * vy, radial * y + turn * vx
+
+
+@kernel
+def limit_load(
+    wb: float, w1: float, w2: float, limit: float
+) -> tuple[float, float, float, int]:
+    """
+    Hold the length of a load at a limit in [N m]; the last value tells whether it was held.
+
+    What is not a number, or so large that its square is not, counts as held and pulls nowhere.
+
+    """
+    square = wb * wb + w1 * w1 + w2 * w2
+    if square <= limit * limit:
+        return wb, w1, w2, 0
+    if not square < like(math.inf, square):
+        none = like(0.0, square)
+        return none, none, none, 1
+    scale = limit / math.sqrt(square)
+    return wb * scale, w1 * scale, w2 * scale, 1
+
+
+@kernel
+def moment(
+    x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
+    gyro_inertia: float, limit: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return true force and gyroscopic term together in [N m], held at a limit."""
+    mx, my = true_force(x, y, wb, w1, w2)
+    ax, ay = gyroscopic(x, y, vx, vy)
+    mx += gyro_inertia * ax
+    my += gyro_inertia * ay
+    square = mx * mx + my * my
+    scale = limit / math.sqrt(square) if square > limit * limit else like(1.0, x)
+    return mx * scale, my * scale
+
+
+@kernel
+def step_branch(
+    x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
+    c0: float, c1: float, c2: float, c3: float, c4: float, c5: float, c6: float, c7: float,
+    gyro_inertia: float, load_limit: float, moment_limit: float,
+) -> tuple[float, float, float, float, int]:  # fmt: skip
+    """
+    One step of one branch under a force that is constant over the step: predictor and corrector.
+
+    Parameters
+    ----------
+    x, y, vx, vy
+        Rotation vector in [rad] and its rate in [rad/s].
+    wb, w1, w2
+        Mean force over the step times lever, along b, e1, e2, in [N m].
+    c0, c1, c2, c3, c4, c5, c6, c7
+        The branch's row of `oscillators.propagator`.
+    gyro_inertia, load_limit, moment_limit
+        The branch's row of `guards`.
+
+    Returns
+    -------
+    x, y, vx, vy, held
+        State at the end of the step, and 1 where the load was held.
+
+    """
+    wb, w1, w2, held = limit_load(wb, w1, w2, load_limit)
+    mx, my = moment(x, y, vx, vy, wb, w1, w2, gyro_inertia, moment_limit)
+    px, py = c0 * x + c1 * vx + c2 * mx, c0 * y + c1 * vy + c2 * my
+    ux, uy = c4 * x + c5 * vx + c6 * mx, c4 * y + c5 * vy + c6 * my
+    mx, my = moment(
+        px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, wb, w1, w2,
+        gyro_inertia, moment_limit,
+    )  # fmt: skip
+    return px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, held
+
+
+@kernel
+def fill_guards(
+    inertia: Floats, stiffness: Floats, dt: float, load_max: float, out: Floats
+) -> None:
+    """
+    Refill the guards in place, for a step that changes.
+
+    Parameters
+    ----------
+    inertia, stiffness
+        I in [kg m^2] and k1 in [N m], (n,).
+    dt
+        Time step in [s].
+    load_max
+        Largest load over stiffness to follow in [rad]: `LOAD_MAX`.
+    out
+        gyro_inertia in [kg m^2], load_limit and moment_limit in [N m], (n, 3). A branch without
+        stiffness has no limits.
+
+    """
+    for row in range(len(inertia)):
+        i, k = inertia[row], stiffness[row]
+        slow = k * dt * dt < GYRO_STEP * GYRO_STEP * i
+        out[row, 0] = i if slow else 0.0
+        out[row, 1] = load_max * k if k > 0.0 else math.inf
+        out[row, 2] = MOMENT_MARGIN * load_max * k if k > 0.0 else math.inf
+
+
+def guards(
+    inertia: Floats, stiffness: Floats, dt: float, load_max: float = LOAD_MAX
+) -> Floats:
+    """Guards of each branch as `fill_guards` describes them, (n, 3)."""
+    out = np.empty((len(inertia), 3))
+    fill_guards(inertia, stiffness, dt, load_max, out)
+    return out
+
+
+@kernel
+def step_bank(state: Floats, load: Floats, coefficients: Floats, guard: Floats) -> int:
+    """
+    Step a bank of branches in place.
+
+    Parameters
+    ----------
+    state
+        x, y, vx, vy of each branch as rows, (4, n), float64 or float32.
+    load
+        wb, w1, w2 in [N m] as rows, (3, n), of the same kind.
+    coefficients, guard
+        `propagator` and `guards`, (n, 8) and (n, 3), of the same kind.
+
+    Returns
+    -------
+    int
+        How many loads were held at their limit.
+
+    """
+    held = 0
+    for i in range(state.shape[1]):
+        c, g = coefficients[i], guard[i]
+        x, y, vx, vy, over = step_branch(
+            state[0, i], state[1, i], state[2, i], state[3, i],
+            load[0, i], load[1, i], load[2, i],
+            c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], g[0], g[1], g[2],
+        )  # fmt: skip
+        state[0, i], state[1, i], state[2, i], state[3, i] = x, y, vx, vy
+        held += over
+    return held
