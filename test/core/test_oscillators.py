@@ -99,7 +99,7 @@ def test_extreme_values_stay_finite(stiffness):
 
 
 def test_refuses_by_name():
-    with pytest.raises(ParameterError, match="oscillator 1: .*all zero"):
+    with pytest.raises(ParameterError, match=r"oscillator 1: .*all zero"):
         propagator([1.0, 0.0], [0.0, 0.0], [1.0, 0.0], 0.1)
     with pytest.raises(ParameterError, match=r"oscillator 2: stiffness of -1\.0"):
         propagator(1.0, 0.1, [1.0, 2.0, -1.0], 0.1)

@@ -107,7 +107,7 @@ def fill_propagator(
     refused = -1
     for row in range(len(inertia)):
         i, c, k = inertia[row], damping[row], stiffness[row]
-        if i > 0.0 and max(c, k * dt, dt, 1.0) * max(dt, 1.0) / i < 1e300:
+        if i > 0.0 and c * dt < 1e150 * i and max(k * dt, dt, 1.0) * max(dt, 1.0) / i < 1e300:
             _fill_second_order(i, c, k, dt, out[row])
         elif c > 0.0 and max(k, 1.0) * max(dt, 1.0) / c < 1e300:
             _fill_first_order(c, k, dt, out[row])
