@@ -1,0 +1,219 @@
+"""The contract of the code's layout: layers, sizes, names, docstrings; read from the source, not run."""
+
+from __future__ import annotations
+
+import ast
+import re
+import statistics
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "tree_sway_ros"
+FILES = sorted(PACKAGE.rglob("*.py"))
+TEST_FILES = sorted((ROOT / "test").rglob("*.py"))
+
+#: Layer of each room; a room imports only from lower layers and from itself.
+LAYERS = {"errors": 0, "core": 1, "importers": 2, "ros": 3, "view": 3, "nodes": 4, "tools": 4}
+CORE_LIBRARIES = {"numpy", "scipy", "numba", "tree_sway_ros"}
+NOT_IN_CORE = {
+    *("asyncio", "datetime", "glob", "io", "logging", "multiprocessing", "os", "pathlib", "random"),
+    *("shutil", "socket", "subprocess", "sys", "tempfile", "threading", "time", "urllib"),
+}
+#: The same for calls, as numpy's global generator and files need no import.
+NOT_CALLED_IN_CORE = re.compile(
+    r"\bnp\.random\.(?!Generator|default_rng\b)|\bdefault_rng\(\s*\)|\bopen\(|\bprint\("
+)
+BANNED_NAMES = {"utils", "util", "helpers", "helper", "common", "manager", "misc", "tools_common"}
+MAX_LINES = 300
+MEDIAN_LINES = 150
+
+
+def name_of(path: Path) -> str:
+    """Dotted name of a module."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def room_of(module: str) -> str:
+    """Room of a module of ours: the name below the package; empty for the package's root."""
+    return module.split(".")[1] if "." in module else ""
+
+
+def imports_of(path: Path) -> Iterator[tuple[int, str, ast.AST]]:
+    """Each imported module with its line; names that are modules themselves are written out."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield node.lineno, alias.name, node
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            assert node.module is not None
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield node.lineno, inner if inner in MODULES else node.module, node
+
+
+MODULES = {name_of(path) for path in FILES}
+
+
+def lines_of(paths: list[Path]) -> int:
+    """Lines of all the files together."""
+    return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in paths)
+
+
+def test_every_room_has_a_layer() -> None:
+    rooms = {room_of(name_of(path)) for path in FILES} - {""}
+    assert rooms <= set(LAYERS)
+
+
+def test_imports_are_absolute_and_never_from_the_package_root() -> None:
+    wrong = []
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                wrong.append(f"{path}:{node.lineno} is relative")
+        for line, module, _ in imports_of(path):
+            if module == "tree_sway_ros":
+                wrong.append(f"{path}:{line} imports from the package root")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_imports_point_down() -> None:
+    wrong = []
+    for path in FILES:
+        room = room_of(name_of(path))
+        for line, module, _ in imports_of(path):
+            if module.split(".")[0] != "tree_sway_ros" or not room:
+                continue
+            other = room_of(module)
+            if other != room and LAYERS[other] >= LAYERS[room]:
+                wrong.append(f"{path}:{line}: {room} imports {module}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_core_knows_no_ros_no_files_no_clock() -> None:
+    wrong = []
+    for path in (PACKAGE / "core").rglob("*.py"):
+        for line, module, _ in imports_of(path):
+            top = module.split(".")[0]
+            of_standard = top in sys.stdlib_module_names and top not in NOT_IN_CORE
+            if top not in CORE_LIBRARIES and not of_standard:
+                wrong.append(f"{path}:{line} imports {module}")
+        for number, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            if NOT_CALLED_IN_CORE.search(text.split("#")[0]):
+                wrong.append(f"{path}:{number} has {text.strip()}")
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("text", ["np.random.rand(3)", "default_rng()", "open('x')", "print(1)"])
+def test_the_core_check_sees_what_it_looks_for(text: str) -> None:
+    assert NOT_CALLED_IN_CORE.search(text)
+    assert not NOT_CALLED_IN_CORE.search("np.random.Generator, rng.normal(), fingerprint (1)")
+
+
+def test_no_import_cycle() -> None:
+    graph = {
+        name_of(path): {m for _, m, _ in imports_of(path) if m in MODULES} for path in FILES
+    }
+    done: set[str] = set()
+
+    def visit(module: str, trail: tuple[str, ...]) -> None:
+        assert module not in trail, " -> ".join((*trail[trail.index(module) :], module))
+        if module not in done:
+            for other in sorted(graph[module]):
+                visit(other, (*trail, module))
+            done.add(module)
+
+    for module in graph:
+        visit(module, ())
+
+
+def test_files_are_small() -> None:
+    sizes = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in FILES}
+    long = [f"{path}: {size}" for path, size in sizes.items() if size > MAX_LINES]
+    long += [f"{path}: {lines_of([path])}" for path in TEST_FILES if lines_of([path]) > MAX_LINES]
+    assert not long, "\n".join(long)
+    assert statistics.median(size for size in sizes.values() if size > 3) <= MEDIAN_LINES
+
+
+def test_names_say_what_is_inside() -> None:
+    stems = {path.stem for path in [*FILES, *(p.parent for p in FILES)]}
+    assert not stems & BANNED_NAMES
+    of_standard = (stems & set(sys.stdlib_module_names)) - {"__init__", "calibrate"}
+    assert not of_standard, f"named like a module of the standard library: {of_standard}"
+
+
+def test_the_core_is_tested_as_much_as_it_is_written() -> None:
+    source = lines_of(sorted((PACKAGE / "core").rglob("*.py")))
+    tests = lines_of(sorted((ROOT / "test" / "core").rglob("*.py")))
+    tests += lines_of(sorted((ROOT / "test" / "battery").rglob("*.py")))
+    assert tests >= 0.7 * source, f"{tests} lines of tests for {source} lines of core"
+
+
+def public_definitions(tree: ast.Module) -> Iterator[tuple[str, ast.AST]]:
+    """Public classes and functions of a module, and the public methods of the classes."""
+    for node in tree.body:
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
+            continue
+        yield node.name, node
+        if isinstance(node, ast.ClassDef):
+            for inner in node.body:
+                if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
+                    yield f"{node.name}.{inner.name}", inner
+
+
+def docstring_faults(source: str) -> Iterator[tuple[int, str]]:
+    """Public definitions without a docstring, or with one of another form than ours."""
+    tree = ast.parse(source)
+    if not ast.get_docstring(tree):
+        yield 1, "the module has no docstring"
+    for name, node in public_definitions(tree):
+        assert isinstance(node, ast.FunctionDef | ast.ClassDef)
+        raw = ast.get_docstring(node, clean=False)
+        if raw is None:
+            yield node.lineno, f"{name} has no docstring"
+        elif "\n" in raw.strip():
+            if raw.split("\n")[0].strip():
+                yield node.lineno, f"{name}: the summary stands on the second line"
+            elif not re.search(r"\n[ ]*\n[ ]*$", raw):
+                yield node.lineno, f"{name}: a blank line stands before the closing quotes"
+            for section in re.findall(r"^ *(Args|Arguments|Params):\s*$", raw, re.MULTILINE):
+                yield node.lineno, f"{name}: '{section}:' is not NumPy style"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_docstrings(path: Path) -> None:
+    faults = [f"{path}:{line}: {fault}" for line, fault in docstring_faults(path.read_text("utf-8"))]
+    assert not faults, "\n".join(faults)
+
+
+def test_the_docstring_check_sees_what_it_looks_for() -> None:
+    source = '''"""M."""
+def bare(): pass
+def google():
+    """
+    Do.
+
+    Args:
+        x: thing
+
+    """
+def tight():
+    """
+    Do.
+
+    More.
+    """
+def first_line():
+    """Do.
+
+    More.
+
+    """
+'''
+    assert [fault.split(" ")[0].rstrip(":") for _, fault in docstring_faults(source)] == [
+        *("bare", "google", "tight", "first_line")
+    ]
