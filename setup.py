@@ -79,7 +79,7 @@ setup(
     zip_safe=False,
     entry_points={
         "console_scripts": [
-            *(f"{node} = {PACKAGE}.nodes.{node}:main" for node in NODES),
+            *(f"{node} = {PACKAGE}.nodes.executables:{node}" for node in NODES),
             f"tree-sway = {PACKAGE}.tools.cli:main",
         ],
     },

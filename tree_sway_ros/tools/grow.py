@@ -1,0 +1,39 @@
+"""``tree-sway grow``: a plausible tree of a species and a size, written as a file."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from tree_sway_ros.core.growth.grow import HABITS, grow
+from tree_sway_ros.core.species import species_keys, species_named
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("--species", required=True, help=", ".join(species_keys()))
+    parser.add_argument("--height", type=float, required=True, metavar="M", help="height [m]")
+    parser.add_argument(
+        "--diameter", type=float, metavar="M", help="at breast height [m]; from the height if left out"
+    )
+    parser.add_argument("--habit", choices=HABITS, help="the species' own if left out")
+    parser.add_argument("--seed", type=int, default=0, help="another seed, another tree (%(default)s)")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Grow a tree and write it."""
+    if arguments.seed < 0:
+        raise ParameterError(f"{arguments.seed} is negative", where="--seed", cure="give 0 or more")
+    tree = grow(
+        arguments.species,
+        arguments.height,
+        arguments.diameter,
+        arguments.habit,
+        rng=np.random.default_rng(arguments.seed),
+    )
+    write_tree_file(arguments.output, tree, species_named(tree.species))
+    return 0
