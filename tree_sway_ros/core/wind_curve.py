@@ -1,0 +1,124 @@
+"""
+A curve through knots, straight lines or steps, of bounded memory, with its exact integral.
+
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+Vector = tuple[float, float, float]
+
+
+class WindCurve:
+    """
+    Straight lines (or steps) through the newest knots; before the first and after the last it is level.
+
+    Parameters
+    ----------
+    is_stepped
+        True holds each knot's value up to the next one; false joins them by lines.
+    capacity
+        Number of knots kept; the oldest go first.
+
+    """
+
+    def __init__(self, is_stepped: bool, capacity: int) -> None:
+        """Start without a knot."""
+        self._is_stepped = is_stepped
+        self._knots: deque[tuple[float, Vector]] = deque(maxlen=capacity)
+
+    def __len__(self) -> int:
+        """Return the number of knots."""
+        return len(self._knots)
+
+    @property
+    def end(self) -> float:
+        """Time of the last knot in [s]."""
+        return self._knots[-1][0]
+
+    @property
+    def last(self) -> Vector:
+        """Value of the last knot in [m/s]."""
+        return self._knots[-1][1]
+
+    def clear(self) -> None:
+        """Drop every knot."""
+        self._knots.clear()
+
+    def append(self, time: float, value: Vector) -> None:
+        """Add a knot at the end; one at the same time as the last or before it is not added."""
+        if not self._knots or time > self._knots[-1][0]:
+            self._knots.append((time, value))
+
+    def cut(self, time: float) -> None:
+        """Drop what comes after a time in [s], and be level from there: the past stays as it was."""
+        if self._knots and self.end > time:
+            value = self.value(time)
+            while self._knots and self._knots[-1][0] >= time:
+                self._knots.pop()
+            self._knots.append((time, value))
+
+    def shift(self, delay: float) -> None:
+        """Move every knot later by a delay in [s]."""
+        for _ in range(len(self._knots)):
+            time, value = self._knots.popleft()
+            self._knots.append((time + delay, value))
+
+    def value(self, time: float) -> Vector:
+        """Return the value at a time in [s]; there must be a knot."""
+        after_time, after = self._knots[-1]
+        if time >= after_time:
+            return after
+        for knot_time, knot in reversed(self._knots):
+            if knot_time <= time:
+                if self._is_stepped:
+                    return knot
+                return _mix(knot, after, (time - knot_time) / (after_time - knot_time))
+            after_time, after = knot_time, knot
+        return after
+
+    def mean(self, start: float, end: float) -> Vector:
+        """
+        Return the exact mean of the curve over an interval.
+
+        Parameters
+        ----------
+        start, end
+            The interval in [s], ``start < end``; there must be a knot.
+
+        Returns
+        -------
+        Vector
+            Mean in [m/s].
+
+        """
+        # From the newest knot back: a solver asks for the last step, which holds one knot or none.
+        x = y = z = 0.0
+        to, to_value = end, self.value(end)
+        for time, knot in reversed(self._knots):
+            if time >= end:
+                continue
+            since = max(time, start)
+            if self._is_stepped:
+                first = to_value = knot
+            else:
+                first = knot if since == time else self.value(since)
+            half = 0.5 * (to - since)
+            x += half * (first[0] + to_value[0])
+            y += half * (first[1] + to_value[1])
+            z += half * (first[2] + to_value[2])
+            to, to_value = since, first
+            if time <= start:
+                break
+        else:
+            first = self._knots[0][1]
+            level = to - start
+            x, y, z = x + level * first[0], y + level * first[1], z + level * first[2]
+        width = end - start
+        return x / width, y / width, z / width
+
+
+def _mix(a: Vector, b: Vector, part: float) -> Vector:
+    rest = 1.0 - part
+    return rest * a[0] + part * b[0], rest * a[1] + part * b[1], rest * a[2] + part * b[2]
