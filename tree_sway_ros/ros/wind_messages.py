@@ -11,7 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from geometry_msgs.msg import TwistStamped, TwistWithCovarianceStamped, Vector3, Vector3Stamped
+from geometry_msgs.msg import (
+    PoseStamped,
+    TwistStamped,
+    TwistWithCovarianceStamped,
+    Vector3,
+    Vector3Stamped,
+)
+from rosgraph_msgs.msg import Clock
 
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.ros.node_parameters import WIND_TYPE_NAMES
@@ -91,6 +98,49 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
     if hasattr(message, "header"):
         fill_stamp(message.header.stamp, sample.stamp)
         message.header.frame_id = sample.frame_id
+    return message
+
+
+class WindWriter:
+    """
+    Writes wind the way a driver would.
+
+    Parameters
+    ----------
+    output_type
+        One of the four types.
+    direction_convention
+        ``to`` or ``from``: whether vectors point where the wind goes or where it comes from.
+    frame_id
+        Of the messages.
+
+    """
+
+    def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:
+        self.message_class = wind_class(output_type)
+        self._sign = 1.0 if direction_convention == "to" else -1.0
+        self._frame_id = frame_id
+
+    def message(self, stamp: int, velocity: Any) -> Any:
+        """Write a velocity, blowing to, ENU in [m/s], (3,), stamped with a time in [ns]."""
+        u, v, w = (self._sign * float(component) for component in velocity)
+        return wind_to_message(self.message_class, WindSample(stamp, self._frame_id, u, v, w))
+
+
+def plane_message(stamp: int, frame_id: str, wxyz: Any) -> Any:
+    """Write the attitude of the force plane as a PoseStamped at the origin."""
+    message = PoseStamped()
+    fill_stamp(message.header.stamp, stamp)
+    message.header.frame_id = frame_id
+    to = message.pose.orientation
+    to.w, to.x, to.y, to.z = map(float, wxyz)
+    return message
+
+
+def clock_message(stamp: int) -> Any:
+    """Write a time in [ns] as a Clock."""
+    message = Clock()
+    fill_stamp(message.clock, stamp)
     return message
 
 

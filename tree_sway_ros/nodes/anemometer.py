@@ -1,0 +1,62 @@
+"""The anemometer node: a simulated wind, as any driver would publish it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tree_sway_ros.core.anemometer_model import AnemometerModel
+from tree_sway_ros.core.gust_event import GustEvent
+from tree_sway_ros.ros.diagnostics import OK, Status
+from tree_sway_ros.ros.node import TreeSwayNode
+from tree_sway_ros.ros.pacer import Pacer, Tick
+from tree_sway_ros.ros.topics import WIND
+from tree_sway_ros.ros.wind_messages import WindWriter
+
+
+class AnemometerNode(TreeSwayNode):
+    """
+    Publishes `wind` at a fixed rate.
+
+    Parameters
+    ----------
+    options
+        For `rclpy.node.Node`.
+
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("anemometer", **options)
+        self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
+        self._model = self._make_model()
+        self._ticks = 0
+        self._publisher = self.publisher(WIND, self._writer.message_class)
+        self.report_with("simulated anemometer", self._report)
+        self._pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
+        self.on_close(self._pacer.stop)
+        self._pacer.start()
+
+    def on_change(self, values: dict[str, Any]) -> None:
+        """Blow otherwise from the next sample on; the gusts of a seed keep their pattern."""
+        self._model = self._make_model()
+
+    def _make_model(self) -> AnemometerModel:
+        names = ("mean_speed", "bearing_to", "turbulence", "height", "intensity", "rate", "seed")
+        return AnemometerModel(events=self._events(), **self.values(*names))
+
+    def _events(self) -> tuple[GustEvent, ...]:
+        kind = self.values["gust"]
+        if kind == "none":
+            return ()
+        is_angle = kind in ("direction_change", "turn")
+        amplitude = self.values["gust_angle" if is_angle else "gust_speed"]
+        every = self.values["gust_every"]
+        duration = self.values["gust_duration"]
+        return (GustEvent(kind, amplitude, duration, start=every or 1.0, every=every),)
+
+    def _tick(self, tick: Tick) -> None:
+        self._ticks += tick.periods
+        self._publisher.publish(self._writer.message(tick.time, self._model.sample(self._ticks)))
+
+    def _report(self) -> list[Status]:
+        pace = self._pacer.pace()
+        return [Status("output", OK, f"{pace.rate:.1f} Hz", pace._asdict())]

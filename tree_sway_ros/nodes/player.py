@@ -1,0 +1,70 @@
+"""The player node: a recorded wind, as it was, faster, or around and around."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.importers.wind_file import read_wind
+from tree_sway_ros.ros.diagnostics import OK, Status
+from tree_sway_ros.ros.node import TreeSwayNode
+from tree_sway_ros.ros.playback import Playback
+from tree_sway_ros.ros.playback_thread import PlaybackThread
+from tree_sway_ros.ros.topics import CLOCK, WIND
+from tree_sway_ros.ros.wind_messages import WindWriter, clock_message
+
+
+class PlayerNode(TreeSwayNode):
+    """
+    Publishes `wind` from a record, and `/clock` if asked to.
+
+    Parameters
+    ----------
+    options
+        For `rclpy.node.Node`.
+
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("player", **options)
+        if not self.values["file"]:
+            raise ParameterError("no file to play", cure="give -p file:=wind.csv")
+        self._record = read_wind(self.values["file"])
+        self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
+        self._wind = self.publisher(WIND, self._writer.message_class)
+        has_clock, speed = self.values["publish_clock"], self.values["speed"]
+        self._clock = self.publisher(CLOCK) if has_clock else None
+        playback = Playback(
+            self._record.time,
+            epoch=self._record.epoch,
+            **self.values("start", "loop"),
+            clock_period=speed / self.values["clock_rate"] if has_clock else 0.0,
+        )
+        self._thread = PlaybackThread(
+            playback,
+            speed,
+            publish=self._publish,
+            may_start=self._may_start,
+            on_end=self._end,
+            on_error=self.fail,
+        )
+        self.report_with(self._record.source, self._report)
+        self.on_close(self._thread.stop)
+        self._thread.start()
+
+    def _publish(self, row: int, stamp: int) -> None:
+        if row < 0:
+            self._clock.publish(clock_message(stamp))
+        else:
+            self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
+
+    def _may_start(self) -> bool:
+        return not self.values["wait_for_subscriber"] or self._wind.get_subscription_count() > 0
+
+    def _end(self) -> None:
+        self.get_logger().info("the record has ended")
+        self.is_done = True
+
+    def _report(self) -> list[Status]:
+        values = {**self._thread.progress(), "refused in file": self._record.refused}
+        return [Status("playback", OK, self._record.source, values)]

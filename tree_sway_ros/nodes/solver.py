@@ -1,0 +1,96 @@
+"""The solver node: wind in, poses of every segment out, at a fixed rate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from std_srvs.srv import SetBool, Trigger
+
+from tree_sway_ros.core.simulator import SwaySimulator
+from tree_sway_ros.core.species import species_named
+from tree_sway_ros.core.wind_averaging import WindAverage
+from tree_sway_ros.core.wind_gate import WindGate
+from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.ros.diagnostics import Status
+from tree_sway_ros.ros.node import TreeSwayNode
+from tree_sway_ros.ros.pacer import Pacer, Tick
+from tree_sway_ros.ros.pose_stream import PoseStream
+from tree_sway_ros.ros.stepping import Stepper
+from tree_sway_ros.ros.sway_report import SwayReport
+from tree_sway_ros.ros.topics import WIND_FILTERED
+from tree_sway_ros.ros.wind_messages import wind_from_message
+from tree_sway_ros.ros.wind_report import WindReport
+
+
+class SolverNode(TreeSwayNode):
+    """
+    Subscribes `wind/filtered`, publishes `segment_poses`, `markers` and `tree_description`.
+
+    Parameters
+    ----------
+    options
+        For `rclpy.node.Node`.
+
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("solver", **options)
+        source = open_tree(self.values["tree"])
+        species = self.values["species"]
+        self.tree = source.tree
+        self.simulator = SwaySimulator(
+            source.tree,
+            species_named(species) if species else source.species,
+            rung=self.values["fidelity"],
+            stiffness=self.values["stiffness"],
+            damping_ratio=self.values["damping_ratio"] or None,
+        )
+        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
+        self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
+        self._stepper.warm_up()
+        # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
+        self._gate = WindGate(max_speed=150.0, max_rate=1e4)
+        self._wind_report = WindReport()
+        self._sway_report = SwayReport()
+        self.stream = PoseStream(self, source.tree)
+        self.subscription(WIND_FILTERED, self._receive)
+        self.create_service(Trigger, "~/reset", self._reset)
+        self.create_service(SetBool, "~/pause", self._pause)
+        self.report_with(source.tree.name, self._statuses)
+        self.on_close(self.pacer.stop)
+        self.pacer.start()
+        for note in source.notes:
+            self.get_logger().info(note)
+
+    def _make_wind(self) -> WindAverage:
+        return WindAverage(**self.values("interpolation", "timeout", "decay"))
+
+    def _receive(self, message: Any) -> None:
+        sample = wind_from_message(message)
+        vector = (sample.u, sample.v, sample.w)
+        arrival = self.get_clock().now().nanoseconds
+        verdict = self._gate.offer(sample.stamp * 1e-9, vector, arrival * 1e-9)
+        self._wind_report.add(verdict.accepted)
+        if verdict.accepted:
+            self._stepper.add_wind(round(verdict.time * 1e9), vector)
+
+    def _tick(self, tick: Tick) -> None:
+        if tick.restarted:
+            self._stepper.restart(tick.time)
+        self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
+        index = tick.time // self.pacer.period
+        self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
+
+    def _reset(self, _request: Any, response: Any) -> Any:
+        self._stepper.request(self.simulator.reset)
+        response.success, response.message = True, "at rest"
+        return response
+
+    def _pause(self, request: Any, response: Any) -> Any:
+        self._stepper.is_paused = bool(request.data)
+        response.success, response.message = True, "paused" if request.data else "running"
+        return response
+
+    def _statuses(self) -> list[Status]:
+        wind = self._wind_report.status(self.values["timeout"], self._gate)
+        return [wind, *self._sway_report.statuses(self.simulator, self.pacer, self.stream.frames)]

@@ -1,0 +1,74 @@
+"""The wind node: whatever an anemometer sends, as the wind that trees feel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geometry_msgs.msg import Vector3Stamped
+
+from tree_sway_ros.core.wind_convention import WindConvention
+from tree_sway_ros.core.wind_gate import WindGate
+from tree_sway_ros.ros.diagnostics import Status
+from tree_sway_ros.ros.node import TreeSwayNode
+from tree_sway_ros.ros.topics import FORCE_PLANE, WIND, WIND_FILTERED
+from tree_sway_ros.ros.wind_messages import (
+    WindSample,
+    plane_message,
+    wind_class,
+    wind_from_message,
+    wind_to_message,
+)
+from tree_sway_ros.ros.wind_report import WindReport
+
+_CONVENTION = ("direction_convention", "speed_scale", "yaw_offset", "plane_normal")
+_GATE = ("max_speed", "max_rate", "longest_refusal", "frozen_after")
+
+
+class WindNode(TreeSwayNode):
+    """
+    Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`.
+
+    Parameters
+    ----------
+    options
+        For `rclpy.node.Node`.
+
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("wind", **options)
+        self._report = WindReport()
+        self._convention = WindConvention(**self.values(*_CONVENTION))
+        self._gate = WindGate(**self.values(*_GATE))
+        self._attitude: Any = None
+        self._filtered = self.publisher(WIND_FILTERED)
+        self._plane = self.publisher(FORCE_PLANE)
+        self.subscription(WIND, self._receive, wind_class(self.values["input_type"]))
+        self.report_with("wind", self._statuses)
+        self.get_logger().info(self._convention.describe())
+
+    def on_change(self, values: dict[str, Any]) -> None:
+        """Read the wind otherwise from the next sample on."""
+        self._convention = WindConvention(**self.values(*_CONVENTION))
+
+    def _receive(self, message: Any) -> None:
+        sample = wind_from_message(message)
+        frame_id = self.values["fixed_frame"]
+        if sample.frame_id not in ("", frame_id):
+            self.get_logger().warning(
+                f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'", once=True
+            )
+        velocity = self._convention.velocity(sample.u, sample.v, sample.w)
+        arrival = self.get_clock().now().nanoseconds
+        verdict = self._gate.offer(sample.stamp * 1e-9, velocity, arrival * 1e-9)
+        self._report.add(verdict.accepted)
+        if not verdict.accepted:
+            return
+        time = round(verdict.time * 1e9)
+        vector = self._convention.project(velocity)
+        self._filtered.publish(wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector)))
+        self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
+        self._plane.publish(plane_message(time, frame_id, self._attitude))
+
+    def _statuses(self) -> list[Status]:
+        return [self._report.status(self.values["timeout"], self._gate)]

@@ -1,0 +1,111 @@
+"""
+A wind record in time: when each sample is due, at any speed, around and around.
+
+Time goes on over the seam of a loop: a period after the last sample of one round comes the first of the next,
+so whoever follows the stamps or /clock never sees time go back.
+
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.errors import FormatError
+
+
+class Event(NamedTuple):
+    """
+    Something to publish.
+
+    Parameters
+    ----------
+    time
+        Since the playback began, in the record's time [s].
+    row
+        Of the record; -1 for a tick of /clock.
+
+    """
+
+    time: float
+    row: int
+
+
+class Playback:
+    """
+    The events of a record.
+
+    Parameters
+    ----------
+    time
+        Of the samples in [s], increasing, (n,).
+    epoch
+        Date of the record's time 0 in [s] after 1970, None if it has none.
+    start
+        Skip so much of the record in [s].
+    loop
+        Whether it starts again at its end.
+    clock_period
+        From one tick of /clock to the next, in the record's time [s]; 0 for none.
+
+    Raises
+    ------
+    FormatError
+        If nothing of the record is left.
+
+    """
+
+    def __init__(
+        self,
+        time: NDArray[np.float64],
+        *,
+        epoch: float | None = None,
+        start: float = 0.0,
+        loop: bool = False,
+        clock_period: float = 0.0,
+    ) -> None:
+        self._first_row = int(np.searchsorted(time, time[0] + start)) if len(time) else 0
+        self._time = time[self._first_row :]
+        if not len(self._time):
+            raise FormatError(f"no sample {start:g} s into the record", cure="give a smaller start")
+        self._epoch = epoch
+        self._loop = loop
+        self._clock_period = clock_period
+        steps = np.diff(self._time)
+        self.round = float(self._time[-1] - self._time[0] + (np.median(steps) if len(steps) else 1))
+
+    @property
+    def has_clock(self) -> bool:
+        """Whether ticks of /clock are among the events."""
+        return self._clock_period > 0.0
+
+    @property
+    def epoch(self) -> int:
+        """Time of the first event in [ns], for /clock: the record's own, or 1 s if it has no date."""
+        if self._epoch is None:
+            return 1_000_000_000
+        return round((self._epoch + float(self._time[0])) * 1e9)
+
+    def events(self) -> Iterator[Event]:
+        """Events in the order of their times; a tick of /clock comes after the sample of its time."""
+        if not self.has_clock:
+            return self._samples()
+        return heapq.merge(self._samples(), self._ticks(), key=lambda event: event.time)
+
+    def _samples(self) -> Iterator[Event]:
+        relative = (self._time - self._time[0]).tolist()
+        for turn in itertools.count() if self._loop else range(1):
+            for row, time in enumerate(relative, start=self._first_row):
+                yield Event(turn * self.round + time, row)
+
+    def _ticks(self) -> Iterator[Event]:
+        for tick in itertools.count():
+            time = tick * self._clock_period
+            if not self._loop and time > self.round:
+                return
+            yield Event(time, -1)

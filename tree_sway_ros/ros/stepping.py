@@ -1,0 +1,126 @@
+"""
+From ticks to steps: each period of the grid is solved with the mean wind over that very period.
+
+A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace in the
+motion; only where a step costs more than half a period are they joined to one long step, which the exact
+propagator takes without harm, so that a slow machine never falls further behind.
+
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+_BLOCK = 10_000_000_000_000
+"""Times are counted in seconds from a whole multiple of this [ns]: short numbers, the same in every run."""
+# Weight of the newest step in the running mean of its cost.
+_NEWEST = 0.02
+
+
+class Stepper:
+    """
+    Steps a simulator through the wind.
+
+    Parameters
+    ----------
+    simulator
+        A `SwaySimulator`.
+    make_wind
+        Makes an empty `WindAverage`; called again whenever the clock was set back.
+    period
+        Of the grid in [ns].
+
+    """
+
+    def __init__(self, simulator: Any, make_wind: Callable[[], Any], period: int) -> None:
+        self.simulator = simulator
+        self.is_paused = False
+        self.wind_time: float | None = None
+        self._make_wind = make_wind
+        self._wind = make_wind()
+        self._period = period
+        self._samples: deque[tuple[int, Any]] = deque()
+        self._requests: deque[Callable[[], None]] = deque()
+        self._origin = 0
+        self._cost = 0.0
+
+    def warm_up(self) -> None:
+        """Have the kernels compiled or loaded before the first frame is due."""
+        wind = self._make_wind()
+        wind.add(0.0, (1.0, 0.0, 0.0))
+        period = self._period * 1e-9
+        self.simulator.step(wind.mean(-period, 0.0), period)
+        self.simulator.place()
+        self.simulator.reset()
+
+    def add_wind(self, time_ns: int, vector: Any) -> None:
+        """Take a sample of the wind; any thread may call this."""
+        self._samples.append((time_ns, vector))
+
+    def request(self, action: Callable[[], None]) -> None:
+        """Have something done before the next step, in its thread."""
+        self._requests.append(action)
+
+    def restart(self, time_ns: int) -> None:
+        """Begin at a time: forget the wind and the motion."""
+        self._origin = time_ns // _BLOCK * _BLOCK
+        self._wind = self._make_wind()
+        self.wind_time = None
+        self.simulator.reset()
+
+    def advance(self, time_ns: int, periods: int, delay: float) -> None:
+        """
+        Solve up to a time.
+
+        Parameters
+        ----------
+        time_ns
+            End of the last period in [ns].
+        periods
+            How many periods to solve.
+        delay
+            The wind is felt so much later [s].
+
+        """
+        while self._requests:
+            self._requests.popleft()()
+        while self._samples:
+            sample_time, vector = self._samples.popleft()
+            self.wind_time = self._seconds(sample_time)
+            self._wind.add(self.wind_time, vector)
+        if self.is_paused:
+            return
+        period = self._period * 1e-9
+        n_steps = 1 if self._cost > 0.5 * period else periods
+        dt = period * periods / n_steps
+        end = self._seconds(time_ns) - delay
+        for step in range(n_steps):
+            start = end - (n_steps - step) * dt
+            begin = time.perf_counter()
+            self.simulator.step(self._wind.mean(start, start + dt), dt)
+            self._cost += _NEWEST * (time.perf_counter() - begin - self._cost)
+
+    def wind_age(self, time_ns: int) -> float | None:
+        """Time since the last sample of the wind in [s]; None if there was none."""
+        latest = self.wind_time
+        return None if latest is None else max(0.0, self._seconds(time_ns) - latest)
+
+    def _seconds(self, time_ns: int) -> float:
+        return (time_ns - self._origin) * 1e-9
+
+
+class Divider:
+    """Tells when the next frame is due, where only some of the ticks make one."""
+
+    def __init__(self) -> None:
+        self._last: int | None = None
+
+    def is_due(self, index: int, every: int) -> bool:
+        """Whether tick `index` is the first in its group of `every` ticks."""
+        group = index // every
+        due = group != self._last
+        self._last = group
+        return due

@@ -1,0 +1,62 @@
+"""Does the stream keep up, and with which model? What the solver says on `/diagnostics`."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from tree_sway_ros.ros.diagnostics import OK, WARN, Status
+from tree_sway_ros.ros.pacer import Pace, Pacer
+
+
+class SwayReport:
+    """Compares each report with the one before."""
+
+    def __init__(self) -> None:
+        self._skipped = 0
+        self._frames = 0
+        self._time = time.monotonic()
+
+    def statuses(self, simulator: Any, pacer: Pacer, frames: int) -> list[Status]:
+        """
+        Report on the output and on the model.
+
+        Parameters
+        ----------
+        simulator
+            A `SwaySimulator`.
+        pacer
+            Its pacer.
+        frames
+            Pose arrays published so far.
+
+        """
+        return [self._output(pacer.pace(), 1e9 / pacer.period, frames), _model(simulator)]
+
+    def _output(self, pace: Pace, rate: float, frames: int) -> Status:
+        now = time.monotonic()
+        published = (frames - self._frames) / max(1e-9, now - self._time)
+        skipped = pace.skipped - self._skipped
+        self._time, self._frames, self._skipped = now, frames, pace.skipped
+        values = {
+            "rate [Hz]": pace.rate,
+            "wanted [Hz]": rate,
+            "published [Hz]": published,
+            "late p50 [s]": pace.late_p50,
+            "late p95 [s]": pace.late_p95,
+            "late max [s]": pace.late_max,
+            "work [s]": pace.work_mean,
+            "frames": frames,
+            "skipped": pace.skipped,
+            "clock forward": pace.clamped,
+            "clock back": pace.restarts,
+        }
+        if skipped > 0.01 * rate:
+            late = f"{1e3 * pace.late_p95:.1f} ms late (p95)"
+            return Status("output", WARN, f"{skipped} frames skipped, {late}", values)
+        return Status("output", OK, f"{pace.rate:.1f} Hz", values)
+
+
+def _model(simulator: Any) -> Status:
+    values = {"fidelity": simulator.rung, "time [s]": simulator.time, **simulator.counts}
+    return Status("model", OK, f"{simulator.rung}", values)
