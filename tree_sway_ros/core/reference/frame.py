@@ -105,10 +105,7 @@ class FrameModel:
         return out
 
     def static_nodal(self, force: Floats) -> Floats:
-        """
-        Displacement of the nodes in [m], (m, 3), under a force on each node in [N], (m, 3).
-
-        """
+        """Displacement of the nodes in [m], (m, 3), by a force on each in [N], (m, 3)."""
         load = np.zeros((len(self.node) - 1, 6))
         load[:, :3] = np.asarray(force, dtype=np.float64)[1:]
         out = np.zeros((len(self.node), 3))

@@ -48,10 +48,7 @@ class ElementShapes:
 
 
 def element_shapes(length: Floats) -> ElementShapes:
-    """
-    Evaluate the shape functions of elements of these lengths in [m], (m,).
-
-    """
+    """Evaluate the shape functions of elements of these lengths in [m], (m,)."""
     x = POINTS[None, :]
     span = length[:, None]
     one = np.ones((len(length), len(POINTS)))
@@ -129,10 +126,7 @@ def elastic_stiffness(
 def consistent_mass(
     shapes: ElementShapes, length: Floats, diameter: Floats, density: float
 ) -> Floats:
-    """
-    Mass of translation and of twist, (m, 12, 12); Euler-Bernoulli: no rotary inertia of bending.
-
-    """
+    """Mass, (m, 12, 12); as Euler and Bernoulli, without the rotary inertia of bending."""
     line_mass = density * np.pi / 4.0 * diameter**2
     twist = shapes.rotation[0]
     total = _integral(length, density * np.pi / 32.0 * diameter**4, twist, twist)
@@ -175,10 +169,7 @@ def geometric_stiffness(
 
 
 def load_rows(shapes: ElementShapes, length: Floats, share: Floats) -> Floats:
-    """
-    Nodal loads by a unit force spread over each element with this density, (m, 12, 3), local axes.
-
-    """
+    """Nodal loads by a unit force spread with this density, (m, 12, 3), local axes."""
     columns = [
         np.einsum("g,mg,mga->ma", WEIGHTS, share * length[:, None], rows)
         for rows in shapes.displacement

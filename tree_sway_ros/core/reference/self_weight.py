@@ -37,13 +37,11 @@ class SelfWeight:
     base_force: Floats
 
     def offset_stiffness(self, offset: Floats) -> Floats:
-        """
-        Stiffness in [N m/rad] on the rotation of the node behind each rigid offset in [m], (m, 3, 3).
-
-        """
+        """Stiffness of a rigid offset in [m] on its node's rotation in [N m/rad], (m, 3, 3)."""
         outer = np.einsum("mi,mj->mij", self.base_force, offset)
         along = np.einsum("mi,mi->m", self.base_force, offset)
-        return along[:, None, None] * np.eye(3) - 0.5 * (outer + outer.transpose(0, 2, 1))
+        turned: Floats = along[:, None, None] * np.eye(3) - 0.5 * (outer + outer.transpose(0, 2, 1))
+        return turned
 
 
 def self_weight(

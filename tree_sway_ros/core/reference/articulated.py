@@ -1,0 +1,157 @@
+"""
+The tree as a chain of rigid segments, solved whole: the conventional method, slow and plain.
+
+Every segment bends at one joint inside it (see `articulated_bodies`), the articulated-body algorithm gives the
+accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit (`articulated_step`). It
+stands beside the reduced model as the truth for large, coupled motion, and as the last rung of the ladder.
+
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
+from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
+from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
+from tree_sway_ros.core.reference.articulated_pose import end_nodes, pose_block
+from tree_sway_ros.core.reference.articulated_step import Laws, advance
+from tree_sway_ros.core.reference.refinement import refined
+from tree_sway_ros.core.tree import Tree
+
+Floats = NDArray[np.float64]
+
+AIR_DENSITY = 1.2
+RIGID_TWIST = 1e3
+
+
+class ArticulatedTree:
+    """
+    A tree of rigid segments on springs.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    modulus, density
+        Young's modulus in [Pa] and density in [kg/m^3] of the green wood.
+    damping_ratio
+        Of the first mode in [-], by dampers in proportion to the springs: the ratio of a mode grows with
+        its frequency. Not used where `rayleigh` is given.
+    drag_coefficient, drag_exponent
+        C and N of Cd = C U^-N.
+    gravity
+        In [m/s^2]; the springs hold the rest shape against it.
+    subdivisions
+        Rigid pieces a segment.
+    twist_ratio
+        Stiffness of the joints in twist over that in bending, GJ/EI; by default they hardly twist.
+    rayleigh
+        Coefficients of damping by mass in [1/s] and by stiffness in [s].
+    wind_factor
+        Wind at each segment over the wind given to `step`, (n,); 1 if None.
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        modulus: float,
+        density: float,
+        damping_ratio: float = 0.05,
+        drag_coefficient: float = 1.2,
+        *,
+        drag_exponent: float = 0.0,
+        air_density: float = AIR_DENSITY,
+        gravity: float = 0.0,
+        subdivisions: int = 1,
+        twist_ratio: float = RIGID_TWIST,
+        rayleigh: tuple[float, float] | None = None,
+        wind_factor: ArrayLike | None = None,
+    ) -> None:
+        self.tree = tree
+        self.subdivisions = subdivisions
+        cut = refined(tree, subdivisions)
+        self.bodies = articulated_bodies(cut, modulus, density, gravity, twist_ratio)
+        n = cut.n_segments
+        self.turn = np.zeros((n, 4))
+        self.rate = np.zeros((n, 3))
+        self._motion, self._room = motion_of(n), articulation_of(n)
+        self._wind = np.zeros((n, 3))
+        factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
+        self._wind_factor = np.repeat(factor, subdivisions)[:, None]
+        self._twist_ratio = twist_ratio
+        self._gravity = gravity
+        if rayleigh is None:
+            lowest = 2.0 * math.pi * float(self.linear_modes(1)[0][0])
+            rayleigh = (0.0, 2.0 * damping_ratio / lowest)
+        self.laws = Laws(
+            gravity,
+            float(rayleigh[0]),
+            float(rayleigh[1]),
+            0.5 * air_density * drag_coefficient,
+            drag_exponent,
+            (10.0, 25.0),
+        )
+        self.reset()
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        self.turn[:] = [1.0, 0.0, 0.0, 0.0]
+        self.rate[:] = 0.0
+        self._motion.rotation[:] = np.eye(3)
+
+    def step(self, wind: ArrayLike, dt: float) -> None:
+        """
+        Advance by dt in [s] under a wind in [m/s], (3,), or one a segment, (n, 3).
+
+        """
+        wind = np.asarray(wind, dtype=np.float64)
+        if wind.ndim == 2:
+            wind = np.repeat(wind, self.subdivisions, axis=0)
+        np.multiply(self._wind_factor, wind, out=self._wind)
+        advance(
+            self.bodies, self.laws, self.turn, self.rate, self._wind, dt, self._motion, self._room
+        )
+
+    @property
+    def node_positions(self) -> Floats:
+        """End node of each segment in [m], (n, 3)."""
+        return end_nodes(self.bodies, self._motion.rotation)[self.subdivisions - 1 :: self.subdivisions]
+
+    @property
+    def tip_positions(self) -> Floats:
+        """Tip of each branch in [m], (b, 3)."""
+        return self.node_positions[self.tree.branch_first[1:] - 1]
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """
+        Poses of the segments in message order ``x y z qx qy qz qw``, (n, 7), origin at the start node.
+
+        """
+        if out is None:
+            out = np.empty((self.tree.n_segments, 7))
+        ends = end_nodes(self.bodies, self._motion.rotation)
+        return pose_block(self.bodies, self._motion.rotation, ends, self.subdivisions, out)
+
+    def linear_modes(self, count: int) -> tuple[Floats, Floats]:
+        """
+        Natural frequencies in [Hz], lowest first, and the displacement of the end nodes.
+
+        Returns
+        -------
+        tuple
+            Frequencies (count,) and shapes of unit modal mass, (count, n, 3).
+
+        """
+        frequency, shapes = joint_modes(
+            self.bodies,
+            joint_mass(self.bodies),
+            joint_stiffness(self.bodies, self._gravity),
+            count,
+            twist=self._twist_ratio < RIGID_TWIST,
+        )
+        return frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]

@@ -1,0 +1,51 @@
+"""A tree with every segment cut in equal pieces: the same wood, more joints or elements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tree_sway_ros.core.tree import Tree
+
+
+def refined(tree: Tree, pieces: int) -> Tree:
+    """
+    Cut every segment of a tree in this many equal pieces.
+
+    Piece j of segment i becomes segment ``pieces * i + j``. A branch goes on sitting at the same point.
+
+    """
+    if pieces == 1:
+        return tree
+    low = np.tile(np.arange(pieces) / pieces, tree.n_segments)[:, None]
+    high = low + 1.0 / pieces
+    start, chord = np.repeat(tree.start, pieces, 0), np.repeat(tree.end - tree.start, pieces, 0)
+    width = np.repeat(tree.base_diameter, pieces)
+    taper = np.repeat(tree.tip_diameter - tree.base_diameter, pieces)
+    parent = np.arange(-1, pieces * tree.n_segments - 1, dtype=np.int64)
+    piece = np.minimum((place_on_parent(tree) * pieces).astype(np.int64), pieces - 1)
+    parent[::pieces] = np.where(tree.segment_parent < 0, -1, pieces * tree.segment_parent + piece)
+    return replace(
+        tree,
+        start=start + low * chord,
+        end=start + high * chord,
+        base_diameter=width + low[:, 0] * taper,
+        tip_diameter=width + high[:, 0] * taper,
+        segment_parent=parent,
+        branch_first=pieces * tree.branch_first,
+        source_index=np.repeat(tree.source_index, pieces),
+    )
+
+
+def place_on_parent(tree: Tree) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Where each segment sits along its parent: 0 its start, 1 its end and the root's, (n,)."""
+    parent = tree.segment_parent
+    chord = tree.end[parent] - tree.start[parent]
+    place = np.einsum("ij,ij->i", tree.start - tree.start[parent], chord)
+    place = np.clip(place / np.einsum("ij,ij->i", chord, chord), 0.0, 1.0)
+    # A start within rounding of the end node is at it.
+    out: np.ndarray[tuple[int], np.dtype[np.float64]] = np.where(
+        (parent < 0) | (place > 1.0 - 1e-9), 1.0, place
+    )
+    return out
