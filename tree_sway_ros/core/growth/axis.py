@@ -46,10 +46,11 @@ def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
         axis, pi/2 is the side that faces up.
 
     """
-    level = np.cross(axis, UP)
-    size = float(np.linalg.norm(level))
-    level = level / size if size > 1e-6 else np.array([0.0, -1.0, 0.0])
-    upward = np.cross(level, axis)
+    x, y, z = axis
+    across = float(np.hypot(x, y))
+    right, ahead = (y / across, -x / across) if across > 1e-6 else (0.0, -1.0)
+    level = np.array([right, ahead, 0.0])
+    upward = np.array([ahead * z, -right * z, right * y - ahead * x])
     side = np.cos(azimuth) * level + np.sin(azimuth) * upward
     return np.asarray(np.cos(polar) * axis + np.sin(polar) * side)
 

@@ -1,7 +1,4 @@
-"""
-The trees that come with the package: the paper's two pot plants and a small broadleaf.
-
-"""
+"""The trees that come with the package: the paper's two pot plants and a small broadleaf."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def grow_goldcrest(
     skeleton = Skeleton()
     n_nodes = 28
     stem = skeleton.add(
-        grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 1.0, n_nodes, rng, wander=0.012)
+        grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 1.0, n_nodes, rng, wander=0.006)
     )
     roll = rng.uniform(0.0, 2.0 * np.pi)
     for node in range(1, n_nodes - 1):
@@ -77,13 +77,13 @@ def _add_branch(
     origin = skeleton.shoots[stem].nodes[at]
     nodes = grow_axis(origin, azimuth, elevation, length, n_segments, rng, wander=0.04)
     branch = skeleton.add(nodes, stem, at)
+    roll = rng.uniform(0.0, np.pi)
     add_twigs(
         skeleton,
         branch,
         length=0.03 + 0.08 * length,
         polar=0.6,
-        sides=(-np.pi / 2.0, np.pi / 6.0, 5.0 * np.pi / 6.0),
+        sides=(roll, roll + np.pi),
         first_node=2,
-        alternate=True,
         lift=0.25,
     )

@@ -25,7 +25,6 @@ def add_twigs(
     polar: float,
     sides: Sequence[float],
     first_node: int = 1,
-    alternate: bool = False,
     lift: float = 0.0,
     outer_ratio: float = 0.75,
 ) -> None:
@@ -44,8 +43,6 @@ def add_twigs(
         Angles about the shoot in [rad], as `aim` takes them: two for a flat spray.
     first_node
         First node that carries any.
-    alternate
-        One side a node in turn, in place of all sides at each node.
     lift
         How much they turn up (positive) or hang (negative), in [-]; 1 is half-way.
     outer_ratio
@@ -66,7 +63,6 @@ def add_twigs(
             way = aim(along, polar, side) + lift * UP
             offsets.append(ratio * length / np.linalg.norm(way) * way)
         for node in range(max(start + 1, first_node), stop + 1):
-            chosen = [offsets[node % len(sides)]] if alternate else offsets
-            for offset in chosen:
-                base = parent.nodes[node]
+            base = parent.nodes[node]
+            for offset in offsets:
                 skeleton.add(np.stack([base, base + offset]), shoot, node)

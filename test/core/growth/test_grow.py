@@ -1,0 +1,97 @@
+"""A tree of any size from species, height and diameter."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tree_sway_ros.core.growth.grow import HABITS, greenhill_length, grow, habit_of
+from tree_sway_ros.core.species import species_keys, species_named
+from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.errors import ParameterError, SpeciesError
+
+
+def rng() -> np.random.Generator:
+    return np.random.default_rng(7)
+
+
+def stem_diameter_at(tree: Tree, height: float) -> float:
+    stem = tree.segments_of(0)
+    z = np.append(tree.start[stem][0, 2], tree.end[stem][:, 2])
+    d = np.append(tree.base_diameter[stem][0], tree.tip_diameter[stem])
+    return float(np.interp(height, z, d))
+
+
+@given(
+    species=st.sampled_from(["oak", "birch", "spruce", "pine"]),
+    height=st.floats(3.0, 40.0),
+    slenderness=st.floats(30.0, 60.0),
+)
+@settings(max_examples=10, deadline=None)
+def test_height_and_breast_height_diameter_are_met(
+    species: str, height: float, slenderness: float
+) -> None:
+    tree = grow(species, height, height / slenderness, rng=rng())
+    assert tree.height == pytest.approx(height, rel=1e-12)
+    assert stem_diameter_at(tree, 1.3) == pytest.approx(height / slenderness, rel=1e-9)
+    assert tree.species == tree.name == species
+    assert tree.n_segments <= 3000
+
+
+@pytest.mark.parametrize("species", species_keys())
+def test_every_species_grows_without_a_diameter(species: str) -> None:
+    height = 1.5 if habit_of(species) == "pot" else 12.0
+    tree = grow(species, height, rng=rng(), name="mine")
+    assert tree.name == "mine"
+    assert 800 >= height / stem_diameter_at(tree, 0.0) >= 20
+    assert tree.n_segments <= 3000
+
+
+@pytest.mark.parametrize("habit", HABITS)
+def test_the_habit_can_be_chosen(habit: str) -> None:
+    tree = grow("oak", 2.0, habit=habit, rng=rng())  # type: ignore[arg-type]
+    assert tree.height == pytest.approx(2.0)
+    assert tree.species == "oak"
+
+
+def test_habits_follow_the_species() -> None:
+    assert [habit_of(s) for s in ("spruce", "oak", "goldcrest")] == ["conifer", "broadleaf", "pot"]
+
+
+def test_size_alone_does_not_change_the_shape() -> None:
+    small, large = (grow("oak", height, rng=rng()) for height in (6.0, 12.0))
+    np.testing.assert_allclose(large.end, 2.0 * small.end, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("species", "height", "diameter", "habit", "message"),
+    [
+        ("oak", 0.5, None, None, "height 0.5 m is out of range .*give 1 to 50 m"),
+        ("oak", float("nan"), None, None, "height nan m"),
+        ("benjamina", 9.0, None, None, "give 0.2 to 4 m"),
+        ("oak", 20.0, 0.05, None, "bend over under its own weight"),
+        ("oak", 10.0, 9.0, None, "is no stem; give .* to 2 m"),
+        ("oak", 10.0, -0.1, None, "diameter -0.1 m"),
+        ("oak", 10.0, float("nan"), None, "diameter nan m"),
+        ("oak", 10.0, None, "palm", "unknown habit 'palm'; use one of: conifer, broadleaf, pot"),
+    ],
+)
+def test_bad_sizes_are_refused_with_the_cure(
+    species: str, height: float, diameter: float | None, habit: str | None, message: str
+) -> None:
+    with pytest.raises(ParameterError, match=message):
+        grow(species, height, diameter, habit, rng=rng())  # type: ignore[arg-type]
+
+
+def test_an_unknown_species_is_refused() -> None:
+    with pytest.raises(SpeciesError, match="'okk'"):
+        grow("okk", 10.0, rng=rng())
+
+
+def test_greenhill_of_a_wooden_rod() -> None:
+    """Against the lowest zero of the Bessel function J_{-1/3}, 1.8664, from which the law follows."""
+    oak = species_named("oak")
+    stiffness = oak.modulus * np.pi * 0.1**4 / 64.0
+    weight = oak.density * 9.81 * np.pi * 0.1**2 / 4.0
+    expected = (2.25 * 1.8663508 ** 2 * stiffness / weight) ** (1.0 / 3.0)
+    assert greenhill_length(oak.modulus, oak.density, 0.1) == pytest.approx(expected, rel=1e-3)

@@ -1,0 +1,110 @@
+"""Pictures: that they are written, and that what they show is there."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.growth.builtin import builtin_tree
+from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree_building import tree_from_segments
+from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
+from tree_sway_ros.view.pictures import animate_poses, picture_at_rest, picture_in_wind
+from tree_sway_ros.view.plots import plot_wind_and_tip
+from tree_sway_ros.view.projection import rest_poses
+
+pytest.importorskip("matplotlib")
+Image = pytest.importorskip("PIL.Image")
+
+
+def pole() -> Tree:
+    return tree_from_segments([[0, 0, 0], [0, 0, 1.0]], [[0, 0, 1.0], [0, 0, 2.0]], [0.2, 0.1])
+
+
+def leaning(tree: Tree, angle: float) -> np.ndarray:
+    """Pose block of the tree turned towards the east as a whole."""
+    turn = np.array(
+        [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
+    )
+    return rest_poses(tree.start @ turn.T, tree.end @ turn.T)
+
+
+def pixels(path: Path) -> np.ndarray:
+    return np.asarray(Image.open(path).convert("RGB")).astype(float)
+
+
+def dark_columns(picture: np.ndarray) -> np.ndarray:
+    """Columns that show bark, below the title and above the ground."""
+    rows = picture[int(0.15 * len(picture)) : int(0.6 * len(picture))]
+    return np.flatnonzero((rows.max(axis=2) < 180).any(axis=0))
+
+
+def test_bark_is_as_thick_as_it_is(tmp_path: Path) -> None:
+    picture = pixels(picture_at_rest(pole(), tmp_path / "pole.png"))
+    dark = picture.max(axis=2) < 180
+    lower, upper = int(0.65 * len(picture)), int(0.25 * len(picture))
+    # .2 m below, .1 m above; an edge of a pixel or two on top of each.
+    assert 1.6 < dark[lower].sum() / dark[upper].sum() < 2.3
+
+
+def test_wind_from_the_west_leans_the_right_hand_tree_to_the_right(tmp_path: Path) -> None:
+    tree = pole()
+    path = tmp_path / "wind.png"
+    assert picture_in_wind(tree, leaning(tree, 0.5), [8.0, 0.0, 0.0], path) == path
+    picture = pixels(path)
+    left, right = np.split(picture[:, : picture.shape[1] // 2 * 2], 2, axis=1)
+    still, moved = dark_columns(left[:, : -left.shape[1] // 5]), dark_columns(right)
+    assert np.ptp(moved) > 2 * np.ptp(still)
+    # The root stays, the top goes to the right.
+    assert moved.max() > still.max() + 30
+    blue = (picture[..., 2] > picture[..., 0] + 80).any(axis=0)
+    assert blue[: len(blue) // 2].sum() == 0 < blue[len(blue) // 2 :].sum()
+
+
+@pytest.mark.parametrize("name", ["benjamina", "broadleaf"])
+def test_a_whole_tree_fits_its_picture(name: str, tmp_path: Path) -> None:
+    picture = pixels(picture_at_rest(builtin_tree(name), tmp_path / "tree.png", title=""))
+    border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+    assert border.min() > 250.0
+    assert (picture.max(axis=2) < 180).mean() > 0.01
+
+
+@pytest.mark.parametrize(("suffix", "kind"), [(".gif", "GIF"), (".png", "PNG")])
+def test_a_moving_picture_has_its_frames_and_its_pace(
+    tmp_path: Path, suffix: str, kind: str
+) -> None:
+    tree = pole()
+    frames = [leaning(tree, angle) for angle in (0.0, 0.2, 0.4)]
+    path = tmp_path / f"sway{suffix}"
+    animate_poses(tree, frames, np.ones((3, 3)), path, rate=20.0, pixels=160)
+    image = Image.open(path)
+    assert (image.format, image.n_frames) == (kind, 3)
+    assert image.info["duration"] == pytest.approx(50.0)
+    first = np.asarray(image.convert("RGB")).astype(float)
+    image.seek(2)
+    assert np.abs(np.asarray(image.convert("RGB")) - first).max() > 100
+
+
+def test_plot_of_wind_and_tip(tmp_path: Path) -> None:
+    time = np.linspace(0.0, 10.0, 200)
+    wind = np.stack([5.0 + np.sin(time), np.zeros(200), np.zeros(200)], axis=1)
+    tip = 0.02 * wind
+    path = plot_wind_and_tip(time, wind, tip, tmp_path / "plot.png", title="a pole")
+    assert Image.open(path).width > 800
+    with pytest.raises(ParameterError, match="do not go together"):
+        plot_wind_and_tip(time, wind[:-1], tip, path)
+
+
+def test_a_name_that_is_no_picture_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r"'\.doc' is no picture format; .*\.png"):
+        picture_at_rest(pole(), tmp_path / "tree.doc")
+    with pytest.raises(FormatError, match="cannot write the picture"):
+        picture_at_rest(pole(), tmp_path / "nowhere" / "tree.png")
+
+
+def test_without_matplotlib_the_cure_is_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "matplotlib.figure", None)
+    with pytest.raises(MissingDependencyError, match=r"pip install 'tree_sway_ros\[plot\]'"):
+        picture_at_rest(pole(), tmp_path / "tree.png")

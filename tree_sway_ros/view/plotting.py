@@ -1,0 +1,67 @@
+"""matplotlib, asked for only when a picture is wanted, and never with a window."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tree_sway_ros.errors import FormatError, MissingDependencyError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """
+    Make an empty figure.
+
+    Parameters
+    ----------
+    width, height
+        Size in [inch].
+
+    Raises
+    ------
+    MissingDependencyError
+        If matplotlib is not there.
+
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingDependencyError(
+            "pictures need matplotlib", cure="pip install 'tree_sway_ros[plot]'"
+        ) from None
+    figure = Figure(figsize=(width, height), facecolor="white")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save_figure(figure: Figure, path: str | Path, dots_per_inch: float = 110.0) -> Path:
+    """
+    Write a figure to a file whose suffix names the format, ``.png`` for one.
+
+    Raises
+    ------
+    FormatError
+        If the suffix names no picture format, or the file cannot be written.
+
+    """
+    target = Path(path)
+    known = figure.canvas.get_supported_filetypes()
+    if target.suffix[1:].lower() not in known:
+        raise FormatError(
+            f"'{target.suffix}' is no picture format",
+            where=str(target),
+            cure=f"end the name with one of: {', '.join('.' + k for k in sorted(known))}",
+        )
+    try:
+        figure.savefig(target, dpi=dots_per_inch)
+    except OSError as error:
+        raise FormatError(
+            f"cannot write the picture ({error.strerror})",
+            where=str(target),
+            cure="name a folder that exists and that you may write to",
+        ) from None
+    return target

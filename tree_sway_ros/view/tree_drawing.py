@@ -1,0 +1,178 @@
+"""A tree on matplotlib axes: bark thick as it is, far branches paler, leaves if there are any."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.view.projection import Camera
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_NEAR_BARK = np.array([0.22, 0.15, 0.10])
+_FAR_BARK = np.array([0.72, 0.67, 0.62])
+_NEAR_LEAF = np.array([0.20, 0.42, 0.14])
+_FAR_LEAF = np.array([0.70, 0.82, 0.58])
+_POT = "#b5694a"
+_POT_RIM = "#c67f60"
+_POTTED = ("benjamina", "goldcrest")
+_GROUND = "#8d8d86"
+
+
+@dataclass(frozen=True)
+class Frame:
+    """
+    What part of the picture plane is shown.
+
+    Parameters
+    ----------
+    left, right, bottom, top
+        Limits in [m].
+
+    """
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+
+    @property
+    def aspect(self) -> float:
+        """Width over height."""
+        return (self.right - self.left) / (self.top - self.bottom)
+
+
+def frame_around(points: Floats, camera: Camera, margin: float = 0.06) -> Frame:
+    """Frame that holds every point (..., 3) in [m], with a relative margin, and is not a sliver."""
+    seen = camera.project(points).reshape(-1, 3)
+    low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
+    size = float((high - low).max())
+    middle = 0.5 * float(low[0] + high[0])
+    half = max(0.5 * float(high[0] - low[0]), 0.3 * size) + margin * size
+    return Frame(middle - half, middle + half, float(low[1]) - 0.14 * size, float(high[1]) + margin * size)
+
+
+def draw_tree(
+    axes: Axes,
+    tree: Tree,
+    start: Floats,
+    end: Floats,
+    camera: Camera,
+    frame: Frame,
+    *,
+    leaves: Floats | None = None,
+    leaf_size: float = 0.0,
+) -> None:
+    """
+    Draw a tree, at rest or deflected.
+
+    Parameters
+    ----------
+    axes
+        Where to draw; its limits are set to the frame.
+    tree
+        For the thickness, and what it stands in.
+    start, end
+        Nodes of its segments as they are now in [m], (n, 3) each.
+    camera, frame
+        From where, and which part.
+    leaves, leaf_size
+        Centres of leaf clusters, (m, 3), and their diameter, in [m].
+
+    """
+    from matplotlib.collections import EllipseCollection, PolyCollection
+
+    axes.set(xlim=(frame.left, frame.right), ylim=(frame.bottom, frame.top), aspect="equal")
+    axes.axis("off")
+    _draw_ground(axes, tree, camera, frame)
+    base, tip = camera.project(start), camera.project(end)
+    order = np.argsort(-(base[:, 2] + tip[:, 2]))
+    quads = _tapered(base, tip, tree.base_diameter, tree.tip_diameter)[order]
+    depth = _depth(camera, 0.5 * (start + end), frame)
+    shades = (_NEAR_BARK + depth[:, None] * (_FAR_BARK - _NEAR_BARK))[order]
+    # Edges in the same colour close the joints and keep thin twigs visible.
+    bark = PolyCollection(list(quads), facecolors=shades, edgecolors=shades, linewidths=0.45)
+    bark.set_joinstyle("round")
+    axes.add_collection(bark)
+    if leaves is not None and len(leaves):
+        seen = camera.project(leaves)
+        far_first = np.argsort(-seen[:, 2])
+        depth = _depth(camera, leaves, frame)
+        size = np.full(len(leaves), leaf_size)
+        axes.add_collection(
+            EllipseCollection(
+                size,
+                0.7 * size,
+                (37.0 * np.arange(len(leaves))) % 180.0,
+                units="xy",
+                offsets=seen[far_first, :2],
+                offset_transform=axes.transData,
+                facecolors=(_NEAR_LEAF + depth[:, None] * (_FAR_LEAF - _NEAR_LEAF))[far_first],
+                alpha=0.55,
+                zorder=2,
+            )
+        )
+
+
+def draw_scale(axes: Axes, frame: Frame) -> None:
+    """Draw a bar of a round length in the lower right corner."""
+    size = frame.top - frame.bottom
+    length = max(v for v in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 0.02) if v <= max(0.2 * size, 0.02))
+    right, low = frame.right - 0.03 * size, frame.bottom + 0.045 * size
+    axes.plot([right - length, right], [low, low], color="black", lw=1.6, solid_capstyle="butt")
+    axes.text(right - 0.5 * length, low + 0.012 * size, f"{length:g} m", ha="center", va="bottom")
+
+
+def draw_wind(axes: Axes, frame: Frame, camera: Camera, wind: Floats) -> None:
+    """Draw an arrow along the wind (3,) in [m/s] as the camera sees it, with its speed."""
+    size, speed = frame.top - frame.bottom, float(np.linalg.norm(wind))
+    if speed == 0.0:
+        return
+    along = camera.project(wind)[:2] / speed
+    length = 0.16 * size
+    middle = np.array([frame.left + 0.14 * size, frame.top - 0.10 * size])
+    base, tip = middle - 0.5 * length * along, middle + 0.5 * length * along
+    arrow = {"arrowstyle": "-|>,head_width=.35,head_length=.7", "lw": 2.2, "color": "#1f6fb4"}
+    axes.annotate("", xy=tuple(tip), xytext=tuple(base), arrowprops=arrow)
+    axes.text(middle[0], middle[1] + 0.025 * size, f"{speed:.1f} m/s", ha="center", color="#1f6fb4")
+
+
+def _tapered(base: Floats, tip: Floats, base_diameter: Floats, tip_diameter: Floats) -> Floats:
+    """Four corners of each segment on the picture plane, (n, 4, 2)."""
+    along = tip[:, :2] - base[:, :2]
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    across /= np.maximum(np.linalg.norm(across, axis=1), 1e-12)[:, None]
+    at_base, at_tip = 0.5 * base_diameter[:, None] * across, 0.5 * tip_diameter[:, None] * across
+    a, b = base[:, :2], tip[:, :2]
+    return np.stack([a - at_base, a + at_base, b + at_tip, b - at_tip], axis=1)
+
+
+def _depth(camera: Camera, points: Floats, frame: Frame) -> Floats:
+    """How far back each point stands, from 0 to 1; little in a tree that has no depth."""
+    away = camera.distance(points)
+    span = max(float(np.ptp(away)), 0.3 * (frame.top - frame.bottom))
+    return np.asarray(0.5 + (away - 0.5 * (away.min() + away.max())) / span)
+
+
+def _draw_ground(axes: Axes, tree: Tree, camera: Camera, frame: Frame) -> None:
+    """Draw a shadow on the ground, or the pot of a pot plant."""
+    from matplotlib.patches import Ellipse, Polygon
+
+    x, y = camera.project(tree.start[0])[:2]
+    if tree.species not in _POTTED:
+        width = 0.5 * (frame.right - frame.left)
+        flat = width * max(np.sin(camera.elevation), 0.03)
+        axes.add_patch(Ellipse((x, y), width, flat, color=_GROUND, alpha=0.25, lw=0, zorder=0))
+        return
+    # As deep as the margin below the root allows.
+    deep = 0.85 * (y - frame.bottom)
+    wide = 1.05 * deep
+    for color, above, below, high in ((_POT, 0.5, 0.37, 1.0), (_POT_RIM, 0.54, 0.54, 0.2)):
+        sides = np.array([-above, above, below, -below])
+        levels = np.array([0.0, 0.0, -high, -high])
+        corners = np.column_stack([x + wide * sides, y + deep * levels])
+        axes.add_patch(Polygon(corners, color=color, lw=0, zorder=0))
