@@ -1,0 +1,84 @@
+"""
+``tree-sway docs``: the tables of topics and parameters, taken from the code and put into the README.
+
+A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between them is
+replaced.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.ros import parameters, topics
+from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
+
+_TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        "file", nargs="?", default="README.md", help="file with the tables (%(default)s)"
+    )
+    parser.add_argument("--check", action="store_true", help="change nothing; exit 2 if not up to date")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Bring the tables of a file up to date, or check that they are."""
+    path = Path(arguments.file)
+    text = path.read_text(encoding="utf-8")
+    fresh = with_tables(text, where=str(path))
+    if fresh == text:
+        print(f"{path}: up to date")
+        return 0
+    if arguments.check:
+        raise FormatError("not up to date", where=str(path), cure="run tree-sway docs")
+    path.write_text(fresh, encoding="utf-8")
+    print(f"{path}: tables written")
+    return 0
+
+
+def with_tables(text: str, where: str = "text") -> str:
+    """
+    Replace the tables in a text by those of the code.
+
+    Parameters
+    ----------
+    text
+        Markdown with tables between marks.
+    where
+        Its name, for the error.
+
+    Returns
+    -------
+    str
+        The same text with fresh tables.
+
+    Raises
+    ------
+    FormatError
+        If a mark names a table that does not exist.
+
+    """
+    tables = markdown_tables()
+
+    def fill(match: re.Match[str]) -> str:
+        name = match["name"]
+        if name not in tables:
+            cure = f"name one of: {', '.join(tables)}"
+            raise FormatError(f"no table is called '{name}'", where=where, cure=cure)
+        return f"{match[1]}{tables[name]}{match[3]}"
+
+    return _TABLE.sub(fill, text)
+
+
+def markdown_tables() -> dict[str, str]:
+    """Every table by its name: ``topics``, and the parameters of each node by the node's name."""
+    tables = {"topics": topics.markdown_table()}
+    for node, table in NODE_PARAMETERS.items():
+        tables[node] = parameters.markdown_table(table)
+    return tables
