@@ -19,7 +19,6 @@ from tree_sway_ros.ros.stepping import Stepper
 from tree_sway_ros.ros.sway_report import SwayReport
 from tree_sway_ros.ros.topics import WIND_FILTERED
 from tree_sway_ros.ros.wind_messages import wind_from_message
-from tree_sway_ros.ros.wind_report import WindReport
 
 
 class SolverNode(TreeSwayNode):
@@ -50,7 +49,6 @@ class SolverNode(TreeSwayNode):
         self._stepper.warm_up()
         # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
         self._gate = WindGate(max_speed=150.0, max_rate=1e4)
-        self._wind_report = WindReport()
         self._sway_report = SwayReport()
         self.stream = PoseStream(self, source.tree)
         self.subscription(WIND_FILTERED, self._receive)
@@ -70,7 +68,6 @@ class SolverNode(TreeSwayNode):
         vector = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds
         verdict = self._gate.offer(sample.stamp * 1e-9, vector, arrival * 1e-9)
-        self._wind_report.add(verdict.accepted)
         if verdict.accepted:
             self._stepper.add_wind(round(verdict.time * 1e9), vector)
 
@@ -92,5 +89,4 @@ class SolverNode(TreeSwayNode):
         return response
 
     def _statuses(self) -> list[Status]:
-        wind = self._wind_report.status(self.values["timeout"], self._gate)
-        return [wind, *self._sway_report.statuses(self.simulator, self.pacer, self.stream.frames)]
+        return self._sway_report.statuses(self._stepper, self.pacer, self.stream.frames)

@@ -61,8 +61,12 @@ class TreeSwayNode(Node):  # type: ignore[misc]
         """Note what a thread of the node died of; whoever spins the node raises it."""
         self.failure = error
 
-    def close(self) -> None:
-        """Stop the node's threads and leave the graph; may be called twice."""
+    def stop(self) -> None:
+        """Stop the node's threads; may be called twice."""
         while self._closers:
             self._closers.pop()()
+
+    def close(self) -> None:
+        """Stop the node's threads and leave the graph."""
+        self.stop()
         self.destroy_node()

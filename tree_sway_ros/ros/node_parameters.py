@@ -174,8 +174,8 @@ SOLVER: Table = (
     ),
     Parameter(
         "wind_delay",
-        0.1,
-        "The wind is felt so much later; a period of the anemometer makes it smooth.",
+        0.02,
+        "The wind is felt so much later; samples that arrive within it give the same motion in every run.",
         "s",
         0.0,
         2.0,

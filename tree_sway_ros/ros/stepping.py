@@ -1,6 +1,9 @@
 """
 From ticks to steps: each period of the grid is solved with the mean wind over that very period.
 
+A sample of the wind is handed on when the steps reach its time, not when it arrives: as long as it arrives
+within `wind_delay`, a run over the same record gives the same numbers, whatever the network did.
+
 A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace in the
 motion; only where a step costs more than half a period are they joined to one long step, which the exact
 propagator takes without harm, so that a slow machine never falls further behind.
@@ -16,6 +19,7 @@ from typing import Any
 
 _BLOCK = 10_000_000_000_000
 """Times are counted in seconds from a whole multiple of this [ns]: short numbers, the same in every run."""
+_QUEUE = 4096
 # Weight of the newest step in the running mean of its cost.
 _NEWEST = 0.02
 
@@ -38,13 +42,13 @@ class Stepper:
     def __init__(self, simulator: Any, make_wind: Callable[[], Any], period: int) -> None:
         self.simulator = simulator
         self.is_paused = False
-        self.wind_time: float | None = None
         self._make_wind = make_wind
         self._wind = make_wind()
         self._period = period
-        self._samples: deque[tuple[int, Any]] = deque()
+        self._samples: deque[tuple[int, Any]] = deque(maxlen=_QUEUE)
         self._requests: deque[Callable[[], None]] = deque()
         self._origin = 0
+        self._felt = 0.0
         self._cost = 0.0
 
     def warm_up(self) -> None:
@@ -68,7 +72,7 @@ class Stepper:
         """Begin at a time: forget the wind and the motion."""
         self._origin = time_ns // _BLOCK * _BLOCK
         self._wind = self._make_wind()
-        self.wind_time = None
+        self._samples.clear()
         self.simulator.reset()
 
     def advance(self, time_ns: int, periods: int, delay: float) -> None:
@@ -87,26 +91,29 @@ class Stepper:
         """
         while self._requests:
             self._requests.popleft()()
-        while self._samples:
-            sample_time, vector = self._samples.popleft()
-            self.wind_time = self._seconds(sample_time)
-            self._wind.add(self.wind_time, vector)
-        if self.is_paused:
-            return
         period = self._period * 1e-9
         n_steps = 1 if self._cost > 0.5 * period else periods
         dt = period * periods / n_steps
         end = self._seconds(time_ns) - delay
-        for step in range(n_steps):
-            start = end - (n_steps - step) * dt
-            begin = time.perf_counter()
-            self.simulator.step(self._wind.mean(start, start + dt), dt)
-            self._cost += _NEWEST * (time.perf_counter() - begin - self._cost)
+        for step in range(n_steps - 1, -1, -1):
+            wind = self._mean_wind(end - step * dt, dt)
+            if not self.is_paused:
+                begin = time.perf_counter()
+                self.simulator.step(wind, dt)
+                self._cost += _NEWEST * (time.perf_counter() - begin - self._cost)
+        self._felt = end
 
-    def wind_age(self, time_ns: int) -> float | None:
-        """Time since the last sample of the wind in [s]; None if there was none."""
-        latest = self.wind_time
-        return None if latest is None else max(0.0, self._seconds(time_ns) - latest)
+    @property
+    def wind_state(self) -> str:
+        """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
+        return str(self._wind.state(self._felt))
+
+    def _mean_wind(self, end: float, dt: float) -> Any:
+        samples = self._samples
+        while samples and self._seconds(samples[0][0]) <= end:
+            time_ns, vector = samples.popleft()
+            self._wind.add(self._seconds(time_ns), vector)
+        return self._wind.mean(end - dt, end)
 
     def _seconds(self, time_ns: int) -> float:
         return (time_ns - self._origin) * 1e-9

@@ -5,8 +5,17 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from tree_sway_ros.ros.diagnostics import OK, WARN, Status
+from tree_sway_ros.ros.diagnostics import OK, STALE, WARN, Status
 from tree_sway_ros.ros.pacer import Pace, Pacer
+from tree_sway_ros.ros.stepping import Stepper
+
+_WIND = {
+    "none": (WARN, "no wind yet: the tree is at rest"),
+    "live": (OK, "live"),
+    "holding": (OK, "a sample is overdue: the last wind is held"),
+    "decaying": (WARN, "no wind: its force decays"),
+    "stale": (STALE, "no wind: nothing is left of its force"),
+}
 
 
 class SwayReport:
@@ -17,21 +26,20 @@ class SwayReport:
         self._frames = 0
         self._time = time.monotonic()
 
-    def statuses(self, simulator: Any, pacer: Pacer, frames: int) -> list[Status]:
+    def statuses(self, stepper: Stepper, pacer: Pacer, frames: int) -> list[Status]:
         """
-        Report on the output and on the model.
+        Report on the wind, the output and the model.
 
         Parameters
         ----------
-        simulator
-            A `SwaySimulator`.
-        pacer
-            Its pacer.
+        stepper, pacer
+            Of the solver.
         frames
             Pose arrays published so far.
 
         """
-        return [self._output(pacer.pace(), 1e9 / pacer.period, frames), _model(simulator)]
+        output = self._output(pacer.pace(), 1e9 / pacer.period, frames)
+        return [_wind(stepper.wind_state), output, _model(stepper.simulator)]
 
     def _output(self, pace: Pace, rate: float, frames: int) -> Status:
         now = time.monotonic()
@@ -55,6 +63,11 @@ class SwayReport:
             late = f"{1e3 * pace.late_p95:.1f} ms late (p95)"
             return Status("output", WARN, f"{skipped} frames skipped, {late}", values)
         return Status("output", OK, f"{pace.rate:.1f} Hz", values)
+
+
+def _wind(state: str) -> Status:
+    level, sentence = _WIND[state]
+    return Status("wind", level, sentence, {"state": state})
 
 
 def _model(simulator: Any) -> Status:
