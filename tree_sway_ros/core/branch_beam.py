@@ -72,7 +72,12 @@ class BranchBeam:
     """
 
     def __init__(
-        self, start: Floats, end: Floats, base_diameter: Floats, tip_diameter: Floats, children: Attachments
+        self,
+        start: Floats,
+        end: Floats,
+        base_diameter: Floats,
+        tip_diameter: Floats,
+        children: Attachments,
     ) -> None:
         """Set the quadrature points along the branch."""
         step = end - start
@@ -84,8 +89,12 @@ class BranchBeam:
         self.weight = self.length[:, None] * _WEIGHTS
         self.diameter = base_diameter[:, None] + (tip_diameter - base_diameter)[:, None] * _POINTS
         self.point = start[:, None, :] + step[:, None, :] * _POINTS[:, None]
-        self.child_place = self.node[children.segment] + children.fraction * self.length[children.segment]
-        self.child_point = start[children.segment] + children.fraction[:, None] * step[children.segment]
+        self.child_place = (
+            self.node[children.segment] + children.fraction * self.length[children.segment]
+        )
+        self.child_point = (
+            start[children.segment] + children.fraction[:, None] * step[children.segment]
+        )
         self._child_rows = _integration_rows(children.fraction)
         chord = end[-1] - start[0]
         self.chord_length = float(np.linalg.norm(chord))
@@ -166,7 +175,9 @@ class BranchBeam:
         curvature = bending / self.second_moment
         slope, _, _ = self.from_base(curvature)
         along = self.tangent @ self.chord
-        chord_rotation = float((self.weight * slope).sum(axis=1) @ along) / max(self.chord_length, 1e-9)
+        chord_rotation = float((self.weight * slope).sum(axis=1) @ along) / max(
+            self.chord_length, 1e-9
+        )
         arc_rotation = float(self.integral(slope)) / float(self.node[-1])
         scale = chord_rotation if chord_rotation > 0.2 * abs(arc_rotation) else arc_rotation
         return SlopeShape(self, curvature / scale)

@@ -74,6 +74,22 @@ class BranchModel:
     coordinates: tuple[Coordinate, ...]
     children: Ints
 
+    @property
+    def inertia_share(self) -> float:
+        """
+        Inertia that gives the branch alone its beam's first frequency, over that of its static shape [-].
+
+        Inverse iteration from the static shape: each turn bends the branch by its own inertia.
+
+        """
+        beam, shape = self.beam, self.coordinates[0].shape
+        static = _square_frequency(beam, shape, self.mass)
+        none = np.zeros(0)
+        for _ in range(4):
+            bending = beam.bending_moment(self.mass * shape.deflection, none, none)
+            shape = SlopeShape(beam, bending / bending.max() / beam.second_moment)
+        return static / _square_frequency(beam, shape, self.mass)
+
 
 @dataclass
 class _Carried:
@@ -181,7 +197,9 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
     first = tree.branch_first[children]
     seat = tree.segment_parent[first]
     step = tree.end[seat] - tree.start[seat]
-    along = np.einsum("ij,ij->i", tree.start[first] - tree.start[seat], step) / tree.length[seat] ** 2
+    along = (
+        np.einsum("ij,ij->i", tree.start[first] - tree.start[seat], step) / tree.length[seat] ** 2
+    )
     return Attachments(seat - tree.branch_first[branch], np.clip(along, 0.0, 1.0))
 
 
@@ -192,7 +210,10 @@ def _coordinates(
     places = beam.child_point[: len(below)]
     area = np.array([load.area for load in below])
     lever = np.array(
-        [(load.area_moment - load.area * at) @ beam.chord for load, at in zip(below, places, strict=True)]
+        [
+            (load.area_moment - load.area * at) @ beam.chord
+            for load, at in zip(below, places, strict=True)
+        ]
     )
     first = beam.slope_shape(beam.bending_moment(drag_area, area, np.maximum(lever, 0.0)))
     ways = [Coordinate(first, e2), Coordinate(first, -e1)]
@@ -203,11 +224,18 @@ def _coordinates(
         second = beam.unit_shape(second.curvature - share * first.curvature)
         ways += [Coordinate(second, e2), Coordinate(second, -e1)]
     if enrich and below:
-        spin = np.array([_spin(load, at, beam.chord) for load, at in zip(below, places, strict=True)])
+        spin = np.array(
+            [_spin(load, at, beam.chord) for load, at in zip(below, places, strict=True)]
+        )
         torque = (beam.child_place > beam.place[..., None]) @ spin
         twist = beam.unit_shape(torque / beam.second_moment)
         ways.append(Coordinate(twist, beam.chord, is_twist=True))
     return tuple(ways)
+
+
+def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
+    """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
+    return shape.stiffness(shape, 1.0) / float(beam.integral(mass * shape.deflection**2))
 
 
 def _inertia_forces(
@@ -220,9 +248,14 @@ def _inertia_forces(
     turn, places = shape.child_slope, beam.child_point
     mass = np.array([load.mass for load in below])
     lever = np.array(
-        [(load.mass_moment - load.mass * at) @ beam.chord for load, at in zip(below, places, strict=True)]
+        [
+            (load.mass_moment - load.mass * at) @ beam.chord
+            for load, at in zip(below, places, strict=True)
+        ]
     )
-    second = np.array([_second_along(load, at, beam.chord) for load, at in zip(below, places, strict=True)])
+    second = np.array(
+        [_second_along(load, at, beam.chord) for load, at in zip(below, places, strict=True)]
+    )
     return mass * lift + lever * turn, lever * lift + second * turn
 
 
@@ -235,7 +268,9 @@ def _second_along(load: _Carried, place: Floats, direction: Floats) -> float:
 
 def _spin(load: _Carried, place: Floats, axis: Floats) -> float:
     """Moment of inertia of a carried mass about an axis through a place, in [kg m^2]."""
-    second = load.mass_second - np.outer(place, load.mass_moment) - np.outer(load.mass_moment, place)
+    second = (
+        load.mass_second - np.outer(place, load.mass_moment) - np.outer(load.mass_moment, place)
+    )
     second += load.mass * np.outer(place, place)
     return float(np.trace(second) - axis @ second @ axis)
 
@@ -244,9 +279,11 @@ def _sum_up(beam: BranchBeam, drag_area: Floats, mass: Floats, below: list[_Carr
     point = beam.point
     return _Carried(
         area=float(beam.integral(drag_area)) + sum(load.area for load in below),
-        area_moment=beam.integral(drag_area[..., None] * point) + sum(load.area_moment for load in below),
+        area_moment=beam.integral(drag_area[..., None] * point)
+        + sum(load.area_moment for load in below),
         mass=float(beam.integral(mass)) + sum(load.mass for load in below),
-        mass_moment=beam.integral(mass[..., None] * point) + sum(load.mass_moment for load in below),
+        mass_moment=beam.integral(mass[..., None] * point)
+        + sum(load.mass_moment for load in below),
         mass_second=beam.integral(mass[..., None, None] * point[..., :, None] * point[..., None, :])
         + sum(load.mass_second for load in below),
     )

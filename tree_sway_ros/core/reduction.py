@@ -28,7 +28,6 @@ from scipy import sparse
 from tree_sway_ros.core.branch_model import BranchModel
 from tree_sway_ros.core.tree import Floats, Ints, Tree
 
-
 MAX_COORDINATES = 5
 """Coordinates of an enriched branch: two shapes about two axes, and a twist."""
 
@@ -69,7 +68,13 @@ class Reduction:
 
 
 def reduce_tree(
-    tree: Tree, models: list[BranchModel], modulus: float, shear_modulus: float, gravity: float
+    tree: Tree,
+    models: list[BranchModel],
+    modulus: float,
+    shear_modulus: float,
+    gravity: float,
+    *,
+    carries: bool = True,
 ) -> Reduction:
     """
     Assemble the matrices of the key rotations.
@@ -84,6 +89,8 @@ def reduce_tree(
         E and G of the wood in [Pa].
     gravity
         In [m/s^2]; 0 leaves weight out.
+    carries
+        Whether children ride on their parents and load them; if not, every branch is alone.
 
     Returns
     -------
@@ -107,7 +114,7 @@ def reduce_tree(
         momentum[own, :3] = np.einsum("sg,isgk->ik", dm, fields)
         momentum[own, 3:] = np.einsum("sg,isgk->ik", dm, np.cross(model.beam.point, fields))
         own_weight = gravity * _own_geometric(model, body[model.children])
-        for number, child in enumerate(model.children):
+        for number, child in enumerate(model.children if carries else ()):
             rides = twists[:, number]
             twist[child, : len(rides)] = rides
             carried = rides @ body[child]
@@ -121,7 +128,8 @@ def reduce_tree(
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
         elastic[own] = [way.stiffness(modulus, shear_modulus) for way in model.coordinates]
-        body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
+        if carries:
+            body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
     return Reduction(first, twist, mass.symmetric(shape), weight.symmetric(shape), elastic)
 

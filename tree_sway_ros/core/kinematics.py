@@ -1,0 +1,172 @@
+"""
+Key rotations to poses: the segments of each branch follow its key, the branches are joined from the root.
+
+A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth curve and keeps
+its length. The chord of the bent chain turns by a little less than the coordinate says (third cumulant of the slope
+along the branch); the coordinate is stretched by that much, so that the chord angle is kept. Beyond 30 degrees a
+tapered branch goes over to the slope of a load at the tip.
+
+The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose stands at its segment's
+root-side node, its x axis runs along the segment (REP-103).
+
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.branch_beam import SlopeShape
+from tree_sway_ros.core.branch_model import BranchModel
+from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.layout import BRANCH, SEGMENT
+from tree_sway_ros.core.rotation import product, quaternion, quaternions_from_x, rotated
+from tree_sway_ros.core.tree import Floats, Tree
+
+_BLEND_FROM = np.deg2rad(30.0) ** 2
+_BLEND_TO = np.deg2rad(45.0) ** 2
+
+
+def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
+    """
+    Fill what placing needs to know of each segment.
+
+    Returns
+    -------
+    ndarray
+        Of dtype `SEGMENT`, (n,).
+
+    """
+    records = np.zeros(tree.n_segments, dtype=SEGMENT)
+    step = tree.end - tree.start
+    records["rest"] = quaternions_from_x(step / tree.length[:, None])
+    for branch, model in enumerate(models):
+        here = tree.segments_of(branch)
+        step[here.start : here.stop - 1] = np.diff(tree.start[here], axis=0)
+        for way in model.coordinates[::2]:
+            column = 2 if way.is_twist else int(way is not model.coordinates[0])
+            records["slope"][here, column] = way.shape.segment_slope
+        records["tip_slope"][here] = _tip_load_slope(model)
+    records["step"] = step
+    return records
+
+
+def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) -> None:
+    """Fill the fields of `BRANCH` records that placing reads."""
+    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    for branch, model in enumerate(models):
+        record, here = records[branch], tree.segments_of(branch)
+        record["parent"] = tree.branch_parent[branch]
+        record["seat"] = tree.segment_parent[here.start]
+        record["first"], record["end"] = here.start, here.stop
+        record["n_coordinates"] = len(model.coordinates)
+        record["source"] = branch
+        for i, way in enumerate(model.coordinates):
+            record["axis"][i] = way.axis
+        record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
+        length = model.beam.length
+        record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
+        record["tip_skew"] = _skew(_tip_load_slope(model), length)
+        if record["seat"] >= 0:
+            w, x, y, z = rest[record["seat"]]
+            offset = tree.start[here.start] - tree.start[record["seat"]]
+            record["offset"] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
+
+
+def _skew(slope: Floats, length: Floats) -> float:
+    """Third cumulant over 6 of a slope along a branch: how far its chord angle lags, per angle cubed."""
+    share = length / length.sum()
+    return float(share @ (slope - share @ slope) ** 3) / 6.0
+
+
+def _tip_load_slope(model: BranchModel) -> Floats:
+    """Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip."""
+    u = model.beam.node / model.beam.node[-1]
+    first: SlopeShape = model.coordinates[0].shape
+    primitive = 1.5 * (u * u - u**3 / 3.0)
+    slope: Floats = np.diff(primitive) / np.diff(u)
+    return slope * (first.segment_slope @ model.beam.length) / model.beam.node[-1]
+
+
+@kernel
+def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, out: Floats) -> None:
+    """
+    Place every segment.
+
+    Parameters
+    ----------
+    branches, segments, work
+        Records of `BRANCH` (b,), `SEGMENT` (n,) and `WORK` (b,); the bases of `work` are written.
+    x
+        Key rotations, (N,), in the order of the coordinates.
+    origin
+        Root node, (3,).
+    out
+        Pose block to write, (n, 7).
+
+    """
+    for b in range(len(branches)):
+        branch = branches[b]
+        if branch.parent < 0:
+            dw, dx, dy, dz = 1.0, 0.0, 0.0, 0.0
+            px, py, pz = origin[0], origin[1], origin[2]
+        else:
+            dw, dx, dy, dz, px, py, pz = _seat(branches, branch, work, x, out)
+        base = work[b].base
+        base[0], base[1], base[2], base[3] = dw, dx, dy, dz
+        i, k = branch.coordinate, branch.n_coordinates
+        axis = branch.axis
+        t = x[i] * x[i] + x[i + 1] * x[i + 1]
+        blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
+        stretch = 1.0 + t * (branch.skew + blend * (branch.tip_skew - branch.skew))
+        ux, uy = x[i] * stretch, x[i + 1] * stretch
+        r0 = ux * axis[0, 0] + uy * axis[1, 0]
+        r1 = ux * axis[0, 1] + uy * axis[1, 1]
+        r2 = ux * axis[0, 2] + uy * axis[1, 2]
+        for j in range(branch.first, branch.end):
+            segment = segments[j]
+            slope = segment.slope[0] + blend * (segment.tip_slope - segment.slope[0])
+            tx, ty, tz = slope * r0, slope * r1, slope * r2
+            if k > 2:
+                ux, uy = segment.slope[1] * x[i + 2], segment.slope[1] * x[i + 3]
+                spin = segment.slope[2] * x[i + 4] if k > 4 else 0.0
+                tx += ux * axis[0, 0] + uy * axis[1, 0] + spin * axis[4, 0]
+                ty += ux * axis[0, 1] + uy * axis[1, 1] + spin * axis[4, 1]
+                tz += ux * axis[0, 2] + uy * axis[1, 2] + spin * axis[4, 2]
+            qw, qx, qy, qz = quaternion(tx, ty, tz)
+            qw, qx, qy, qz = product(dw, dx, dy, dz, qw, qx, qy, qz)
+            out[j, 0], out[j, 1], out[j, 2] = px, py, pz
+            step, rest = segment.step, segment.rest
+            sx, sy, sz = rotated(qw, qx, qy, qz, step[0], step[1], step[2])
+            px, py, pz = px + sx, py + sy, pz + sz
+            qw, qx, qy, qz = product(qw, qx, qy, qz, rest[0], rest[1], rest[2], rest[3])
+            out[j, 3], out[j, 4], out[j, 5], out[j, 6] = qx, qy, qz, qw
+
+
+@kernel
+def _seat(
+    branches: Any, branch: Any, work: Any, x: Floats, out: Floats
+) -> tuple[float, float, float, float, float, float, float]:
+    """Orientation and place of a branch's base on its placed parent."""
+    parent = branches[branch.parent]
+    i, k = parent.coordinate, parent.n_coordinates
+    twist = branch.twist
+    stretch = 1.0 + (x[i] * x[i] + x[i + 1] * x[i + 1]) * parent.skew
+    rx = ry = rz = 0.0
+    for c in range(k):
+        angle = x[i + c] * stretch if c < 2 else x[i + c]
+        rx += angle * twist[c, 3]
+        ry += angle * twist[c, 4]
+        rz += angle * twist[c, 5]
+    qw, qx, qy, qz = quaternion(rx, ry, rz)
+    base = work[branch.parent].base
+    dw, dx, dy, dz = product(base[0], base[1], base[2], base[3], qw, qx, qy, qz)
+    s = branch.seat
+    ox, oy, oz = rotated(
+        out[s, 6], out[s, 3], out[s, 4], out[s, 5], branch.offset[0], branch.offset[1], branch.offset[2]
+    )
+    return dw, dx, dy, dz, out[s, 0] + ox, out[s, 1] + oy, out[s, 2] + oz
+
+
+__all__ = ["BRANCH", "SEGMENT", "fill_branch_geometry", "place", "segment_records"]

@@ -1,0 +1,172 @@
+"""
+One pass out and one pass home: how branches ride on each other, and what they hand to each other.
+
+Out, from the stem to the twigs: each base takes over the motion of its parent. On the way the wind's force on each branch is
+found, in the air that passes it. Home, from the twigs to the stem: each branch adds up force and moment of all it carries.
+
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.rotation import turned
+from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.wind_load import drag
+
+
+@kernel
+def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
+    """
+    Hand rotation and velocity of every parent to the bases of its children.
+
+    Parameters
+    ----------
+    branches, work
+        Records of `BRANCH` and `WORK`, (b,); velocity and rotation of the latter are written.
+    x, v
+        Key rotations in [rad] and their rates in [rad/s], (N,).
+
+    """
+    for b in range(1, len(branches)):
+        branch = branches[b]
+        parent = branches[branch.parent]
+        i, twist = parent.coordinate, branch.twist
+        here, below = work[b], work[branch.parent]
+        for k in range(6):
+            here.velocity[k] = below.velocity[k]
+        for k in range(3):
+            here.rotation[k] = below.rotation[k]
+        for c in range(parent.n_coordinates):
+            rate, angle = v[i + c], x[i + c]
+            for k in range(6):
+                here.velocity[k] += twist[c, k] * rate
+            for k in range(3):
+                here.rotation[k] += twist[c, 3 + k] * angle
+
+
+@kernel
+def blow(
+    branches: Any, work: Any, x: Floats, v: Floats, wx: float, wy: float, wz: float, per_speed_squared: float
+) -> None:
+    """
+    Find the wind's force on every branch.
+
+    Parameters
+    ----------
+    branches, work
+        Records of `BRANCH` and `WORK`, (b,); the force of the latter is read as that of the last step, and written.
+    x, v
+        Key rotations and rates half a step on, under the last step's forces, (N,).
+    wx, wy, wz
+        Mean wind over the step in [m/s].
+    per_speed_squared
+        `pressure` of the wind in [kg/m^3].
+
+    """
+    for b in range(len(branches)):
+        branch, here = branches[b], work[b]
+        if branch.source != b:
+            for k in range(3):
+                here.force[k] = work[branch.source].force[k]
+            continue
+        centre, velocity, force = branch.centre, here.velocity, here.force
+        mx = velocity[0] + velocity[4] * centre[2] - velocity[5] * centre[1]
+        my = velocity[1] + velocity[5] * centre[0] - velocity[3] * centre[2]
+        mz = velocity[2] + velocity[3] * centre[1] - velocity[4] * centre[0]
+        tx, ty, tz = here.rotation[0], here.rotation[1], here.rotation[2]
+        for c in range(branch.n_coordinates):
+            rate, angle = v[branch.coordinate + c], x[branch.coordinate + c]
+            mx += branch.flow[c, 0] * rate
+            my += branch.flow[c, 1] * rate
+            mz += branch.flow[c, 2] * rate
+            tx += branch.turn[c, 0] * angle
+            ty += branch.turn[c, 1] * angle
+            tz += branch.turn[c, 2] * angle
+        beta = branch.compliance
+        ux = branch.speed * wx - mx + beta * force[0]
+        uy = branch.speed * wy - my + beta * force[1]
+        uz = branch.speed * wz - mz + beta * force[2]
+        ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
+        fx, fy, fz = drag(branch, per_speed_squared, ux, uy, uz)
+        force[0], force[1], force[2] = turned(tx, ty, tz, fx, fy, fz)
+
+
+@kernel
+def gather(branches: Any, work: Any) -> None:
+    """Add up, from the twigs to the stem, force and moment about the root of all that each branch carries."""
+    for b in range(len(branches)):
+        here, centre = work[b], branches[b].centre
+        force, wrench = here.force, here.wrench
+        wrench[0], wrench[1], wrench[2] = force[0], force[1], force[2]
+        wrench[3] = centre[1] * force[2] - centre[2] * force[1]
+        wrench[4] = centre[2] * force[0] - centre[0] * force[2]
+        wrench[5] = centre[0] * force[1] - centre[1] * force[0]
+    for b in range(len(branches) - 1, 0, -1):
+        wrench, below = work[b].wrench, work[branches[b].parent].wrench
+        for k in range(6):
+            below[k] += wrench[k]
+
+
+@kernel
+def generalised(branches: Any, work: Any, carries: bool, out: Floats) -> None:
+    """
+    Turn forces into moments on the key rotations.
+
+    Its own force meets a branch where the branch now points; what it carries acts at rest geometry.
+
+    Parameters
+    ----------
+    branches, work
+        Records of `BRANCH` and `WORK`, (b,), after `blow` and, if anything is carried, `gather`.
+    carries
+        Whether what a branch carries pushes on it.
+    out
+        Moments in [N m], (N,), written.
+
+    """
+    for b in range(len(branches)):
+        branch, here = branches[b], work[b]
+        turn, force = here.rotation, here.force
+        fx, fy, fz = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
+        for c in range(branch.n_coordinates):
+            push = branch.push[c]
+            out[branch.coordinate + c] = push[0] * fx + push[1] * fy + push[2] * fz
+    if not carries:
+        return
+    for b in range(1, len(branches)):
+        branch, wrench = branches[b], work[b].wrench
+        parent = branches[branch.parent]
+        for c in range(parent.n_coordinates):
+            moment = 0.0
+            for k in range(6):
+                moment += branch.twist[c, k] * wrench[k]
+            out[parent.coordinate + c] += moment
+
+
+@kernel
+def along_chord(branches: Any, work: Any, carries: bool, out: Floats) -> None:
+    """
+    Find the pull along each chord, times its lever.
+
+    Parameters
+    ----------
+    branches, work, carries
+        As for `generalised`.
+    out
+        Moments in [N m], (b,), written.
+
+    """
+    for b in range(len(branches)):
+        branch, here = branches[b], work[b]
+        turn, force, chord = here.rotation, here.force, branch.frame[0]
+        fx, fy, fz = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
+        out[b] = branch.lever * (chord[0] * fx + chord[1] * fy + chord[2] * fz)
+    if not carries:
+        return
+    for b in range(1, len(branches)):
+        branch, wrench = branches[b], work[b].wrench
+        chord = branches[branch.parent].frame[0]
+        pull = chord[0] * wrench[0] + chord[1] * wrench[1] + chord[2] * wrench[2]
+        out[branch.parent] += branch.axial_lever * pull

@@ -1,0 +1,186 @@
+"""
+Rungs 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
+
+Rung 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q + Phi (eta - E^T Q)``: D is the
+diagonal of the flexibility, and E takes out of it what the modes already hold. Rung 4, `coupled`, steps all modes and leaves
+nothing. As in rungs 1 and 2 the load is found once a step, at the state half a step on.
+
+Symbols: Phi mode shapes (N, m), eta modal coordinates, Q moments on the key rotations, w circular frequencies.
+
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.layout import WORK
+from tree_sway_ros.core.loads import along_chord, blow, gather, generalised, ride
+from tree_sway_ros.core.modes import Modes
+from tree_sway_ros.core.oscillators import fill_propagator
+from tree_sway_ros.core.reduction import Reduction
+from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.two_axis import LOAD_MAX, true_force
+
+
+class ModalBank:
+    """
+    Oscillators of natural modes.
+
+    Parameters
+    ----------
+    branches
+        Records of `BRANCH`, (b,); their compliance is set with the time step.
+    reduction
+        Matrices of the tree.
+    modes
+        Its slowest modes, or all.
+    damping_ratio
+        Of each mode in [-], (m,).
+
+    """
+
+    carries = True
+
+    def __init__(self, branches: Any, reduction: Reduction, modes: Modes, damping_ratio: Floats) -> None:
+        """Make room for the coefficients and the state."""
+        n, m = modes.shapes.shape
+        self.branches = branches
+        self.shapes = modes.shapes
+        self._stiffness = modes.circular**2
+        self._damping = 2.0 * damping_ratio * modes.circular
+        diagonal = np.asarray(reduction.stiffness.diagonal())
+        self._flexibility = 1.0 / diagonal if m < n else np.zeros(n)
+        held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self._stiffness
+        self._held = np.ascontiguousarray(held)
+        self._limit = LOAD_MAX * diagonal
+        self._participation = _participation(branches, modes.shapes)
+        self.work = np.zeros(len(branches), dtype=WORK)
+        self.eta, self.rate, self._rest, self._modal = np.zeros((4, m))
+        self.moment, self.middle_x, self.middle_v, self._x = np.zeros((4, n))
+        self._pull = np.zeros(len(branches))
+        self._whole, self._half = np.zeros((2, m, 8))
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        one = np.ones(len(self.eta))
+        fill_propagator(one, self._damping, self._stiffness, dt, self._whole)
+        fill_propagator(one, self._damping, self._stiffness, 0.5 * dt, self._half)
+        self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wx, wy, wz
+            Mean wind over the step in [m/s].
+        per_speed_squared
+            `wind_load.pressure` in [kg/m^3].
+
+        Returns
+        -------
+        int
+            How many loads were held at their limit.
+
+        """
+        return int(
+            _advance(
+                self.branches, self.work, self.eta, self.rate, self._rest, self._modal,
+                self.moment, self.middle_x, self.middle_v, self.shapes, self._held, self._flexibility,
+                self._limit, self._whole, self._half, self._pull, wx, wy, wz, per_speed_squared,
+            )
+        )  # fmt: skip
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        _expand(self.shapes, self._flexibility, self.moment, self.eta, self._rest, self._x)
+        return self._x
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        for array in (self.eta, self.rate, self._rest, self.moment):
+            array[:] = 0.0
+        self.work[:] = np.zeros((), dtype=WORK)
+
+
+def _participation(branches: Any, shapes: Floats) -> Floats:
+    """Mean over three directions of the squared motion of each load centre in each mode, (b, m)."""
+    m = shapes.shape[1]
+    motion = np.zeros((len(branches), 6, m))
+    out = np.zeros((len(branches), m))
+    for b, branch in enumerate(branches):
+        own = slice(branch["coordinate"], branch["coordinate"] + branch["n_coordinates"])
+        if b > 0:
+            parent = branches[branch["parent"]]
+            k = parent["n_coordinates"]
+            ways = shapes[parent["coordinate"] : parent["coordinate"] + k]
+            motion[b] = motion[branch["parent"]] + branch["twist"][:k].T @ ways
+        at = motion[b, :3] + np.cross(motion[b, 3:], branch["centre"], axis=0)
+        at += branch["flow"][: branch["n_coordinates"]].T @ shapes[own]
+        out[b] = np.square(at).sum(axis=0) / 2.0
+    return out
+
+
+@kernel
+def _expand(
+    shapes: Floats, flexibility: Floats, moment: Floats, eta: Floats, rest: Floats, x: Floats
+) -> None:
+    """Modes and static rest to key rotations."""
+    m = len(eta)
+    for i in range(len(x)):
+        total = flexibility[i] * moment[i]
+        for k in range(m):
+            total += shapes[i, k] * (eta[k] - rest[k])
+        x[i] = total
+
+
+@kernel
+def _advance(
+    branches: Any, work: Any, eta: Floats, rate: Floats, rest: Floats, modal: Floats,
+    moment: Floats, middle_x: Floats, middle_v: Floats, shapes: Floats, held: Floats, flexibility: Floats,
+    limit: Floats, whole: Floats, half: Floats, pull: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    n, m = shapes.shape
+    for i in range(n):
+        middle_x[i] = flexibility[i] * moment[i]
+        middle_v[i] = 0.0
+    for k in range(m):
+        h = half[k]
+        middle_eta = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * modal[k] - rest[k]
+        middle_rate = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * modal[k]
+        for i in range(n):
+            middle_x[i] += shapes[i, k] * middle_eta
+            middle_v[i] += shapes[i, k] * middle_rate
+    ride(branches, work, middle_x, middle_v)
+    blow(branches, work, middle_x, middle_v, wx, wy, wz, per_speed_squared)
+    gather(branches, work)
+    generalised(branches, work, True, moment)
+    along_chord(branches, work, True, pull)
+    over = 0
+    for b in range(len(branches)):
+        i = branches[b].coordinate
+        moment[i], moment[i + 1] = true_force(
+            middle_x[i], middle_x[i + 1], pull[b], moment[i], moment[i + 1]
+        )
+    for i in range(n):
+        if not abs(moment[i]) <= limit[i]:
+            moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
+            over += 1
+    for k in range(m):
+        modal[k] = 0.0
+        rest[k] = 0.0
+    for i in range(n):
+        for k in range(m):
+            modal[k] += shapes[i, k] * moment[i]
+            rest[k] += held[i, k] * moment[i]
+    for k in range(m):
+        c = whole[k]
+        old = eta[k]
+        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * modal[k]
+        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * modal[k]
+    return over

@@ -1,0 +1,226 @@
+"""
+The tree in the wind: owns the order of work, and no clock.
+
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.banks import Bank, build_bank
+from tree_sway_ros.core.kinematics import place
+from tree_sway_ros.core.settings import SimulatorSettings
+from tree_sway_ros.core.species import Species, species_named
+from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.wind_load import pressure
+from tree_sway_ros.errors import ParameterError
+
+OK, WIND_REFUSED, LOAD_HELD = 0, 1, 2
+"""What `SwaySimulator.step` tells, as bits."""
+
+
+@dataclass
+class Counts:
+    """
+    What was refused or held, since the start.
+
+    Parameters
+    ----------
+    steps
+        Steps taken.
+    refused
+        Steps whose wind was not finite or faster than the limit; the wind before was kept.
+    held
+        Loads that were held at the limit of the model.
+
+    """
+
+    steps: int = 0
+    refused: int = 0
+    held: int = 0
+
+
+class SwaySimulator:
+    """
+    A tree that sways.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    species
+        Its wood, damping and drag; looked up by the tree's own species if None.
+    settings
+        How it is modelled.
+    **changes
+        Fields of the settings, as keywords: ``SwaySimulator(tree, rung="branch")``.
+
+    Raises
+    ------
+    ParameterError
+        A setting out of its range.
+    SpeciesError
+        A species that no table knows.
+    TreeError
+        A tree that buckles under its own weight.
+
+    Examples
+    --------
+    >>> sim = SwaySimulator(tree, rung="subtree")
+    >>> for wind in record:
+    ...     sim.step(wind, 1 / 60)
+    ...     poses = sim.place()
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        species: Species | None = None,
+        settings: SimulatorSettings | None = None,
+        **changes: Any,
+    ) -> None:
+        """Calibrate the tree; nothing is left to do at the first step but to compile."""
+        self.tree = tree
+        self.species = species if species is not None else species_named(tree.species)
+        self.settings = replace(settings or SimulatorSettings(), **changes)
+        self.counts = Counts()
+        self._bank: Bank = build_bank(tree, self.species, self.settings)
+        self._dt = 0.0
+        self._wind = np.zeros(3)
+        self._poses = np.zeros((tree.n_segments, 7))
+        self._origin = tree.start[0].copy()
+        self._highest = int(np.argmax(tree.end[:, 2]))
+        self._rest_tip = tree.end[self._highest].copy()
+        self.place()
+
+    @property
+    def rung(self) -> str:
+        """Model in use."""
+        return self.settings.rung
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that are solved; the others copy."""
+        return self._bank.n_solved
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another."""
+        return self.tree.n_branches - self._bank.n_solved
+
+    @property
+    def mass(self) -> float:
+        """Mass of wood and leaves in [kg]."""
+        return self._bank.mass
+
+    def frequencies(self, count: int = 10) -> Floats:
+        """Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer."""
+        return self._bank.frequencies[:count]
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wind_mean
+            Mean of the wind over the step at the anemometer's height, the way the air goes, in [m/s], (3,).
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        int
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept) and `LOAD_HELD` (a load beyond
+            what the model follows was held at its limit).
+
+        Raises
+        ------
+        ParameterError
+            A step that is not above 0 or not finite.
+
+        """
+        wx, wy, wz = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
+        status = OK
+        speed = (
+            math.sqrt(wx * wx + wy * wy + wz * wz)
+            if max(abs(wx), abs(wy), abs(wz)) < 1e9
+            else math.inf
+        )
+        if speed <= self.settings.max_wind:
+            self._wind[0], self._wind[1], self._wind[2] = wx, wy, wz
+        else:
+            status = WIND_REFUSED
+            self.counts.refused += 1
+            wx, wy, wz = self._wind.tolist()
+            speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        if dt != self._dt:
+            self._set_step(dt)
+        species = self.species
+        load = pressure(speed, species.drag_coefficient, species.drag_exponent)
+        held = self._bank.oscillators.advance(wx, wy, wz, load)
+        if held:
+            self.counts.held += held
+            status |= LOAD_HELD
+        self.counts.steps += 1
+        return status
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """
+        Place every segment.
+
+        Parameters
+        ----------
+        out
+            Where to write, (n, 7) float64; an array of the simulator's own, used again each time, if None.
+
+        Returns
+        -------
+        Floats
+            Pose block: x y z of each segment's root-side node in [m], quaternion x y z w, x axis along the segment.
+
+        """
+        poses = self._poses if out is None else out
+        bank = self._bank
+        place(
+            bank.branches,
+            bank.segments,
+            bank.oscillators.work,
+            bank.oscillators.rotations(),
+            self._origin,
+            poses,
+        )
+        if out is not None:
+            self._poses[self._highest] = out[self._highest]
+        return poses
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Way of the highest tip from rest in [m], (3,), as last placed."""
+        x, y, z, qx, qy, qz, qw = self._poses[self._highest]
+        length = self.tree.length[self._highest]
+        along = np.array(
+            [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw)]
+        )
+        displacement: Floats = np.array([x, y, z]) + length * along - self._rest_tip
+        return displacement
+
+    def reset(self) -> None:
+        """Go back to rest, with no wind; the counts stay."""
+        self._bank.oscillators.reset()
+        self._wind[:] = 0.0
+        self.place()
+
+    def _set_step(self, dt: float) -> None:
+        if not (math.isfinite(dt) and dt > 0.0):
+            raise ParameterError(
+                f"time step of {dt} s", where="step", cure="give a finite one above 0"
+            )
+        self._bank.oscillators.set_step(dt)
+        self._dt = dt
