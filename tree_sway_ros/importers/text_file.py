@@ -52,6 +52,11 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
         raise FormatError(f"cannot be read: {error.strerror}", where=str(path)) from error
 
 
+def read_head(path: Path) -> bytes:
+    """Read the beginning of a file, enough to tell its format, without a byte order mark."""
+    return read_bytes(path, at_most=4096).removeprefix(b"\xef\xbb\xbf")
+
+
 def read_text(path: Path) -> str:
     """
     Read a text file in UTF-8, with or without a byte order mark.

@@ -16,12 +16,9 @@ from typing import Any
 
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.importers.imported_tree import TreeFile
-from tree_sway_ros.importers.text_file import read_bytes
+from tree_sway_ros.importers.text_file import read_head
 from tree_sway_ros.importers.tree_csv import read_csv_tree
 from tree_sway_ros.importers.tree_yaml import read_yaml_tree
-
-_HEAD = 4096
-"""Bytes from the beginning of a file that tell its format."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +128,7 @@ def _format_named(name: str) -> TreeFormat:
 
 
 def _format_of(path: Path) -> TreeFormat:
-    head = read_bytes(path, at_most=_HEAD).decode("utf-8-sig", errors="replace")
+    head = read_head(path).decode("utf-8", errors="replace")
     suffix = path.suffix.lower()
     by_content = [known for known in TREE_FORMATS if known.recognise(head)]
     by_suffix = [known for known in by_content or TREE_FORMATS if suffix in known.suffixes]
