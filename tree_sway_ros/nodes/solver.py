@@ -41,7 +41,8 @@ class SolverNode(TreeSwayNode):
             source.tree,
             species_named(species) if species else source.species,
             rung=self.values["fidelity"],
-            stiffness=self.values["stiffness"],
+            n_modes=self.values["modes"],
+            **self.values("stiffness", "in_leaf"),
             damping_ratio=self.values["damping_ratio"] or None,
         )
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)

@@ -7,8 +7,13 @@ Defaults stand here and nowhere else: the files in ``config/`` hold overrides on
 
 from __future__ import annotations
 
+from tree_sway_ros.core.gust_event import EVENT_KINDS
+from tree_sway_ros.core.settings import RUNGS, STIFFNESS_RULES, SimulatorSettings
+from tree_sway_ros.core.turbulence import TURBULENCE_MODELS
+from tree_sway_ros.core.wind_averaging import INTERPOLATIONS
 from tree_sway_ros.ros.parameters import Parameter, Table
 
+_MODEL = SimulatorSettings()
 WIND_TYPE_NAMES = (
     "geometry_msgs/Vector3Stamped",
     "geometry_msgs/TwistStamped",
@@ -46,7 +51,7 @@ ANEMOMETER: Table = (
         "turbulence",
         "kaimal",
         "Spectrum of the turbulence.",
-        choices=("kaimal", "von_karman", "none"),
+        choices=(*TURBULENCE_MODELS, "none"),
         live=True,
         source="IEC 61400-1",
     ),
@@ -65,14 +70,7 @@ ANEMOMETER: Table = (
         "gust",
         "none",
         "What happens to the wind from time to time.",
-        choices=(
-            "none",
-            "one_minus_cos",
-            "extreme_operating_gust",
-            "step",
-            "direction_change",
-            "turn",
-        ),
+        choices=("none", *EVENT_KINDS),
         live=True,
         source="IEC 61400-1",
     ),
@@ -153,24 +151,26 @@ SOLVER: Table = (
     ),
     Parameter(
         "fidelity",
-        "branch",
+        _MODEL.rung,
         "Model of the sway, from the least to the most.",
-        choices=("frozen", "branch", "subtree", "modes", "coupled"),
-        source="the paper is `branch`",
+        choices=RUNGS,
+        source="`branch` is the paper's",
     ),
+    Parameter("modes", _MODEL.n_modes, "How many modes `modes` solves.", "", 1, 10_000),
     Parameter(
         "stiffness",
-        "beam",
+        _MODEL.stiffness,
         "Stiffness of a branch from its beam, or from its volume.",
-        choices=("beam", "volume_rule"),
-        source="volume_rule: the paper, 3.3",
+        choices=STIFFNESS_RULES,
+        source="`volume_rule` is the paper's",
     ),
+    Parameter("in_leaf", _MODEL.in_leaf, "Damped as in leaf."),
     Parameter("damping_ratio", 0.0, "Of every branch; 0 for the species' own.", "", 0.0, 1.0),
     Parameter(
         "interpolation",
         "linear",
         "The wind between two samples.",
-        choices=("linear", "hold"),
+        choices=INTERPOLATIONS,
     ),
     Parameter(
         "wind_delay",

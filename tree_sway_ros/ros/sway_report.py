@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import asdict
 from typing import Any
 
 from tree_sway_ros.ros.diagnostics import OK, STALE, WARN, Status
@@ -71,5 +72,10 @@ def _wind(state: str) -> Status:
 
 
 def _model(simulator: Any) -> Status:
-    values = {"fidelity": simulator.rung, "time [s]": simulator.time, **simulator.counts}
-    return Status("model", OK, f"{simulator.rung}", values)
+    values = {
+        "fidelity": simulator.rung,
+        "branches solved": simulator.n_solved,
+        "branches copied": simulator.n_copied,
+        **asdict(simulator.counts),
+    }
+    return Status("model", OK, simulator.rung, values)
