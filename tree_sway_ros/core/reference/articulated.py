@@ -12,19 +12,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
 from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
-from tree_sway_ros.core.reference.articulated_pose import end_nodes, pose_block
-from tree_sway_ros.core.reference.articulated_step import Laws, advance
+from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
+from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
 from tree_sway_ros.core.reference.refinement import refined
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.rotation import quaternions_from_x
+from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.wind_load import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 
-Floats = NDArray[np.float64]
-
-AIR_DENSITY = 1.2
 RIGID_TWIST = 1e3
 
 
@@ -77,9 +76,10 @@ class ArticulatedTree:
         cut = refined(tree, subdivisions)
         self.bodies = articulated_bodies(cut, modulus, density, gravity, twist_ratio)
         n = cut.n_segments
-        self.turn = np.zeros((n, 4))
-        self.rate = np.zeros((n, 3))
-        self._motion, self._room = motion_of(n), articulation_of(n)
+        self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
+        self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
+        self._rotation, self._nodes = np.zeros((n, 3, 3)), np.zeros((3, n, 3))
+        self._rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
         self._wind = np.zeros((n, 3))
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
@@ -94,33 +94,38 @@ class ArticulatedTree:
             float(rayleigh[1]),
             0.5 * air_density * drag_coefficient,
             drag_exponent,
-            (10.0, 25.0),
+            STREAMLINING_FROM,
+            STREAMLINING_TO,
         )
         self.reset()
 
     def reset(self) -> None:
         """Go back to rest."""
-        self.turn[:] = [1.0, 0.0, 0.0, 0.0]
-        self.rate[:] = 0.0
-        self._motion.rotation[:] = np.eye(3)
+        self.state.turn[:] = [1.0, 0.0, 0.0, 0.0]
+        self.state.rate[:] = 0.0
 
     def step(self, wind: ArrayLike, dt: float) -> None:
-        """
-        Advance by dt in [s] under a wind in [m/s], (3,), or one a segment, (n, 3).
-
-        """
+        """Advance by dt in [s] under a wind in [m/s], (3,), or one a segment, (n, 3)."""
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
         np.multiply(self._wind_factor, wind, out=self._wind)
         advance(
-            self.bodies, self.laws, self.turn, self.rate, self._wind, dt, self._motion, self._room
+            self.bodies,
+            self.laws,
+            self.state,
+            self._wind,
+            dt,
+            self._motion,
+            self._articulation,
+            self._room,
         )
 
     @property
     def node_positions(self) -> Floats:
         """End node of each segment in [m], (n, 3)."""
-        return end_nodes(self.bodies, self._motion.rotation)[self.subdivisions - 1 :: self.subdivisions]
+        self._place_bodies()
+        return self._nodes[2, self.subdivisions - 1 :: self.subdivisions].copy()
 
     @property
     def tip_positions(self) -> Floats:
@@ -128,14 +133,15 @@ class ArticulatedTree:
         return self.node_positions[self.tree.branch_first[1:] - 1]
 
     def place(self, out: Floats | None = None) -> Floats:
-        """
-        Poses of the segments in message order ``x y z qx qy qz qw``, (n, 7), origin at the start node.
-
-        """
+        """Pose of each segment at its start node, ``x y z qx qy qz qw``, (n, 7)."""
         if out is None:
             out = np.empty((self.tree.n_segments, 7))
-        ends = end_nodes(self.bodies, self._motion.rotation)
-        return pose_block(self.bodies, self._motion.rotation, ends, self.subdivisions, out)
+        self._place_bodies()
+        _, start, end = self._nodes
+        pose_block(
+            self.bodies, self.state.turn, self._rest, self._rotation, start, end, self.subdivisions, out
+        )
+        return out
 
     def linear_modes(self, count: int) -> tuple[Floats, Floats]:
         """
@@ -155,3 +161,6 @@ class ArticulatedTree:
             twist=self._twist_ratio < RIGID_TWIST,
         )
         return frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]
+
+    def _place_bodies(self) -> None:
+        place_bodies(self.bodies, self.state.turn, self._rotation, *self._nodes)

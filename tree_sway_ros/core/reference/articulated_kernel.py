@@ -2,7 +2,10 @@
 The articulated-body algorithm for a tree of ball joints, forward and back in O(n).
 
 Featherstone (2008), Rigid Body Dynamics Algorithms, section 7.3, in world axes and with moments taken
-about each body's own joint. Wrenches and motions are stacked angular first. Compiled by numba.
+about each body's own joint. The articulated inertia of a body is three blocks (3, 3): with n and f the moment
+and force that its joint passes, alpha and a the accelerations there,
+
+    n = A alpha + B a + n0,   f = B^T alpha + C a + f0.
 
 """
 
@@ -11,13 +14,23 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
+from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
-from tree_sway_ros.core.reference.rotation_kernel import cross, inverse_3, outer_add, rotate
-
-Floats = NDArray[np.float64]
+from tree_sway_ros.core.reference.rotation_kernel import (
+    Vector,
+    cross,
+    cross_columns,
+    dot,
+    inverse,
+    plus,
+    product,
+    read,
+    times,
+    times_transposed,
+    write,
+)
+from tree_sway_ros.core.tree import Floats
 
 
 class Motion(NamedTuple):
@@ -28,23 +41,21 @@ class Motion(NamedTuple):
     ----------
     rotation
         Rotation of each body from rest, (n, 3, 3).
-    position, velocity
-        Of each joint in [m] and [m/s], (n, 3).
-    spin
-        Angular velocity of each body in [rad/s], (n, 3).
+    velocity, spin
+        Of each joint in [m/s], and of each body in [rad/s], (n, 3).
     arm
         From the joint of the carrier to this joint in [m], (n, 3).
-    bias
-        Angular and linear acceleration of each joint that no joint's acceleration causes, (n, 6).
+    bias_turn, bias_shift
+        Angular and linear acceleration of each joint that no joint's acceleration causes, (n, 3).
 
     """
 
     rotation: Floats
-    position: Floats
     velocity: Floats
     spin: Floats
     arm: Floats
-    bias: Floats
+    bias_turn: Floats
+    bias_shift: Floats
 
 
 class Articulation(NamedTuple):
@@ -53,114 +64,115 @@ class Articulation(NamedTuple):
 
     Parameters
     ----------
-    inertia, force
-        Articulated inertia (n, 6, 6) and bias force (n, 6) about each joint.
+    A, B, C
+        Articulated inertia of each body about its joint, (n, 3, 3).
+    moment, force
+        n0 and f0 of each body, (n, 3).
     inverse
-        Inverse of the joint's own block of the inertia, (n, 3, 3).
+        Inverse of A with what is added for the joint, (n, 3, 3).
     drive
-        Joint torque left over for acceleration in [N m], (n, 3).
-    acceleration
-        Angular and linear acceleration of each body at its joint, (n, 6).
+        Torque left over for the joint's acceleration in [N m], (n, 3).
+    alpha, a
+        Acceleration of each body at its joint, (n, 3).
 
     """
 
-    inertia: Floats
+    A: Floats
+    B: Floats
+    C: Floats
+    moment: Floats
     force: Floats
     inverse: Floats
     drive: Floats
-    acceleration: Floats
+    alpha: Floats
+    a: Floats
 
 
 def motion_of(n: int) -> Motion:
     """Make room for the motion of n bodies."""
-    z = np.zeros
-    return Motion(z((n, 3, 3)), z((n, 3)), z((n, 3)), z((n, 3)), z((n, 3)), z((n, 6)))
+    return Motion(np.zeros((n, 3, 3)), *np.zeros((5, n, 3)))
 
 
 def articulation_of(n: int) -> Articulation:
     """Make room for the articulated inertias of n bodies."""
-    z = np.zeros
-    return Articulation(z((n, 6, 6)), z((n, 6)), z((n, 3, 3)), z((n, 3)), z((n, 6)))
+    matrices, vectors = np.zeros((4, n, 3, 3)), np.zeros((5, n, 3))
+    return Articulation(*matrices[:3], *vectors[:2], matrices[3], *vectors[2:])
 
 
-@njit(cache=True)
+@kernel
 def move(bodies: Bodies, turn: Floats, rate: Floats, motion: Motion) -> None:
-    """
-    Carry rotations (n, 3, 3) and rates (n, 3) of the joints, both in body axes, from the root out.
-
-    """
-    position, velocity, spin, arm = motion.position, motion.velocity, motion.spin, motion.arm
+    """Carry rotations (n, 3, 3) and rates (n, 3) of the joints, in body axes, from the root out."""
+    rotation = motion.rotation
     for i in range(len(turn)):
         p = bodies.carrier[i]
+        arm = read(bodies.arm, i)
         if p < 0:
-            motion.rotation[i] = turn[i]
-            arm[i] = bodies.arm[i]
-            position[i] = arm[i]
-            velocity[i] = 0.0
-            spin[i] = rotate(turn[i], rate[i])
-            motion.bias[i] = 0.0
+            rotation[i] = turn[i]
+            write(motion.arm, i, arm)
+            write(motion.spin, i, times(turn[i], read(rate, i)))
             continue
-        motion.rotation[i] = motion.rotation[p] @ turn[i]
-        arm[i] = rotate(motion.rotation[p], bodies.arm[i])
-        position[i] = position[p] + arm[i]
-        swept = cross(spin[p], arm[i])
-        velocity[i] = velocity[p] + swept
-        own = rotate(motion.rotation[i], rate[i])
-        spin[i] = spin[p] + own
-        motion.bias[i, :3] = cross(spin[p], own)
-        motion.bias[i, 3:] = cross(spin[p], swept)
+        product(rotation[p], turn[i], rotation[i])
+        arm = times(rotation[p], arm)
+        spin = read(motion.spin, p)
+        swept = cross(spin, arm)
+        own = times(rotation[i], read(rate, i))
+        write(motion.arm, i, arm)
+        write(motion.velocity, i, plus(read(motion.velocity, p), swept, 1.0))
+        write(motion.spin, i, plus(spin, own, 1.0))
+        write(motion.bias_turn, i, cross(spin, own))
+        write(motion.bias_shift, i, cross(spin, swept))
 
 
-@njit(cache=True)
+@kernel
 def load(
     bodies: Bodies, motion: Motion, gravity: float, mass_damping: float, room: Articulation
 ) -> None:
     """
-    Start the articulated inertia and bias force from each body's own, with its weight.
+    Start each articulated inertia and bias from the body's own, with its weight.
 
     The damping in [1/s] acts on each body's momentum.
 
     """
+    half, own = np.empty((3, 3)), np.empty((3, 3))
     for i in range(len(bodies.mass)):
-        R = motion.rotation[i]
-        m = bodies.mass[i]
-        r = rotate(R, bodies.centre[i])
-        own = R @ bodies.inertia[i] @ R.T
-        w = motion.spin[i]
-        A, b = room.inertia[i], room.force[i]
-        A[:] = 0.0
-        A[:3, :3] = own
-        outer_add(A[:3, :3], r, r, -m)
-        square = m * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
-        for k in range(3):
-            A[k, k] += square
-            A[3 + k, 3 + k] = m
-        A[0, 4], A[0, 5], A[1, 5] = -m * r[2], m * r[1], -m * r[0]
-        A[1, 3], A[2, 3], A[2, 4] = m * r[2], -m * r[1], m * r[0]
-        A[3:, :3] = A[:3, 3:].T
+        R, A, B, C = motion.rotation[i], room.A[i], room.B[i], room.C[i]
+        m, r, w = bodies.mass[i], times(R, read(bodies.centre, i)), read(motion.spin, i)
+        product(R, bodies.inertia[i], half)
+        square = dot(r, r)
+        for j in range(3):
+            for k in range(3):
+                own[j, k] = half[j, 0] * R[k, 0] + half[j, 1] * R[k, 1] + half[j, 2] * R[k, 2]
+                A[j, k] = own[j, k] - m * r[j] * r[k]
+                C[j, k] = 0.0
+            A[j, j] += m * square
+            B[j, j], C[j, j] = 0.0, m
+        B[0, 1], B[0, 2], B[1, 2] = -m * r[2], m * r[1], -m * r[0]
+        B[1, 0], B[2, 0], B[2, 1] = m * r[2], -m * r[1], m * r[0]
 
         swept = cross(w, r)
-        force = m * (cross(w, swept) + mass_damping * (motion.velocity[i] + swept))
-        force[2] += m * gravity
-        momentum = rotate(own, w)
-        b[:3] = cross(w, momentum) + cross(r, force) + mass_damping * momentum
-        b[3:] = force
+        velocity = plus(read(motion.velocity, i), swept, 1.0)
+        rising = plus(cross(w, swept), velocity, mass_damping)
+        force = (m * rising[0], m * rising[1], m * (rising[2] + gravity))
+        momentum = times(own, w)
+        moment = plus(plus(cross(w, momentum), cross(r, force), 1.0), momentum, mass_damping)
+        write(room.moment, i, moment)
+        write(room.force, i, force)
 
 
-@njit(cache=True)
-def push(i: int, place: Floats, force: Floats, room: Articulation) -> None:
-    """Apply a force (3,) in [N] to body i at a place (3,) from its joint in [m]."""
-    room.force[i, :3] -= cross(place, force)
-    room.force[i, 3:] -= force
+@kernel
+def push(i: int, place: Vector, force: Vector, share: float, room: Articulation) -> None:
+    """Apply a share of a force in [N] to body i, at a place from its joint in [m]."""
+    write(room.moment, i, plus(read(room.moment, i), cross(place, force), -share))
+    write(room.force, i, plus(read(room.force, i), force, -share))
 
 
-@njit(cache=True)
+@kernel
 def accelerate(
     bodies: Bodies,
     motion: Motion,
     torque: Floats,
-    bend_inertia: Floats,
-    twist_inertia: Floats,
+    twist_axis: Floats,
+    implicit: float,
     room: Articulation,
     out: Floats,
 ) -> None:
@@ -173,9 +185,10 @@ def accelerate(
         The tree and how it moves now.
     torque
         Torque of the joints, body axes, (n, 3) in [N m].
-    bend_inertia, twist_inertia
-        Inertia added to the joints across and about the axis in [kg m^2], (n,): what makes the springs
-        implicit.
+    twist_axis
+        Gradient of their angles of twist, body axes, (n, 3).
+    implicit
+        Inertia added to the joints by their stiffness in [s^2]: it makes the springs implicit.
     room
         From `load`, with every force pushed.
     out
@@ -183,41 +196,78 @@ def accelerate(
 
     """
     n = len(bodies.mass)
+    block, passed, shared, turned, spread = np.empty((5, 3, 3))
     for i in range(n - 1, -1, -1):
-        A = room.inertia[i]
-        R = motion.rotation[i]
-        t = rotate(R, bodies.axis[i])
-        block = A[:3, :3].copy()
-        for k in range(3):
-            block[k, k] += bend_inertia[i]
-        outer_add(block, t, t, twist_inertia[i] - bend_inertia[i])
-        inverse_3(block, room.inverse[i])
-        room.drive[i] = rotate(R, torque[i]) - room.force[i, :3]
+        R, A, B, C = motion.rotation[i], room.A[i], room.B[i], room.C[i]
+        t = times(R, read(twist_axis, i))
+        across = implicit * bodies.bend[i]
+        about = implicit * bodies.twist[i] - across
+        for j in range(3):
+            for k in range(3):
+                block[j, k] = A[j, k] + about * t[j] * t[k]
+            block[j, j] += across
+        inverse(block, room.inverse[i])
+        moment, force = read(room.moment, i), read(room.force, i)
+        drive = plus(times(R, read(torque, i)), moment, -1.0)
+        write(room.drive, i, drive)
         p = bodies.carrier[i]
         if p < 0:
             continue
-        U = np.ascontiguousarray(A[:, :3])
-        passed = U @ room.inverse[i]
-        rest = A - passed @ U.T
-        force = room.force[i] + rest @ motion.bias[i] + passed @ room.drive[i]
-        d = motion.arm[i]
-        # Moments about the carrier's joint: n + d x f, and the motion there: a = a_p + alpha x d.
-        T = np.zeros((6, 6))
-        for k in range(6):
-            T[k, k] = 1.0
-        T[3, 1], T[3, 2], T[4, 2] = d[2], -d[1], d[0]
-        T[4, 0], T[5, 0], T[5, 1] = -d[2], d[1], -d[0]
-        room.inertia[p] += T.T @ rest @ T
-        room.force[p] += T.T @ force
+        # What is left of the inertia when the joint gives way: A - A D A, B - A D B, C - B^T D B.
+        turn, shift = read(motion.bias_turn, i), read(motion.bias_shift, i)
+        given = plus(drive, times(A, turn), -1.0)
+        given = times(room.inverse[i], plus(given, times(B, shift), -1.0))
+        turn = plus(turn, given, 1.0)
+        moment = plus(plus(moment, times(A, turn), 1.0), times(B, shift), 1.0)
+        force = plus(plus(force, times_transposed(B, turn), 1.0), times(C, shift), 1.0)
+        d = read(motion.arm, i)
+        write(room.moment, p, plus(plus(read(room.moment, p), moment, 1.0), cross(d, force), 1.0))
+        write(room.force, p, plus(read(room.force, p), force, 1.0))
+        product(A, room.inverse[i], passed)
+        product(passed, B, shared)
+        product(room.inverse[i], B, turned)
+        product(passed, A, block)
+        left_A, left_B, left_C = block, shared, spread
+        for j in range(3):
+            for k in range(3):
+                left_A[j, k] = A[j, k] - block[j, k]
+                left_B[j, k] = B[j, k] - shared[j, k]
+                gone = B[0, j] * turned[0, k] + B[1, j] * turned[1, k] + B[2, j] * turned[2, k]
+                left_C[j, k] = C[j, k] - gone
+        _shift(d, left_A, left_B, left_C, passed, turned, room.A[p], room.B[p], room.C[p])
 
     for i in range(n):
-        a = room.acceleration[i]
-        a[:] = motion.bias[i]
+        turn, shift = read(motion.bias_turn, i), read(motion.bias_shift, i)
         p = bodies.carrier[i]
         if p >= 0:
-            a += room.acceleration[p]
-            a[3:] += cross(room.acceleration[p, :3], motion.arm[i])
-        spare = room.drive[i] - room.inertia[i, :3] @ a
-        own = rotate(room.inverse[i], spare)
-        a[:3] += own
-        out[i] = rotate(motion.rotation[i].T, own)
+            alpha = read(room.alpha, p)
+            turn = plus(turn, alpha, 1.0)
+            shift = plus(plus(shift, read(room.a, p), 1.0), cross(alpha, read(motion.arm, i)), 1.0)
+        spare = plus(read(room.drive, i), times(room.A[i], turn), -1.0)
+        own = times(room.inverse[i], plus(spare, times(room.B[i], shift), -1.0))
+        write(room.alpha, i, plus(turn, own, 1.0))
+        write(room.a, i, shift)
+        write(out, i, times_transposed(motion.rotation[i], own))
+
+
+@kernel
+def _shift(
+    d: Vector, A: Floats, B: Floats, C: Floats, first: Floats, second: Floats,
+    to_A: Floats, to_B: Floats, to_C: Floats,
+) -> None:  # fmt: skip
+    """Add an inertia to one whose point lies back by d: B + d x C, and A + d x B^T - (B + d x C) d x."""
+    cross_columns(d, C, first)
+    for j in range(3):
+        for k in range(3):
+            first[j, k] += B[j, k]
+            to_B[j, k] += first[j, k]
+            to_C[j, k] += C[j, k]
+    # (M d x)^T = -d x M^T, so both products are of columns.
+    cross_columns(d, B.T, second)
+    for j in range(3):
+        for k in range(3):
+            to_A[j, k] += A[j, k] + second[j, k]
+    cross_columns(d, first.T, second)
+    for j in range(3):
+        for k in range(3):
+            to_A[j, k] += second[k, j]

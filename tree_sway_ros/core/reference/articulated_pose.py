@@ -1,98 +1,119 @@
-"""Nodes and poses of an articulated tree from the rotations of its bodies."""
+"""Nodes and poses of an articulated tree from the rotations of its joints."""
 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
+from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
-from tree_sway_ros.core.reference.rotation_kernel import cross, multiply, rotate
+from tree_sway_ros.core.reference.rotation_kernel import (
+    cross,
+    dot,
+    matrix_of,
+    plus,
+    product,
+    read,
+    times,
+    turn_on,
+    write,
+)
+from tree_sway_ros.core.tree import Floats
 
-Floats = NDArray[np.float64]
 
+@kernel
+def place_bodies(
+    bodies: Bodies, turn: Floats, rotation: Floats, joint: Floats, start: Floats, end: Floats
+) -> None:
+    """
+    Carry the joints' rotations from the root out.
 
-@njit(cache=True)
-def joint_positions(bodies: Bodies, rotation: Floats) -> Floats:
-    """Joint of each segment in [m], (n, 3)."""
-    out = np.empty((len(rotation), 3))
-    for i in range(len(rotation)):
+    Parameters
+    ----------
+    bodies
+        The tree.
+    turn
+        Quaternions wxyz of the joints, (n, 4).
+    rotation
+        Rotation of each body from rest, (n, 3, 3), written.
+    joint, start, end
+        Joint, start node and end node of each segment in [m], (n, 3), written.
+
+    """
+    own = np.empty((3, 3))
+    for i in range(len(turn)):
         p = bodies.carrier[i]
-        out[i] = bodies.arm[i] if p < 0 else out[p] + rotate(rotation[p], bodies.arm[i])
-    return out
+        arm, axis = read(bodies.arm, i), read(bodies.axis, i)
+        matrix_of(turn[i], own)
+        if p < 0:
+            rotation[i], place, back = own, arm, axis
+        else:
+            product(rotation[p], own, rotation[i])
+            place, back = plus(read(joint, p), times(rotation[p], arm), 1.0), times(rotation[p], axis)
+        write(joint, i, place)
+        write(start, i, plus(place, back, -bodies.reach[i, 0]))
+        write(end, i, plus(place, times(rotation[i], axis), bodies.reach[i, 1]))
 
 
-@njit(cache=True)
-def end_nodes(bodies: Bodies, rotation: Floats) -> Floats:
-    """End node of each segment in [m], (n, 3), by the rotations (n, 3, 3) of the bodies."""
-    out = joint_positions(bodies, rotation)
-    for i in range(len(rotation)):
-        out[i] += bodies.reach[i, 1] * rotate(rotation[i], bodies.axis[i])
-    return out
-
-
-@njit(cache=True)
+@kernel
 def pose_block(
-    bodies: Bodies, rotation: Floats, ends: Floats, pieces: int, out: Floats
-) -> Floats:
+    bodies: Bodies,
+    turn: Floats,
+    rest: Floats,
+    rotation: Floats,
+    start: Floats,
+    end: Floats,
+    pieces: int,
+    out: Floats,
+) -> None:
     """
-    Poses (n / pieces, 7): start node, and the turn that lays x along the chord, ``xyzw``.
+    Fill poses (m, 7): start node, and as ``xyzw`` the turn that lays x along the chord.
 
-    The roll is the body's own: it turns with the segment, then takes the shortest way to the chord.
+    The roll is the body's own: x turns with the segment, then takes the shortest way to the chord.
+
+    Parameters
+    ----------
+    bodies, turn
+        The tree, and quaternions of its joints, (n, 4).
+    rest
+        Orientation of each segment at rest, quaternions wxyz, (m, 4).
+    rotation, start, end
+        From `place_bodies`.
+    pieces
+        Bodies a segment, n / m.
+    out
+        Pose block to write.
 
     """
-    joint = joint_positions(bodies, rotation)
-    x_axis = np.array([1.0, 0.0, 0.0])
-    rest, whole, swing = np.empty(4), np.empty(4), np.empty(4)
+    q = np.empty((len(turn), 4))
+    for i in range(len(turn)):
+        p = bodies.carrier[i]
+        if p < 0:
+            q[i] = turn[i]
+        else:
+            _multiply(q[p], turn[i], q[i])
+    whole = np.empty(4)
     for k in range(len(out)):
         first = k * pieces
-        p = bodies.carrier[first]
-        back = bodies.reach[first, 0] * bodies.axis[first]
-        start = joint[first] - (rotate(rotation[p], back) if p >= 0 else back)
-        chord = ends[first + pieces - 1] - start
-        chord /= np.sqrt(chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2)
-        body = rotation[first + pieces // 2]
-        shortest(x_axis, bodies.axis[first], rest)
-        shortest(rotate(body, bodies.axis[first]), chord, swing)
-        multiply(swing, quaternion_of(body), whole)
-        multiply(whole, rest, whole)
-        out[k, :3] = start
-        out[k, 3:6] = whole[1:]
-        out[k, 6] = whole[0]
-    return out
+        body = first + pieces // 2
+        chord = plus(read(end, first + pieces - 1), read(start, first), -1.0)
+        along = times(rotation[body], read(bodies.axis, first))
+        sine, cosine = cross(along, chord), dot(along, chord)
+        size = np.sqrt(dot(sine, sine))
+        angle = np.arctan2(size, cosine)
+        factor = angle / size if size > 0.0 else 0.0
+        # A turn in world axes is one in body axes, turned back.
+        world = (factor * sine[0], factor * sine[1], factor * sine[2])
+        matrix = rotation[body]
+        turn_on(q[body], times(matrix.T, world), whole)
+        _multiply(whole, rest[k], whole)
+        out[k, 0], out[k, 1], out[k, 2] = start[first, 0], start[first, 1], start[first, 2]
+        out[k, 3], out[k, 4], out[k, 5], out[k, 6] = whole[1], whole[2], whole[3], whole[0]
 
 
-@njit(cache=True)
-def shortest(a: Floats, b: Floats, out: Floats) -> None:
-    """Quaternion wxyz of the shortest turn from one unit vector (3,) to another."""
-    cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    if cosine < -1.0 + 1e-12:
-        aside = np.array([0.0, 0.0, 1.0]) if abs(a[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
-        axis, out[0] = cross(a, aside), 0.0
-    else:
-        axis, out[0] = cross(a, b), 1.0 + cosine
-    out[1:] = axis
-    out /= np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2)
-
-
-@njit(cache=True)
-def quaternion_of(R: Floats) -> Floats:
-    """Quaternion wxyz of a rotation matrix (3, 3), by its largest part (Shepperd 1978)."""
-    out = np.empty(4)
-    trace = R[0, 0] + R[1, 1] + R[2, 2]
-    largest = 0
-    for k in range(3):
-        if R[k, k] > max(trace, R[0, 0], R[1, 1], R[2, 2]) - 1e-15 and R[k, k] > trace:
-            largest = k + 1
-    if largest == 0:
-        out[0] = 1.0 + trace
-        out[1], out[2], out[3] = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
-    else:
-        i = largest - 1
-        j, k = (i + 1) % 3, (i + 2) % 3
-        out[0] = R[k, j] - R[j, k]
-        out[1 + i] = 1.0 + R[i, i] - R[j, j] - R[k, k]
-        out[1 + j] = R[j, i] + R[i, j]
-        out[1 + k] = R[k, i] + R[i, k]
-    out /= np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2)
-    return out
+@kernel
+def _multiply(p: Floats, q: Floats, out: Floats) -> None:
+    w = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3]
+    x = p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2]
+    y = p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1]
+    z = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]
+    out[0], out[1], out[2], out[3] = w, x, y, z

@@ -2,8 +2,8 @@
 One step of the articulated tree: springs and dampers implicit, everything else explicit, second order.
 
 ROS2 of Verwer, Spee, Blom & Hundsdorfer (1999), a Rosenbrock method of order two whatever the Jacobian,
-L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, which are diagonal in the
-joints, so that (1 - gamma h A) costs no more than some inertia added to each joint:
+L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, each of its own joint only,
+so that (1 - gamma h A) costs no more than some inertia added to each joint:
 
     (M + gamma h C + gamma^2 h^2 K) k = f - gamma h K w.
 
@@ -15,9 +15,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
+from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.articulated_kernel import (
     Articulation,
@@ -28,16 +27,21 @@ from tree_sway_ros.core.reference.articulated_kernel import (
     push,
 )
 from tree_sway_ros.core.reference.rotation_kernel import (
-    conjugate_torque,
+    Vector,
     cross,
-    exponential,
+    dot,
+    held_torque,
     logarithm,
     matrix_of,
-    multiply,
-    rotate,
+    plus,
+    read,
+    times,
+    turn_on,
+    twist_of,
+    write,
 )
+from tree_sway_ros.core.tree import Floats
 
-Floats = NDArray[np.float64]
 GAMMA = 1.0 - math.sqrt(0.5)
 
 
@@ -55,8 +59,8 @@ class Laws(NamedTuple):
         Half the density of air times C of Cd = C U^-N, in [kg/m^3 (m/s)^N].
     drag_exponent
         N in [-].
-    reconfiguration
-        Lowest and highest speed U that the drag law follows in [m/s].
+    slowest, fastest
+        Wind speeds between which the drag coefficient follows U^-N, in [m/s].
 
     """
 
@@ -65,25 +69,66 @@ class Laws(NamedTuple):
     stiffness_damping: float
     drag: float
     drag_exponent: float
-    reconfiguration: tuple[float, float]
+    slowest: float
+    fastest: float
 
 
-@njit(cache=True)
-def drag_force(laws: Laws, axis: Floats, velocity: Floats) -> Floats:
-    """Drag (3,) on a segment by the air's velocity (3,) relative to it in [m/s], in [N/m^2]."""
-    along = axis[0] * velocity[0] + axis[1] * velocity[1] + axis[2] * velocity[2]
-    across = velocity - along * axis
-    speed = math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2)
-    factor = laws.drag * speed
+class State(NamedTuple):
+    """Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body axes."""
+
+    turn: Floats
+    rate: Floats
+
+
+class Room(NamedTuple):
+    """
+    Scratch of a step.
+
+    Parameters
+    ----------
+    matrix
+        Rotations of the joints, (n, 3, 3).
+    stage_turn, stage_rate
+        State of the second stage, (n, 4) and (n, 3).
+    torque, twist_axis
+        Of the joints, body axes, (n, 3).
+    pull
+        What the stiffness is applied to on top of the springs' own angle in [rad], (n, 3).
+    first, second
+        Accelerations of the stages, (n, 3).
+
+    """
+
+    matrix: Floats
+    stage_turn: Floats
+    stage_rate: Floats
+    torque: Floats
+    twist_axis: Floats
+    pull: Floats
+    first: Floats
+    second: Floats
+
+
+def room_of(n: int) -> Room:
+    """Make room for a step of n bodies."""
+    return Room(np.zeros((n, 3, 3)), np.zeros((n, 4)), *np.zeros((6, n, 3)))
+
+
+@kernel
+def drag(laws: Laws, axis: Vector, wind: Vector, velocity: Vector) -> Vector:
+    """Drag on a segment with this axis and velocity in this wind, by its area, in [N/m^2]."""
+    air = plus(wind, velocity, -1.0)
+    across = plus(air, axis, -dot(air, axis))
+    factor = laws.drag * math.sqrt(dot(across, across))
     if laws.drag_exponent != 0.0:
-        low, high = laws.reconfiguration
-        factor *= min(max(speed, low), high) ** -laws.drag_exponent
-    return factor * across
+        speed = min(max(math.sqrt(dot(wind, wind)), laws.slowest), laws.fastest)
+        factor *= math.pow(speed, -laws.drag_exponent)
+    return factor * across[0], factor * across[1], factor * across[2]
 
 
-@njit(cache=True)
+@kernel
 def push_drag(
-    bodies: Bodies, motion: Motion, laws: Laws, wind: Floats, room: Articulation
+    bodies: Bodies, motion: Motion, laws: Laws, wind: Floats, articulation: Articulation
 ) -> None:
     """
     Push the drag on every segment by the wind (n, 3) relative to the middle of its chord.
@@ -91,51 +136,43 @@ def push_drag(
     Each part of the segment takes the force on its own area, at its own middle.
 
     """
-    ground, still = np.eye(3), np.zeros(3)
     for i in range(len(bodies.mass)):
         p = bodies.carrier[i]
-        root_side = rotate(motion.rotation[p] if p >= 0 else ground, bodies.axis[i])
-        root_side *= bodies.reach[i, 0]
-        tip_side = bodies.reach[i, 1] * rotate(motion.rotation[i], bodies.axis[i])
-        chord = root_side + tip_side
-        chord /= math.sqrt(chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2)
-        swung = cross(motion.spin[i], tip_side) - cross(motion.spin[p] if p >= 0 else still, root_side)
-        velocity = motion.velocity[i] + 0.5 * swung
-        force = drag_force(laws, chord, wind[i] - velocity)
-        push(i, 0.5 * tip_side, bodies.area[i, 1] * force, room)
+        axis, zero = read(bodies.axis, i), (0.0, 0.0, 0.0)
+        tip_side = plus(zero, times(motion.rotation[i], axis), bodies.reach[i, 1])
+        root_side = axis if p < 0 else times(motion.rotation[p], axis)
+        root_side = plus(zero, root_side, bodies.reach[i, 0])
+        chord = plus(tip_side, root_side, 1.0)
+        chord = plus(zero, chord, 1.0 / math.sqrt(dot(chord, chord)))
+        velocity = plus(read(motion.velocity, i), cross(read(motion.spin, i), tip_side), 0.5)
         if p >= 0:
-            push(p, motion.arm[i] - 0.5 * root_side, bodies.area[i, 0] * force, room)
+            velocity = plus(velocity, cross(read(motion.spin, p), root_side), -0.5)
+        force = drag(laws, chord, read(wind, i), velocity)
+        push(i, plus(zero, tip_side, 0.5), force, bodies.area[i, 1], articulation)
+        if p >= 0:
+            place = plus(read(motion.arm, i), root_side, -0.5)
+            push(p, place, force, bodies.area[i, 0], articulation)
 
 
-@njit(cache=True)
-def spring_torque(bodies: Bodies, turn: Floats, out: Floats) -> None:
-    """Torque of the springs (n, 3) in body axes by the rotations of the joints, quaternions (n, 4)."""
-    for i in range(len(turn)):
-        v = logarithm(turn[i])
-        along = v[0] * bodies.axis[i, 0] + v[1] * bodies.axis[i, 1] + v[2] * bodies.axis[i, 2]
-        gradient = bodies.bend[i] * v + (bodies.twist[i] - bodies.bend[i]) * along * bodies.axis[i]
-        out[i] = conjugate_torque(v, gradient - bodies.rest_torque[i])
+@kernel
+def spring(bodies: Bodies, i: int, v: Vector, twist: float, twist_axis: Vector) -> Vector:
+    """Stiffness of joint i times a vector in body axes whose part along the twist's is given."""
+    bend = bodies.bend[i]
+    about = (bodies.twist[i] - bend) * twist
+    return plus((bend * v[0], bend * v[1], bend * v[2]), twist_axis, about)
 
 
-@njit(cache=True)
-def stiffness_times(bodies: Bodies, vector: Floats, i: int) -> Floats:
-    """Stiffness of joint i times a vector (3,) in body axes."""
-    t = bodies.axis[i]
-    along = vector[0] * t[0] + vector[1] * t[1] + vector[2] * t[2]
-    return bodies.bend[i] * vector + (bodies.twist[i] - bodies.bend[i]) * along * t
-
-
-@njit(cache=True)
+@kernel
 def respond(
     bodies: Bodies,
     laws: Laws,
     turn: Floats,
     rate: Floats,
     wind: Floats,
-    extra: Floats,
     implicit: float,
     motion: Motion,
-    room: Articulation,
+    articulation: Articulation,
+    room: Room,
     out: Floats,
 ) -> None:
     """
@@ -149,62 +186,63 @@ def respond(
         Quaternions (n, 4) and angular velocities (n, 3) of the joints.
     wind
         Air at each segment in [m/s], (n, 3).
-    extra
-        Torque added to the joints' own in [N m], (n, 3).
     implicit
         gamma h in [s]; 0 is the plain equation of motion.
-    motion, room
-        Filled on the way.
+    motion, articulation, room
+        Filled on the way; `room.pull` is read.
     out
         Where the accelerations go.
 
     """
-    n = len(turn)
-    matrix = np.empty((n, 3, 3))
-    for i in range(n):
-        matrix_of(turn[i], matrix[i])
-    move(bodies, matrix, rate, motion)
-    load(bodies, motion, laws.gravity, laws.mass_damping, room)
-    push_drag(bodies, motion, laws, wind, room)
-    torque = np.empty((n, 3))
-    spring_torque(bodies, turn, torque)
     late = laws.stiffness_damping + implicit
-    for i in range(n):
-        torque[i] += extra[i] - late * stiffness_times(bodies, rate[i], i)
-    accelerate(bodies, motion, torque, implicit * late * bodies.bend, implicit * late * bodies.twist, room, out)
+    for i in range(len(turn)):
+        matrix_of(turn[i], room.matrix[i])
+        v = logarithm(turn[i])
+        twist, g = twist_of(turn[i], read(bodies.axis, i))
+        write(room.twist_axis, i, g)
+        torque = held_torque(v, read(bodies.rest_torque, i))
+        torque = plus(torque, spring(bodies, i, v, twist, g), -1.0)
+        v = plus(read(room.pull, i), read(rate, i), -late)
+        write(room.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
+    move(bodies, room.matrix, rate, motion)
+    load(bodies, motion, laws.gravity, laws.mass_damping, articulation)
+    push_drag(bodies, motion, laws, wind, articulation)
+    accelerate(
+        bodies, motion, room.torque, room.twist_axis, implicit * late, articulation, out
+    )
 
 
-@njit(cache=True)
+@kernel
 def advance(
     bodies: Bodies,
     laws: Laws,
-    turn: Floats,
-    rate: Floats,
+    state: State,
     wind: Floats,
     dt: float,
     motion: Motion,
-    room: Articulation,
+    articulation: Articulation,
+    room: Room,
 ) -> None:
-    """Move the state, quaternions (n, 4) and rates (n, 3), on by dt in [s]."""
-    n = len(turn)
+    """Move the state on by dt in [s]."""
+    turn, rate = state.turn, state.rate
+    first, second = room.first, room.second
     gh = GAMMA * dt
-    first, second = np.empty((n, 3)), np.empty((n, 3))
-    extra = np.zeros((n, 3))
-    respond(bodies, laws, turn, rate, wind, extra, gh, motion, room, first)
-    stage_turn, stage_rate = np.empty((n, 4)), rate + dt * first
+    room.pull[:] = 0.0
+    respond(bodies, laws, turn, rate, wind, gh, motion, articulation, room, first)
     beta = laws.stiffness_damping
-    for i in range(n):
-        multiply(turn[i], exponential(dt * (rate[i] + gh * first[i])), stage_turn[i])
-        along = (rate[i] + gh * first[i]) + (beta + gh) * first[i]
-        extra[i] = 2.0 * gh * stiffness_times(bodies, along, i)
-    respond(bodies, laws, stage_turn, stage_rate, wind, extra, gh, motion, room, second)
-    for i in range(n):
-        # Both stages' rates of the rotation; the difference of their frames is third order.
-        later = stage_rate[i] - 2.0 * gh * first[i] + gh * second[i]
-        moved = 0.5 * dt * (rate[i] + gh * first[i] + later)
-        multiply(turn[i], exponential(moved), turn[i])
-        rate[i] += 0.5 * dt * (first[i] + second[i])
-    for i in range(n):
-        matrix_of(turn[i], motion.rotation[i])
-    move(bodies, motion.rotation.copy(), rate, motion)
-
+    for i in range(len(turn)):
+        k = read(first, i)
+        moving = plus(read(rate, i), k, gh)
+        turn_on(turn[i], plus((0.0, 0.0, 0.0), moving, dt), room.stage_turn[i])
+        write(room.stage_rate, i, plus(read(rate, i), k, dt))
+        write(room.pull, i, plus((0.0, 0.0, 0.0), plus(moving, k, beta + gh), 2.0 * gh))
+    respond(
+        bodies, laws, room.stage_turn, room.stage_rate, wind, gh, motion, articulation, room, second
+    )
+    for i in range(len(turn)):
+        k, m = read(first, i), read(second, i)
+        # Rates of rotation of both stages; that their axes differ is of third order.
+        both = plus(read(rate, i), read(room.stage_rate, i), 1.0)
+        both = plus(plus(both, k, -gh), m, gh)
+        turn_on(turn[i], plus((0.0, 0.0, 0.0), both, 0.5 * dt), turn[i])
+        write(rate, i, plus(plus(read(rate, i), k, 0.5 * dt), m, 0.5 * dt))

@@ -1,96 +1,128 @@
-"""Vectors of three and rotations, compiled by numba: products, exponential, logarithm."""
+"""Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is allocated."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
-import numpy as np
-from numba import njit
-from numpy.typing import NDArray
+from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.tree import Floats
 
-Floats = NDArray[np.float64]
-
-
-@njit(cache=True)
-def cross(a: Floats, b: Floats) -> Floats:
-    """Vector product of two vectors, (3,)."""
-    out = np.empty(3)
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
-    return out
+Vector = tuple[float, float, float]
 
 
-@njit(cache=True)
-def rotate(matrix: Floats, vector: Floats) -> Floats:
-    """Matrix (3, 3) times vector (3,)."""
-    out = np.empty(3)
-    for k in range(3):
-        out[k] = (
-            matrix[k, 0] * vector[0] + matrix[k, 1] * vector[1] + matrix[k, 2] * vector[2]
-        )
-    return out
+@kernel
+def read(array: Floats, i: int) -> Vector:
+    """Row i of an array (n, 3)."""
+    return array[i, 0], array[i, 1], array[i, 2]
 
 
-@njit(cache=True)
-def outer_add(matrix: Floats, a: Floats, b: Floats, factor: float) -> None:
-    """Add ``factor a b^T`` to a matrix (3, 3)."""
+@kernel
+def write(array: Floats, i: int, v: Vector) -> None:
+    """Set row i of an array (n, 3)."""
+    array[i, 0], array[i, 1], array[i, 2] = v
+
+
+@kernel
+def plus(a: Vector, b: Vector, factor: float) -> Vector:
+    """Vector ``a + factor b``."""
+    return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
+
+
+@kernel
+def dot(a: Vector, b: Vector) -> float:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def cross(a: Vector, b: Vector) -> Vector:
+    """Vector product."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+@kernel
+def times(m: Floats, v: Vector) -> Vector:
+    """Matrix (3, 3) times vector."""
+    return (
+        m[0, 0] * v[0] + m[0, 1] * v[1] + m[0, 2] * v[2],
+        m[1, 0] * v[0] + m[1, 1] * v[1] + m[1, 2] * v[2],
+        m[2, 0] * v[0] + m[2, 1] * v[1] + m[2, 2] * v[2],
+    )
+
+
+@kernel
+def times_transposed(m: Floats, v: Vector) -> Vector:
+    """Transposed matrix (3, 3) times vector."""
+    return (
+        m[0, 0] * v[0] + m[1, 0] * v[1] + m[2, 0] * v[2],
+        m[0, 1] * v[0] + m[1, 1] * v[1] + m[2, 1] * v[2],
+        m[0, 2] * v[0] + m[1, 2] * v[1] + m[2, 2] * v[2],
+    )
+
+
+@kernel
+def product(a: Floats, b: Floats, out: Floats) -> None:
+    """Product of two matrices (3, 3)."""
     for i in range(3):
         for j in range(3):
-            matrix[i, j] += factor * a[i] * b[j]
+            out[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
 
 
-@njit(cache=True)
-def inverse_3(matrix: Floats, out: Floats) -> None:
+@kernel
+def cross_columns(v: Vector, m: Floats, out: Floats) -> None:
+    """Vector product of v with each column of a matrix (3, 3)."""
+    for j in range(3):
+        out[0, j] = v[1] * m[2, j] - v[2] * m[1, j]
+        out[1, j] = v[2] * m[0, j] - v[0] * m[2, j]
+        out[2, j] = v[0] * m[1, j] - v[1] * m[0, j]
+
+
+@kernel
+def inverse(m: Floats, out: Floats) -> None:
     """Inverse of a matrix (3, 3) by its adjugate."""
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        for m in range(3):
-            p, q = (m + 1) % 3, (m + 2) % 3
-            out[m, i] = matrix[j, p] * matrix[k, q] - matrix[j, q] * matrix[k, p]
-    det = matrix[0, 0] * out[0, 0] + matrix[0, 1] * out[1, 0] + matrix[0, 2] * out[2, 0]
-    out /= det
+        for r in range(3):
+            p, q = (r + 1) % 3, (r + 2) % 3
+            out[r, i] = m[j, p] * m[k, q] - m[j, q] * m[k, p]
+    scale = 1.0 / (m[0, 0] * out[0, 0] + m[0, 1] * out[1, 0] + m[0, 2] * out[2, 0])
+    for i in range(3):
+        for j in range(3):
+            out[i, j] *= scale
 
 
-@njit(cache=True)
-def multiply(p: Floats, q: Floats, out: Floats) -> None:
-    """Product of two quaternions wxyz, (4,), brought back to unit length."""
-    w = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3]
-    x = p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2]
-    y = p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1]
-    z = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]
-    norm = math.sqrt(w * w + x * x + y * y + z * z)
-    out[0], out[1], out[2], out[3] = w / norm, x / norm, y / norm, z / norm
-
-
-@njit(cache=True)
-def exponential(v: Floats) -> Floats:
-    """Quaternion wxyz of a rotation vector (3,) in [rad]."""
-    square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+@kernel
+def turn_on(q: Any, v: Vector, out: Any) -> None:
+    """Turn a quaternion wxyz (4,) on by a rotation vector in its own axes in [rad], to unit length."""
+    square = dot(v, v)
     half = 0.5 * math.sqrt(square)
     factor = 0.5 - square / 48.0 if square < 1e-6 else math.sin(half) / (2.0 * half)
-    out = np.empty(4)
-    out[0] = math.cos(half)
-    for k in range(3):
-        out[1 + k] = factor * v[k]
-    return out
+    pw, px, py, pz = math.cos(half), factor * v[0], factor * v[1], factor * v[2]
+    w = q[0] * pw - q[1] * px - q[2] * py - q[3] * pz
+    x = q[0] * px + q[1] * pw + q[2] * pz - q[3] * py
+    y = q[0] * py - q[1] * pz + q[2] * pw + q[3] * px
+    z = q[0] * pz + q[1] * py - q[2] * px + q[3] * pw
+    scale = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
+    out[0], out[1], out[2], out[3] = scale * w, scale * x, scale * y, scale * z
 
 
-@njit(cache=True)
-def logarithm(q: Floats) -> Floats:
-    """Rotation vector (3,) in [rad] of a quaternion wxyz; the short way round."""
+@kernel
+def logarithm(q: Any) -> Vector:
+    """Rotation vector in [rad] of a quaternion wxyz (4,); the short way round."""
     sine = math.sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     sign = -1.0 if q[0] < 0.0 else 1.0
     factor = 2.0 * sign if sine < 1e-9 else 2.0 * math.atan2(sine, sign * q[0]) / sine * sign
-    out = np.empty(3)
-    for k in range(3):
-        out[k] = factor * q[1 + k]
-    return out
+    return factor * q[1], factor * q[2], factor * q[3]
 
 
-@njit(cache=True)
-def matrix_of(q: Floats, out: Floats) -> None:
-    """Rotation matrix (3, 3) of a quaternion wxyz."""
+@kernel
+def matrix_of(q: Any, out: Floats) -> None:
+    """Rotation matrix (3, 3) of a quaternion wxyz (4,)."""
     w, x, y, z = q[0], q[1], q[2], q[3]
     out[0, 0], out[0, 1] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z)
     out[0, 2], out[1, 0] = 2 * (x * z + w * y), 2 * (x * y + w * z)
@@ -99,19 +131,36 @@ def matrix_of(q: Floats, out: Floats) -> None:
     out[2, 2] = 1 - 2 * (x * x + y * y)
 
 
-@njit(cache=True)
-def conjugate_torque(v: Floats, gradient: Floats) -> Floats:
+@kernel
+def twist_of(q: Any, t: Vector) -> tuple[float, Vector]:
     """
-    Torque of a spring whose energy has this gradient (3,) by the rotation vector v (3,), body axes.
+    Angle in [rad] that a quaternion wxyz (4,) turns about an axis, and its gradient in body axes.
 
-    That is ``-J^-T gradient`` with J the right Jacobian of the exponential map (Chirikjian 2012, 10.86).
+    Swing and twist: the rotation is one about the axis and one across it (Dobrowolski 2015).
 
     """
-    square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    w, v = q[0], (q[1], q[2], q[3])
+    about = dot(v, t)
+    scale = 1.0 / (w * w + about * about)
+    gradient = plus((0.0, 0.0, 0.0), t, w * w * scale)
+    gradient = plus(plus(gradient, cross(t, v), w * scale), v, about * scale)
+    sign = -1.0 if w < 0.0 else 1.0
+    return 2.0 * math.atan2(sign * about, sign * w), gradient
+
+
+@kernel
+def held_torque(v: Vector, torque: Vector) -> Vector:
+    """
+    Torque in body axes whose work over rotation vectors v is that of a constant one.
+
+    That is ``J^-T torque`` with J the right Jacobian of the exponential map (Chirikjian 2012, 10.86).
+
+    """
+    square = dot(v, v)
     if square < 1e-4:
         second = 1.0 / 12.0 + square / 720.0
     else:
         angle = math.sqrt(square)
         second = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / square
-    once = cross(v, gradient)
-    return -gradient + 0.5 * once - second * cross(v, once)
+    once = cross(v, torque)
+    return plus(plus(torque, once, -0.5), cross(v, once), second)
