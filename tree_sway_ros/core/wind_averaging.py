@@ -19,7 +19,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway_ros.core.valid_range import within
+from tree_sway_ros.core.sensor_timing import SensorTiming
+from tree_sway_ros.core.valid_range import three_numbers, within
 from tree_sway_ros.core.wind_curve import Vector, WindCurve
 from tree_sway_ros.errors import ParameterError
 
@@ -31,10 +32,6 @@ CLOCK_RESET = 1.0
 """Backward step in [s] that is a clock set back, not a sample out of order or a look at the past."""
 
 _CALM: Vector = (0.0, 0.0, 0.0)
-_LIVE_PERIODS = 2.0  # age up to which a sensor counts as live
-_STALE_PERIODS = 3.0  # gap from which it is a dropout
-_PERIOD_GAIN = 0.1  # weight of a new interval in the estimate of the period
-_LATENESS_GAIN = 0.02  # how fast the allowance for late samples is taken back
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
 
 
@@ -92,15 +89,14 @@ class WindAverage:
         """Forget every sample and every step; keep the count of the refused ones."""
         self._curve.clear()
         self._fade.clear()
-        self._period: float | None = None
-        self._lateness = 0.0
+        self._timing = SensorTiming(self._timeout)
         self._newest: float | None = None  # time of the newest sample
         self._passed: float | None = None  # end of the latest step: before it nothing may change
 
     @property
     def period(self) -> float | None:
         """Estimated period of the sensor in [s]; None before the second sample."""
-        return self._period
+        return self._timing.period
 
     def add(self, time: float, vector: ArrayLike) -> bool:
         """
@@ -118,19 +114,28 @@ class WindAverage:
         bool
             False if it was refused, and counted: not finite, or not after the one before.
 
+        Raises
+        ------
+        ParameterError
+            If the sample is not three numbers.
+
         """
-        x, y, z = np.asarray(vector, dtype=np.float64).tolist()
+        x, y, z = three_numbers("wind", vector)
         if not (math.isfinite(time) and math.isfinite(x + y + z)):
             self.refused += 1
             return False
-        if self._newest is not None and time <= self._newest:
-            if time > self._newest - CLOCK_RESET:
-                self.refused += 1
-                return False
+        if self._newest is None:
+            gap = math.inf
+        elif time > self._newest:
+            self._clamp_clock(time - (self._timing.period or self._timeout))
+            gap = time - self._newest
+        elif time < self._newest - CLOCK_RESET:
             self._set_clock_back(time)
-        self._clamp_clock(time)
-        gap = math.inf if self._newest is None else time - self._newest
-        if self._is_dropout(gap):
+            gap = math.inf
+        else:
+            self.refused += 1
+            return False
+        if self._timing.is_dropout(gap):
             self._resume(time, (x, y, z), gap)
         else:
             self._go_on(time, (x, y, z), gap)
@@ -179,9 +184,7 @@ class WindAverage:
         """
         if self._newest is None:
             return "none"
-        age = time - self._newest
-        live = self._timeout if self._period is None else _LIVE_PERIODS * self._period
-        if age <= live + self._lateness:
+        if time - self._newest <= self._timing.longest_live + self._timing.lateness:
             return "live"
         overdue = time - self._decay_start
         if overdue <= 0.0:
@@ -189,29 +192,22 @@ class WindAverage:
         return "decaying" if overdue <= _STALE_DECAYS * self._decay else "stale"
 
     @property
-    def _limit(self) -> float:
-        return max(self._timeout, _STALE_PERIODS * (self._period or 0.0))
-
-    @property
     def _decay_start(self) -> float:
-        return (self._newest or 0.0) + self._lateness + self._limit
-
-    def _is_dropout(self, gap: float) -> bool:
-        return gap > (self._limit if self._period is None else _STALE_PERIODS * self._period)
+        return (self._newest or 0.0) + self._timing.lateness + self._timing.longest_hold
 
     def _go_on(self, time: float, value: Vector, gap: float) -> None:
         """Draw the curve on to a new sample."""
         passed = -math.inf if self._passed is None else self._passed
+        timing = self._timing
+        is_second = timing.period is None
+        timing.note_interval(gap)
         if not self._is_linear:
-            self._estimate_period(gap)
             self._curve.append(max(time, passed), value)
             return
-        if self._period is None:
-            self._curve.append(time, self._curve.last)  # the first sample holds until the second
-        self._estimate_period(gap)
-        late = max(0.0, passed - time)
-        self._lateness = max(late, self._lateness + _LATENESS_GAIN * (late - self._lateness))
-        knot = time + (self._period or 0.0) + self._lateness
+        if is_second:
+            self._curve.append(time, self._curve.last)  # the first one holds until the second
+        timing.note_lateness(max(0.0, passed - time))
+        knot = time + (timing.period or 0.0) + timing.lateness
         if self._curve.end < passed:
             self._curve.append(passed, self._curve.last)
         elif self._curve.end >= knot:
@@ -223,7 +219,7 @@ class WindAverage:
         since = time if self._passed is None else self._passed
         before = _CALM if self._passed is None else self._mean(since, since)
         duration = min(gap, self._blend)
-        self._estimate_period(gap)
+        self._timing.note_interval(gap)
         self._curve.clear()
         self._curve.append(since, value)
         self._fade.clear()
@@ -231,15 +227,6 @@ class WindAverage:
             x, y, z = (b - v for b, v in zip(before, value, strict=True))
             self._fade.append(since, (x, y, z))
             self._fade.append(since + duration, _CALM)
-
-    def _estimate_period(self, gap: float) -> None:
-        if math.isinf(gap):
-            return
-        if self._period is None:
-            self._period = gap
-        else:
-            believed = min(max(gap, self._period / 3.0), self._period * 3.0)
-            self._period += _PERIOD_GAIN * (believed - self._period)
 
     def _mean(self, start: float, end: float) -> Vector:
         if self._newest is None:
@@ -270,11 +257,10 @@ class WindAverage:
     def _set_clock_back(self, time: float) -> None:
         """Begin anew at a time, from the wind there is."""
         held = _CALM if self._passed is None else self._mean(self._passed, self._passed)
-        had_wind = self._newest is not None
-        period = self._period
+        had_wind, period = self._newest is not None, self._timing.period
         self.reset()
         if had_wind:
-            self._period = period
+            self._timing.period = period
             self._newest = time
             self._curve.append(time, held)
         self._passed = time
@@ -285,7 +271,7 @@ class WindAverage:
             return
         now = self._passed if self._newest is None else max(self._passed, self._newest)
         jump = time - now
-        if jump > self._limit:
+        if jump > self._timing.longest_hold:
             self._curve.shift(jump)
             self._fade.shift(jump)
             self._passed += jump

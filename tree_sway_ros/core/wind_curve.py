@@ -47,9 +47,12 @@ class WindCurve:
         self._knots.clear()
 
     def append(self, time: float, value: Vector) -> None:
-        """Add a knot at the end; one at the same time as the last or before it is not added."""
-        if not self._knots or time > self._knots[-1][0]:
-            self._knots.append((time, value))
+        """Add a knot at the end; it replaces a last one at the same time, and is dropped before."""
+        if self._knots and time <= self._knots[-1][0]:
+            if time < self._knots[-1][0]:
+                return
+            self._knots.pop()
+        self._knots.append((time, value))
 
     def cut(self, time: float) -> None:
         """Drop what comes after a time in [s], and be level from there: the past stays as it was."""

@@ -21,8 +21,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.valid_range import within
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.core.valid_range import three_numbers, within
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics 0x8000,
 # which is 327.68 where the count is .01 m/s.
@@ -194,10 +193,7 @@ class WindGate:
             If the sample is not three numbers.
 
         """
-        try:
-            x, y, z = (float(c) for c in vector)  # type: ignore[union-attr]
-        except (TypeError, ValueError, OverflowError):
-            raise ParameterError(f"{vector!r} is not a wind of three numbers") from None
+        x, y, z = three_numbers("wind", vector)
         is_repeated = stamp == self._stamp and (x, y, z) == self._seen
         time = self._time_of(stamp, stamp if arrival is None else arrival)
         if is_repeated:

@@ -1,0 +1,60 @@
+"""How often a sensor speaks and how late it is heard, estimated from its samples."""
+
+from __future__ import annotations
+
+import math
+
+_LIVE_PERIODS = 2.0  # age up to which a sensor counts as live
+_DROPOUT_PERIODS = 3.0  # gap from which it is a dropout
+_GAIN = 0.1  # weight of a new interval
+_LONGEST_BELIEVED = 3.0  # interval over the period: a longer one may be a dropout
+_SHORTEST_BELIEVED = 1 / 3  # a shorter one may be a burst of delayed samples
+_SHRINK = 0.6  # what such a short one makes of the period; a wrong guess must not last
+_LATENESS_GAIN = 0.02  # how fast the allowance for late samples is taken back
+
+
+class SensorTiming:
+    """
+    Period and lateness of a sensor.
+
+    Parameters
+    ----------
+    timeout
+        Age in [s] up to which a sample holds; at least three periods.
+
+    """
+
+    def __init__(self, timeout: float) -> None:
+        """Start without an interval."""
+        self._timeout = timeout
+        self.period: float | None = None
+        self.lateness = 0.0
+
+    @property
+    def longest_hold(self) -> float:
+        """Age in [s] up to which a sample holds."""
+        return max(self._timeout, _DROPOUT_PERIODS * (self.period or 0.0))
+
+    @property
+    def longest_live(self) -> float:
+        """Age in [s] up to which the sensor is heard as it should be."""
+        return self._timeout if self.period is None else _LIVE_PERIODS * self.period
+
+    def is_dropout(self, gap: float) -> bool:
+        """Return whether samples are missing in an interval between two in [s]."""
+        return gap > (self._timeout if self.period is None else _DROPOUT_PERIODS * self.period)
+
+    def note_interval(self, gap: float) -> None:
+        """Take the interval between two samples in [s] into the period."""
+        if math.isinf(gap):
+            return
+        if self.period is None:
+            self.period = gap
+        elif gap < _SHORTEST_BELIEVED * self.period:
+            self.period *= _SHRINK
+        else:
+            self.period += _GAIN * (min(gap, _LONGEST_BELIEVED * self.period) - self.period)
+
+    def note_lateness(self, late: float) -> None:
+        """Take the time in [s] by which a sample came too late: at once up, slowly down."""
+        self.lateness = max(late, self.lateness + _LATENESS_GAIN * (late - self.lateness))
