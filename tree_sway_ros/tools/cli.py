@@ -63,6 +63,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return int(module.run(arguments))
     except TreeSwayError as error:
         return _fail(command, str(error))
+    except ModuleNotFoundError as error:
+        if str(error.name).startswith("tree_sway_ros"):
+            raise
+        return _fail(command, f"{error}; install the package with its dependencies (README)")
     except BrokenPipeError:
         # Whoever read our output has gone; keep Python from complaining when it flushes.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

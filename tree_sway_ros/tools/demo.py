@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import argparse
 import math
+import signal
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -22,7 +25,7 @@ from tree_sway_ros.ros.composition import Composition
 from tree_sway_ros.ros.parameters import Value
 from tree_sway_ros.tools.stream_monitor import StreamMonitor, StreamRecord
 
-_LONGEST_START = 30.0
+_LONGEST_START, _SETTLING = 30.0, 0.5
 _LIVE_PERIOD, _LOG_PERIOD = 0.2, 5.0
 _WINDOW = 2.0
 _COMPASS = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
@@ -46,26 +49,49 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
+    begin = math.inf
     seconds = math.inf if arguments.seconds is None else arguments.seconds
     if not seconds > 0.0:
         raise ParameterError(f"{seconds:g} s is no time to run", where="--seconds", cure="give more than 0")
     tree = open_tree(arguments.tree).tree
     print(f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)", flush=True)
     try:
-        with Composition(_nodes(arguments)) as nodes:
+        with interrupted_once(), Composition(_nodes(arguments)) as nodes:
             monitor = StreamMonitor(nodes.context, tree)
             try:
-                begin = _first_poses(nodes, monitor)
-                _watch(nodes, monitor, begin + seconds)
+                begin = _settled(nodes, monitor)
+                _watch(nodes, monitor, begin, begin + seconds)
             except KeyboardInterrupt:
                 print()
             finally:
                 monitor.close()
-            record = monitor.record
     except KeyboardInterrupt:
         return 0
-    print(summary(record, arguments.rate))
+    print(summary(monitor.record.since(begin), arguments.rate))
     return 0
+
+
+@contextmanager
+def interrupted_once() -> Iterator[None]:
+    """
+    Turn the first Ctrl-C or SIGTERM into KeyboardInterrupt and be deaf to others.
+
+    A second one, while threads and middleware close, would end the process halfway; so it stays
+    deaf until the process ends.
+
+    """
+    numbers = (signal.SIGINT, signal.SIGTERM)
+
+    def interrupt(_number: int, _frame: object) -> None:
+        for number in numbers:
+            signal.signal(number, signal.SIG_IGN)
+        raise KeyboardInterrupt
+
+    before = [signal.signal(number, interrupt) for number in numbers]
+    yield
+    for number, handler in zip(numbers, before, strict=True):
+        if signal.getsignal(number) is interrupt:
+            signal.signal(number, handler)
 
 
 def size_of(tree: Tree) -> str:
@@ -80,8 +106,8 @@ def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
     return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}
 
 
-def _first_poses(nodes: Composition, monitor: StreamMonitor) -> float:
-    """Wait for the stream and return when it began."""
+def _settled(nodes: Composition, monitor: StreamMonitor) -> float:
+    """Wait until poses come and what had queued up at the start is through; return the time then."""
     deadline = time.monotonic() + _LONGEST_START
     while not monitor.record.arrival:
         monitor.wait(0.1)
@@ -91,14 +117,14 @@ def _first_poses(nodes: Composition, monitor: StreamMonitor) -> float:
                 f"no poses within {_LONGEST_START:g} s",
                 cure="check that multicast works on this machine, or set ROS_LOCALHOST_ONLY=1",
             )
-    return monitor.record.arrival[0]
+    monitor.wait(_SETTLING)
+    return time.time()
 
 
-def _watch(nodes: Composition, monitor: StreamMonitor, end: float) -> None:
+def _watch(nodes: Composition, monitor: StreamMonitor, begin: float, end: float) -> None:
     """Receive until a time, with a line that follows what comes."""
     is_live = sys.stdout.isatty()
     period = _LIVE_PERIOD if is_live else _LOG_PERIOD
-    begin = monitor.record.arrival[0]
     while not nodes.is_done and (left := end - time.time()) > 0.0:
         monitor.wait(min(period, left))
         nodes.check()
