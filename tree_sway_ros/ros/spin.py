@@ -18,6 +18,7 @@ from typing import Any
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
 
 _CHECK_PERIOD = 0.2
+_SWITCH_INTERVAL = 0.0005
 
 
 def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
@@ -75,6 +76,8 @@ def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
         If the domain or the arguments cannot be used.
 
     """
+    # The paced threads must not wait 5 ms for an executor that holds the interpreter.
+    sys.setswitchinterval(_SWITCH_INTERVAL)
     domain = os.environ.get("ROS_DOMAIN_ID", "")
     if domain and not (domain.isdecimal() and int(domain) <= 232):
         raise TransportError(

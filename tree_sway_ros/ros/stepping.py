@@ -91,17 +91,16 @@ class Stepper:
         """
         while self._requests:
             self._requests.popleft()()
-        period = self._period * 1e-9
-        n_steps = 1 if self._cost > 0.5 * period else periods
-        dt = period * periods / n_steps
-        end = self._seconds(time_ns) - delay
-        for step in range(n_steps - 1, -1, -1):
-            wind = self._mean_wind(end - step * dt, dt)
+        n_steps = 1 if self._cost > 0.5e-9 * self._period else periods
+        step_ns = self._period * periods // n_steps  # whole numbers: the same dt at any lateness
+        dt = step_ns * 1e-9
+        for later in range(n_steps - 1, -1, -1):
+            self._felt = self._seconds(time_ns - later * step_ns) - delay
+            wind = self._mean_wind(self._felt, dt)
             if not self.is_paused:
                 begin = time.perf_counter()
                 self.simulator.step(wind, dt)
                 self._cost += _NEWEST * (time.perf_counter() - begin - self._cost)
-        self._felt = end
 
     @property
     def wind_state(self) -> str:

@@ -1,0 +1,19 @@
+import os
+
+import pytest
+
+# An int in a float field can end the process: have every field checked.
+os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
+os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+
+
+@pytest.fixture
+def context():
+    """A ROS context in a domain of its own."""
+    rclpy = pytest.importorskip("rclpy")
+    from rclpy.context import Context
+
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=1 + os.getpid() % 99)
+    yield context
+    context.try_shutdown()
