@@ -24,6 +24,18 @@ def kernel(function: _F) -> _F:
     return cast(_F, njit(cache=True, error_model="numpy", nogil=True)(function))
 
 
+def fused(function: _F) -> _F:
+    """
+    Compile like `kernel`, but let a product and a sum be one instruction and sums of a loop run side by side.
+
+    For what is placed and summed, where the last bit does not matter; the result is still the same bit for bit
+    on one machine. Not for code that counts on rounding.
+
+    """
+    flags = {"contract", "reassoc", "nsz"}
+    return cast(_F, njit(cache=True, error_model="numpy", nogil=True, fastmath=flags)(function))
+
+
 def like(value: float, model: Any) -> Any:
     """
     Return a constant in the precision of a model number, so that a kernel serves float32 and float64.

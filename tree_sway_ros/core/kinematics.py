@@ -19,9 +19,15 @@ import numpy as np
 
 from tree_sway_ros.core.branch_beam import SlopeShape
 from tree_sway_ros.core.branch_model import BranchModel
-from tree_sway_ros.core.kernel import kernel
-from tree_sway_ros.core.layout import BRANCH, SEGMENT
-from tree_sway_ros.core.rotation import product, quaternion, quaternions_from_x, rotated
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.layout import SEGMENT
+from tree_sway_ros.core.rotation import (
+    half_angle,
+    product,
+    quaternion,
+    quaternions_from_x,
+    rotated,
+)
 from tree_sway_ros.core.tree import Floats, Tree
 
 _BLEND_FROM = np.deg2rad(30.0) ** 2
@@ -39,16 +45,16 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
 
     """
     records = np.zeros(tree.n_segments, dtype=SEGMENT)
-    step = tree.end - tree.start
-    records["rest"] = quaternions_from_x(step / tree.length[:, None])
+    records["length"] = tree.length
+    records["rest"] = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
     for branch, model in enumerate(models):
         here = tree.segments_of(branch)
-        step[here.start : here.stop - 1] = np.diff(tree.start[here], axis=0)
+        records["gap"][here.start : here.stop - 1] = tree.start[here][1:] - tree.end[here][:-1]
         for way in model.coordinates[::2]:
             column = 2 if way.is_twist else int(way is not model.coordinates[0])
             records["slope"][here, column] = way.shape.segment_slope
         records["tip_slope"][here] = _tip_load_slope(model)
-    records["step"] = step
+    records["has_gap"] = np.abs(records["gap"]).max(axis=1) > 1e-12
     return records
 
 
@@ -89,7 +95,7 @@ def _tip_load_slope(model: BranchModel) -> Floats:
     return slope * (first.segment_slope @ model.beam.length) / model.beam.node[-1]
 
 
-@kernel
+@fused
 def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, out: Floats) -> None:
     """
     Place every segment.
@@ -116,35 +122,93 @@ def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, ou
         base = work[b].base
         base[0], base[1], base[2], base[3] = dw, dx, dy, dz
         i, k = branch.coordinate, branch.n_coordinates
-        axis = branch.axis
         t = x[i] * x[i] + x[i + 1] * x[i + 1]
-        blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
-        stretch = 1.0 + t * (branch.skew + blend * (branch.tip_skew - branch.skew))
-        ux, uy = x[i] * stretch, x[i + 1] * stretch
-        r0 = ux * axis[0, 0] + uy * axis[1, 0]
-        r1 = ux * axis[0, 1] + uy * axis[1, 1]
-        r2 = ux * axis[0, 2] + uy * axis[1, 2]
-        for j in range(branch.first, branch.end):
-            segment = segments[j]
-            slope = segment.slope[0] + blend * (segment.tip_slope - segment.slope[0])
-            tx, ty, tz = slope * r0, slope * r1, slope * r2
-            if k > 2:
-                ux, uy = segment.slope[1] * x[i + 2], segment.slope[1] * x[i + 3]
-                spin = segment.slope[2] * x[i + 4] if k > 4 else 0.0
-                tx += ux * axis[0, 0] + uy * axis[1, 0] + spin * axis[4, 0]
-                ty += ux * axis[0, 1] + uy * axis[1, 1] + spin * axis[4, 1]
-                tz += ux * axis[0, 2] + uy * axis[1, 2] + spin * axis[4, 2]
-            qw, qx, qy, qz = quaternion(tx, ty, tz)
-            qw, qx, qy, qz = product(dw, dx, dy, dz, qw, qx, qy, qz)
-            out[j, 0], out[j, 1], out[j, 2] = px, py, pz
-            step, rest = segment.step, segment.rest
-            sx, sy, sz = rotated(qw, qx, qy, qz, step[0], step[1], step[2])
-            px, py, pz = px + sx, py + sy, pz + sz
-            qw, qx, qy, qz = product(qw, qx, qy, qz, rest[0], rest[1], rest[2], rest[3])
-            out[j, 3], out[j, 4], out[j, 5], out[j, 6] = qx, qy, qz, qw
+        if k == 2 and t <= _BLEND_FROM:
+            _follow_in_plane(branch, segments, x[i], x[i + 1], dw, dx, dy, dz, px, py, pz, out)
+        else:
+            _follow(branch, segments, x, dw, dx, dy, dz, px, py, pz, out)
 
 
-@kernel
+@fused
+def _follow_in_plane(
+    branch: Any, segments: Any, x: float, y: float,
+    dw: float, dx: float, dy: float, dz: float, px: float, py: float, pz: float, out: Floats,
+) -> None:  # fmt: skip
+    """
+    Place the segments of a branch that bends about one axis.
+
+    With h half the branch's rotation vector and D the base, a segment of slope psi is turned by
+    ``cos(psi |h|) D + psi sinc(psi |h|) (D h)``: the second product is the same for all segments.
+
+    """
+    axis = branch.axis
+    half = 0.5 * (1.0 + (x * x + y * y) * branch.skew)
+    x, y = half * x, half * y
+    hx = x * axis[0, 0] + y * axis[1, 0]
+    hy = x * axis[0, 1] + y * axis[1, 1]
+    hz = x * axis[0, 2] + y * axis[1, 2]
+    square = hx * hx + hy * hy + hz * hz
+    ew, ex, ey, ez = product(dw, dx, dy, dz, 0.0, hx, hy, hz)
+    for j in range(branch.first, branch.end):
+        slope = segments[j].slope[0]
+        c, s = half_angle(slope * slope * square)
+        s *= slope
+        px, py, pz = _put(
+            segments[j], c * dw + s * ew, c * dx + s * ex, c * dy + s * ey, c * dz + s * ez,
+            px, py, pz, out, j,
+        )  # fmt: skip
+
+
+@fused
+def _follow(
+    branch: Any, segments: Any, x: Floats,
+    dw: float, dx: float, dy: float, dz: float, px: float, py: float, pz: float, out: Floats,
+) -> None:  # fmt: skip
+    """Place the segments of a branch that bends far, has a second shape or twists."""
+    i, k, axis = branch.coordinate, branch.n_coordinates, branch.axis
+    t = x[i] * x[i] + x[i + 1] * x[i + 1]
+    blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
+    stretch = 1.0 + t * (branch.skew + blend * (branch.tip_skew - branch.skew))
+    for j in range(branch.first, branch.end):
+        segment = segments[j]
+        slope = stretch * (segment.slope[0] + blend * (segment.tip_slope - segment.slope[0]))
+        rx = ry = rz = 0.0
+        for c in range(k):
+            if c == 2:
+                slope = segment.slope[1]
+            elif c == 4:
+                slope = segment.slope[2]
+            angle = slope * x[i + c]
+            rx += angle * axis[c, 0]
+            ry += angle * axis[c, 1]
+            rz += angle * axis[c, 2]
+        qw, qx, qy, qz = quaternion(rx, ry, rz)
+        qw, qx, qy, qz = product(dw, dx, dy, dz, qw, qx, qy, qz)
+        px, py, pz = _put(segment, qw, qx, qy, qz, px, py, pz, out, j)
+
+
+@fused
+def _put(
+    segment: Any, qw: float, qx: float, qy: float, qz: float, px: float, py: float, pz: float,
+    out: Floats, j: int,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Write the pose of a segment turned by q from rest; return where the next one starts."""
+    rest = segment.rest
+    ow, ox, oy, oz = product(qw, qx, qy, qz, rest[0], rest[1], rest[2], rest[3])
+    out[j, 0], out[j, 1], out[j, 2] = px, py, pz
+    out[j, 3], out[j, 4], out[j, 5], out[j, 6] = ox, oy, oz, ow
+    length = segment.length
+    px += length * (1.0 - 2.0 * (oy * oy + oz * oz))
+    py += length * (2.0 * (ox * oy + oz * ow))
+    pz += length * (2.0 * (ox * oz - oy * ow))
+    if segment.has_gap:
+        gap = segment.gap
+        gx, gy, gz = rotated(qw, qx, qy, qz, gap[0], gap[1], gap[2])
+        px, py, pz = px + gx, py + gy, pz + gz
+    return px, py, pz
+
+
+@fused
 def _seat(
     branches: Any, branch: Any, work: Any, x: Floats, out: Floats
 ) -> tuple[float, float, float, float, float, float, float]:
@@ -167,6 +231,3 @@ def _seat(
         out[s, 6], out[s, 3], out[s, 4], out[s, 5], branch.offset[0], branch.offset[1], branch.offset[2]
     )
     return dw, dx, dy, dz, out[s, 0] + ox, out[s, 1] + oy, out[s, 2] + oz
-
-
-__all__ = ["BRANCH", "SEGMENT", "fill_branch_geometry", "place", "segment_records"]

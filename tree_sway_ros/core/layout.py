@@ -47,7 +47,9 @@ SEGMENT = np.dtype(
     [
         ("slope", "f8", (3,)),  # of the first shape, the second and the twist
         ("tip_slope", "f8"),  # of the shape under a load at the tip
-        ("step", "f8", (3,)),  # to the start of the next segment, at rest
+        ("length", "f8"),
+        ("has_gap", "i8"),  # whether the next segment starts elsewhere than this one ends
+        ("gap", "f8", (3,)),  # from its end to the next one's start, at rest
         ("rest", "f8", (4,)),  # orientation at rest, w x y z
     ]
 )

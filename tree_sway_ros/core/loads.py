@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.rotation import turned
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.wind_load import drag
 
 
-@kernel
+@fused
 def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
     """
     Hand rotation and velocity of every parent to the bases of its children.
@@ -46,7 +46,7 @@ def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
                 here.rotation[k] += twist[c, 3 + k] * angle
 
 
-@kernel
+@fused
 def blow(
     branches: Any, work: Any, x: Floats, v: Floats, wx: float, wy: float, wz: float, per_speed_squared: float
 ) -> None:
@@ -93,7 +93,7 @@ def blow(
         force[0], force[1], force[2] = turned(tx, ty, tz, fx, fy, fz)
 
 
-@kernel
+@fused
 def gather(branches: Any, work: Any) -> None:
     """Add up, from the twigs to the stem, force and moment about the root of all that each branch carries."""
     for b in range(len(branches)):
@@ -109,8 +109,8 @@ def gather(branches: Any, work: Any) -> None:
             below[k] += wrench[k]
 
 
-@kernel
-def generalised(branches: Any, work: Any, carries: bool, out: Floats) -> None:
+@fused
+def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: Floats) -> None:
     """
     Turn forces into moments on the key rotations.
 
@@ -122,51 +122,30 @@ def generalised(branches: Any, work: Any, carries: bool, out: Floats) -> None:
         Records of `BRANCH` and `WORK`, (b,), after `blow` and, if anything is carried, `gather`.
     carries
         Whether what a branch carries pushes on it.
-    out
-        Moments in [N m], (N,), written.
+    moment
+        Moments on the coordinates in [N m], (N,), written.
+    pull
+        Force along each chord times its lever in [N m], (b,), written.
 
     """
     for b in range(len(branches)):
         branch, here = branches[b], work[b]
-        turn, force = here.rotation, here.force
+        turn, force, chord = here.rotation, here.force, branch.frame
         fx, fy, fz = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
+        i = branch.coordinate
         for c in range(branch.n_coordinates):
-            push = branch.push[c]
-            out[branch.coordinate + c] = push[0] * fx + push[1] * fy + push[2] * fz
+            moment[i + c] = branch.push[c, 0] * fx + branch.push[c, 1] * fy + branch.push[c, 2] * fz
+        pull[b] = branch.lever * (chord[0, 0] * fx + chord[0, 1] * fy + chord[0, 2] * fz)
     if not carries:
         return
     for b in range(1, len(branches)):
         branch, wrench = branches[b], work[b].wrench
         parent = branches[branch.parent]
+        i, chord = parent.coordinate, parent.frame
         for c in range(parent.n_coordinates):
-            moment = 0.0
+            total = 0.0
             for k in range(6):
-                moment += branch.twist[c, k] * wrench[k]
-            out[parent.coordinate + c] += moment
-
-
-@kernel
-def along_chord(branches: Any, work: Any, carries: bool, out: Floats) -> None:
-    """
-    Find the pull along each chord, times its lever.
-
-    Parameters
-    ----------
-    branches, work, carries
-        As for `generalised`.
-    out
-        Moments in [N m], (b,), written.
-
-    """
-    for b in range(len(branches)):
-        branch, here = branches[b], work[b]
-        turn, force, chord = here.rotation, here.force, branch.frame[0]
-        fx, fy, fz = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
-        out[b] = branch.lever * (chord[0] * fx + chord[1] * fy + chord[2] * fz)
-    if not carries:
-        return
-    for b in range(1, len(branches)):
-        branch, wrench = branches[b], work[b].wrench
-        chord = branches[branch.parent].frame[0]
-        pull = chord[0] * wrench[0] + chord[1] * wrench[1] + chord[2] * wrench[2]
-        out[branch.parent] += branch.axial_lever * pull
+                total += branch.twist[c, k] * wrench[k]
+            moment[i + c] += total
+        along = chord[0, 0] * wrench[0] + chord[0, 1] * wrench[1] + chord[0, 2] * wrench[2]
+        pull[branch.parent] += branch.axial_lever * along

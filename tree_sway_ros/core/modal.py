@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
-from tree_sway_ros.core.loads import along_chord, blow, gather, generalised, ride
+from tree_sway_ros.core.loads import blow, gather, generalised, ride
 from tree_sway_ros.core.modes import Modes
 from tree_sway_ros.core.oscillators import fill_propagator
 from tree_sway_ros.core.reduction import Reduction
@@ -58,14 +58,14 @@ class ModalBank:
         self._limit = LOAD_MAX * diagonal
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
-        self.eta, self.rate, self._rest, self._modal = np.zeros((4, m))
-        self.moment, self.middle_x, self.middle_v, self._x = np.zeros((4, n))
+        self.modal = np.zeros((6, m))
+        self.state = np.zeros((4, n))
         self._pull = np.zeros(len(branches))
         self._whole, self._half = np.zeros((2, m, 8))
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
-        one = np.ones(len(self.eta))
+        one = np.ones(len(self._stiffness))
         fill_propagator(one, self._damping, self._stiffness, dt, self._whole)
         fill_propagator(one, self._damping, self._stiffness, 0.5 * dt, self._half)
         self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
@@ -89,21 +89,22 @@ class ModalBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self.eta, self.rate, self._rest, self._modal,
-                self.moment, self.middle_x, self.middle_v, self.shapes, self._held, self._flexibility,
-                self._limit, self._whole, self._half, self._pull, wx, wy, wz, per_speed_squared,
+                self.branches, self.work, self.modal, self.state, self.shapes, self._held,
+                self._flexibility, self._limit, self._whole, self._half, self._pull,
+                wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _expand(self.shapes, self._flexibility, self.moment, self.eta, self._rest, self._x)
-        return self._x
+        _expand(self.shapes, self._flexibility, self.modal, self.state)
+        rotations: Floats = self.state[3]
+        return rotations
 
     def reset(self) -> None:
         """Go back to rest."""
-        for array in (self.eta, self.rate, self._rest, self.moment):
-            array[:] = 0.0
+        self.modal[:] = 0.0
+        self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
 
 
@@ -125,62 +126,67 @@ def _participation(branches: Any, shapes: Floats) -> Floats:
     return out
 
 
-@kernel
-def _expand(
-    shapes: Floats, flexibility: Floats, moment: Floats, eta: Floats, rest: Floats, x: Floats
-) -> None:
+@fused
+def _expand(shapes: Floats, flexibility: Floats, modal: Floats, state: Floats) -> None:
     """Modes and static rest to key rotations."""
-    m = len(eta)
+    eta, rest, moment, x = modal[0], modal[2], state[0], state[3]
     for i in range(len(x)):
         total = flexibility[i] * moment[i]
-        for k in range(m):
+        for k in range(len(eta)):
             total += shapes[i, k] * (eta[k] - rest[k])
         x[i] = total
 
 
-@kernel
+@fused
+def _to_middle(
+    modal: Floats, state: Floats, shapes: Floats, half: Floats, flexibility: Floats
+) -> None:
+    """Key rotations and rates half a step on, under the last step's load."""
+    eta, rate, rest, force, middle_eta, middle_rate = (
+        modal[0], modal[1], modal[2], modal[3], modal[4], modal[5],
+    )  # fmt: skip
+    moment, x, v = state[0], state[1], state[2]
+    for k in range(len(eta)):
+        h = half[k]
+        middle_eta[k] = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * force[k] - rest[k]
+        middle_rate[k] = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * force[k]
+    for i in range(len(x)):
+        angle, turning = flexibility[i] * moment[i], 0.0
+        for k in range(len(eta)):
+            angle += shapes[i, k] * middle_eta[k]
+            turning += shapes[i, k] * middle_rate[k]
+        x[i], v[i] = angle, turning
+
+
+@fused
 def _advance(
-    branches: Any, work: Any, eta: Floats, rate: Floats, rest: Floats, modal: Floats,
-    moment: Floats, middle_x: Floats, middle_v: Floats, shapes: Floats, held: Floats, flexibility: Floats,
-    limit: Floats, whole: Floats, half: Floats, pull: Floats,
+    branches: Any, work: Any, modal: Floats, state: Floats, shapes: Floats, held: Floats,
+    flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
-    n, m = shapes.shape
-    for i in range(n):
-        middle_x[i] = flexibility[i] * moment[i]
-        middle_v[i] = 0.0
-    for k in range(m):
-        h = half[k]
-        middle_eta = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * modal[k] - rest[k]
-        middle_rate = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * modal[k]
-        for i in range(n):
-            middle_x[i] += shapes[i, k] * middle_eta
-            middle_v[i] += shapes[i, k] * middle_rate
-    ride(branches, work, middle_x, middle_v)
-    blow(branches, work, middle_x, middle_v, wx, wy, wz, per_speed_squared)
+    _to_middle(modal, state, shapes, half, flexibility)
+    eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
+    moment, x, v = state[0], state[1], state[2]
+    ride(branches, work, x, v)
+    blow(branches, work, x, v, wx, wy, wz, per_speed_squared)
     gather(branches, work)
-    generalised(branches, work, True, moment)
-    along_chord(branches, work, True, pull)
+    generalised(branches, work, True, moment, pull)
     over = 0
     for b in range(len(branches)):
         i = branches[b].coordinate
-        moment[i], moment[i + 1] = true_force(
-            middle_x[i], middle_x[i + 1], pull[b], moment[i], moment[i + 1]
-        )
-    for i in range(n):
+        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+    for i in range(len(moment)):
         if not abs(moment[i]) <= limit[i]:
             moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
             over += 1
-    for k in range(m):
-        modal[k] = 0.0
-        rest[k] = 0.0
-    for i in range(n):
-        for k in range(m):
-            modal[k] += shapes[i, k] * moment[i]
+    force[:] = 0.0
+    rest[:] = 0.0
+    for i in range(len(moment)):
+        for k in range(len(eta)):
+            force[k] += shapes[i, k] * moment[i]
             rest[k] += held[i, k] * moment[i]
-    for k in range(m):
-        c = whole[k]
-        old = eta[k]
-        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * modal[k]
-        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * modal[k]
+    for k in range(len(eta)):
+        c, old = whole[k], eta[k]
+        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * force[k]
+        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * force[k]
     return over

@@ -11,13 +11,15 @@ import math
 
 import numpy as np
 
-from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.tree import Floats
 
 _SERIES_LIMIT = 2.25
+_COS = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(9))
+_SINC = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(9))
 
 
-@kernel
+@fused
 def half_angle(t: float) -> tuple[float, float]:
     """
     Cosine of ``sqrt(t)`` and sine over ``sqrt(t)``: by series up to 1.5 rad (error below 3e-13), exact beyond.
@@ -36,16 +38,15 @@ def half_angle(t: float) -> tuple[float, float]:
     if t > _SERIES_LIMIT:
         root = math.sqrt(t)
         return math.cos(root), math.sin(root) / root
-    cosine = 1.0 - t / 2.0 * (
-        1.0 - t / 12.0 * (1.0 - t / 30.0 * (1.0 - t / 56.0 * (1.0 - t / 90.0 * (
-            1.0 - t / 132.0 * (1.0 - t / 182.0 * (1.0 - t / 240.0)))))))
-    sinc = 1.0 - t / 6.0 * (
-        1.0 - t / 20.0 * (1.0 - t / 42.0 * (1.0 - t / 72.0 * (1.0 - t / 110.0 * (
-            1.0 - t / 156.0 * (1.0 - t / 210.0 * (1.0 - t / 272.0)))))))
+    cosine = _COS[8]
+    sinc = _SINC[8]
+    for k in range(7, -1, -1):
+        cosine = cosine * t + _COS[k]
+        sinc = sinc * t + _SINC[k]
     return cosine, sinc
 
 
-@kernel
+@fused
 def quaternion(rx: float, ry: float, rz: float) -> tuple[float, float, float, float]:
     """Return the unit quaternion of a rotation vector in [rad]."""
     hx, hy, hz = 0.5 * rx, 0.5 * ry, 0.5 * rz
@@ -53,7 +54,7 @@ def quaternion(rx: float, ry: float, rz: float) -> tuple[float, float, float, fl
     return c, s * hx, s * hy, s * hz
 
 
-@kernel
+@fused
 def product(
     aw: float, ax: float, ay: float, az: float, bw: float, bx: float, by: float, bz: float
 ) -> tuple[float, float, float, float]:
@@ -66,7 +67,7 @@ def product(
     )
 
 
-@kernel
+@fused
 def rotated(
     w: float, x: float, y: float, z: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:
@@ -81,7 +82,7 @@ def rotated(
     )
 
 
-@kernel
+@fused
 def turned(
     rx: float, ry: float, rz: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:

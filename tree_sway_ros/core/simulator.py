@@ -162,8 +162,7 @@ class SwaySimulator:
             speed = math.sqrt(wx * wx + wy * wy + wz * wz)
         if dt != self._dt:
             self._set_step(dt)
-        species = self.species
-        load = pressure(speed, species.drag_coefficient, species.drag_exponent)
+        load = pressure(speed, self.species.drag_coefficient, self.species.drag_exponent)
         held = self._bank.oscillators.advance(wx, wy, wz, load)
         if held:
             self.counts.held += held

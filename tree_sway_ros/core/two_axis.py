@@ -30,7 +30,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.kernel import kernel, like
+from tree_sway_ros.core.kernel import fused, like
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
-@kernel
+@fused
 def _series(t: float) -> tuple[float, float, float, float]:
     """Return s, c of the module's text and their tails s', c': s = -1/6 + t s', c = -1/2 + t c'."""
     s = like(1.5032424712277569e-10, t)
@@ -56,7 +56,7 @@ def _series(t: float) -> tuple[float, float, float, float]:
     return s * t - like(1.0 / 6.0, t), c * t - like(0.5, t), s, c
 
 
-@kernel
+@fused
 def true_force(
     x: float, y: float, wb: float, w1: float, w2: float
 ) -> tuple[float, float]:
@@ -85,7 +85,7 @@ def true_force(
     return w1 * inverse + x * along, w2 * inverse + y * along
 
 
-@kernel
+@fused
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
     Acceleration that the sphere itself asks for: great circles at constant speed.
@@ -114,7 +114,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     return radial * x - turn * vy, radial * y + turn * vx
 
 
-@kernel
+@fused
 def limit_load(
     wb: float, w1: float, w2: float, limit: float
 ) -> tuple[float, float, float, int]:
@@ -134,7 +134,7 @@ def limit_load(
     return wb * scale, w1 * scale, w2 * scale, 1
 
 
-@kernel
+@fused
 def moment(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     gyro_inertia: float, limit: float,
@@ -149,7 +149,7 @@ def moment(
     return mx * scale, my * scale
 
 
-@kernel
+@fused
 def step_branch(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     c0: float, c1: float, c2: float, c3: float, c4: float, c5: float, c6: float, c7: float,
@@ -186,7 +186,7 @@ def step_branch(
     return px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, held
 
 
-@kernel
+@fused
 def fill_guards(
     inertia: Floats, stiffness: Floats, dt: float, load_max: float, out: Floats
 ) -> None:
@@ -223,7 +223,7 @@ def guards(
     return out
 
 
-@kernel
+@fused
 def step_bank(state: Floats, load: Floats, coefficients: Floats, guard: Floats) -> int:
     """
     Step a bank of branches in place.

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
-from tree_sway_ros.core.loads import along_chord, blow, gather, generalised, ride
+from tree_sway_ros.core.loads import blow, gather, generalised, ride
 from tree_sway_ros.core.oscillators import fill_propagator
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.two_axis import LOAD_MAX, fill_guards, step_branch
@@ -47,7 +47,8 @@ class UncoupledBank:
         self.inertia, self.damping, self.stiffness = inertia, damping, stiffness
         self.carries = carries
         self.work = np.zeros(n, dtype=WORK)
-        self.x, self.v, self.moment, self.middle_x, self.middle_v = np.zeros((5, 2 * n))
+        self.state = np.zeros((5, 2 * n))
+        self.x, self.v, self.moment, _, _ = self.state
         self._whole, self._half = np.zeros((2, n, 8))
         self._guard, self._pull = np.zeros((n, 3)), np.zeros(n)
 
@@ -78,9 +79,8 @@ class UncoupledBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self.x, self.v, self.moment, self.middle_x, self.middle_v,
-                self._whole, self._half, self._guard, self._pull, self.carries,
-                wx, wy, wz, per_speed_squared,
+                self.branches, self.work, self.state, self._whole, self._half, self._guard, self._pull,
+                self.carries, wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
 
@@ -90,17 +90,16 @@ class UncoupledBank:
 
     def reset(self) -> None:
         """Go back to rest."""
-        for array in (self.x, self.v, self.moment, self.middle_x, self.middle_v):
-            array[:] = 0.0
+        self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
 
 
-@kernel
+@fused
 def _advance(
-    branches: Any, work: Any, x: Floats, v: Floats, moment: Floats, middle_x: Floats, middle_v: Floats,
-    whole: Floats, half: Floats, guard: Floats, pull: Floats, carries: bool,
-    wx: float, wy: float, wz: float, per_speed_squared: float,
+    branches: Any, work: Any, state: Floats, whole: Floats, half: Floats, guard: Floats, pull: Floats,
+    carries: bool, wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
+    x, v, moment, middle_x, middle_v = state[0], state[1], state[2], state[3], state[4]
     for b in range(len(branches)):
         h = half[b]
         for i in range(2 * b, 2 * b + 2):
@@ -111,8 +110,7 @@ def _advance(
     blow(branches, work, middle_x, middle_v, wx, wy, wz, per_speed_squared)
     if carries:
         gather(branches, work)
-    generalised(branches, work, carries, moment)
-    along_chord(branches, work, carries, pull)
+    generalised(branches, work, carries, moment, pull)
     held = 0
     for b in range(len(branches)):
         i, source = 2 * b, branches[b].source

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.branch_model import BranchModel
-from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.reduction import Reduction
 from tree_sway_ros.core.tree import Floats, Tree
 
@@ -85,7 +85,6 @@ def _fill_axial_levers(tree: Tree, records: Any) -> None:
         moment[tree.branch_parent[b]] += moment[b]
 
 
-@kernel
 def pressure(speed: float, coefficient: float, exponent: float) -> float:
     """
     Drag per area and speed squared, ``1/2 rho C U^-N``, in [kg/m^3].
@@ -104,7 +103,7 @@ def pressure(speed: float, coefficient: float, exponent: float) -> float:
     return 0.5 * AIR_DENSITY * coefficient * math.pow(streamlined, -exponent)
 
 
-@kernel
+@fused
 def drag(
     branch: Any, per_speed_squared: float, ux: float, uy: float, uz: float
 ) -> tuple[float, float, float]:
