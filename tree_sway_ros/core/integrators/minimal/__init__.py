@@ -1,0 +1,1 @@
+"""Methods on the angles: the paper's equation with its multipliers eliminated."""
