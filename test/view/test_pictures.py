@@ -9,7 +9,8 @@ from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.tree import Tree
 from tree_sway_ros.core.tree_building import tree_from_segments
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
-from tree_sway_ros.view.pictures import animate_poses, picture_at_rest, picture_in_wind
+from tree_sway_ros.view.animation import animate_poses
+from tree_sway_ros.view.pictures import picture_at_rest, picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 from tree_sway_ros.view.projection import rest_poses
 

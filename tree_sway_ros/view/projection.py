@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree import Floats
 
 
@@ -85,12 +86,4 @@ def rest_poses(start: ArrayLike, end: ArrayLike) -> Floats:
     base = np.asarray(start, dtype=np.float64)
     along = np.asarray(end, dtype=np.float64) - base
     along = along / np.linalg.norm(along, axis=1)[:, None]
-    block = np.zeros((len(base), 7))
-    block[:, :3] = base
-    block[:, 4] = -along[:, 2]
-    block[:, 5] = along[:, 1]
-    block[:, 6] = 1.0 + along[:, 0]
-    # Straight back along -x any half turn about an axis across will do.
-    block[block[:, 6] < 1e-12, 5] = 1.0
-    block[:, 3:] /= np.linalg.norm(block[:, 3:], axis=1)[:, None]
-    return block
+    return np.hstack([base, quaternions_from_x(along)[:, [1, 2, 3, 0]]])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.view.leaf_drawing import leaf_blades, leaf_colors
 from tree_sway_ros.view.projection import Camera
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
 _NEAR_BARK = np.array([0.22, 0.15, 0.10])
 _FAR_BARK = np.array([0.72, 0.67, 0.62])
-_NEAR_LEAF = np.array([0.20, 0.42, 0.14])
-_FAR_LEAF = np.array([0.70, 0.82, 0.58])
 _POT = "#b5694a"
 _POT_RIM = "#c67f60"
 _POTTED = ("benjamina", "goldcrest")
@@ -63,9 +62,7 @@ def draw_tree(
     end: Floats,
     camera: Camera,
     frame: Frame,
-    *,
-    leaves: Floats | None = None,
-    leaf_size: float = 0.0,
+    leaves: tuple[Floats, Floats] | None = None,
 ) -> None:
     """
     Draw a tree, at rest or deflected.
@@ -80,42 +77,39 @@ def draw_tree(
         Nodes of its segments as they are now in [m], (n, 3) each.
     camera, frame
         From where, and which part.
-    leaves, leaf_size
-        Centres of leaf clusters, (m, 3), and their diameter, in [m].
+    leaves
+        Pose block of the leaf clusters, (m, 7), and their diameters in [m], (m,).
 
     """
-    from matplotlib.collections import EllipseCollection, PolyCollection
+    from matplotlib.collections import PolyCollection
 
     axes.set(xlim=(frame.left, frame.right), ylim=(frame.bottom, frame.top), aspect="equal")
     axes.axis("off")
     _draw_ground(axes, tree, camera, frame)
     base, tip = camera.project(start), camera.project(end)
-    order = np.argsort(-(base[:, 2] + tip[:, 2]))
-    quads = _tapered(base, tip, tree.base_diameter, tree.tip_diameter)[order]
     depth = _depth(camera, 0.5 * (start + end), frame)
-    shades = (_NEAR_BARK + depth[:, None] * (_FAR_BARK - _NEAR_BARK))[order]
+    polygons = list(_tapered(base, tip, tree.base_diameter, tree.tip_diameter))
+    colors = _NEAR_BARK + depth[:, None] * (_FAR_BARK - _NEAR_BARK)
+    away = 0.5 * (base[:, 2] + tip[:, 2])
     # Edges in the same colour close the joints and keep thin twigs visible.
-    bark = PolyCollection(list(quads), facecolors=shades, edgecolors=shades, linewidths=0.45)
-    bark.set_joinstyle("round")
-    axes.add_collection(bark)
-    if leaves is not None and len(leaves):
-        seen = camera.project(leaves)
-        far_first = np.argsort(-seen[:, 2])
-        depth = _depth(camera, leaves, frame)
-        size = np.full(len(leaves), leaf_size)
-        axes.add_collection(
-            EllipseCollection(
-                size,
-                0.7 * size,
-                (37.0 * np.arange(len(leaves))) % 180.0,
-                units="xy",
-                offsets=seen[far_first, :2],
-                offset_transform=axes.transData,
-                facecolors=(_NEAR_LEAF + depth[:, None] * (_FAR_LEAF - _NEAR_LEAF))[far_first],
-                alpha=0.55,
-                zorder=2,
-            )
-        )
+    edges = np.full(len(away), 0.45)
+    if leaves is not None:
+        corners, normal = leaf_blades(tree.species, *leaves)
+        seen = camera.project(corners)
+        depth = _depth(camera, corners.mean(axis=1), frame)
+        polygons += list(seen[..., :2])
+        colors = np.vstack([colors, leaf_colors(tree.species, normal, depth, camera)])
+        away = np.concatenate([away, seen[..., 2].mean(axis=1)])
+        edges = np.concatenate([edges, np.full(len(seen), 0.1)])
+    far_first = np.argsort(-away)
+    drawn = PolyCollection(
+        [polygons[i] for i in far_first],
+        facecolors=colors[far_first],
+        edgecolors=colors[far_first],
+        linewidths=edges[far_first],
+    )
+    drawn.set_joinstyle("round")
+    axes.add_collection(drawn)
 
 
 def draw_scale(axes: Axes, frame: Frame) -> None:

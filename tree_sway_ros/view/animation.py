@@ -1,0 +1,150 @@
+"""A moving picture of a tree, as a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway_ros.core.leaf_flutter import flutter_angle, leaf_poses
+from tree_sway_ros.core.leaves import LeafClusters
+from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
+from tree_sway_ros.view.plotting import new_figure
+from tree_sway_ros.view.projection import Camera, ends_of_poses
+from tree_sway_ros.view.tree_drawing import Frame, draw_tree, draw_wind, frame_around
+
+_KINDS = {".gif": "GIF", ".png": "PNG", ".apng": "PNG"}
+_GIF_COLORS = 64
+
+
+def animate_poses(
+    tree: Tree,
+    frames: Sequence[ArrayLike],
+    winds: ArrayLike,
+    path: str | Path,
+    *,
+    rate: float = 20.0,
+    leaves: LeafClusters | None = None,
+    camera: Camera | None = None,
+    pixels: int = 480,
+) -> Path:
+    """
+    Draw a moving picture: a GIF, or an animated PNG, by the suffix.
+
+    Parameters
+    ----------
+    tree
+        At rest.
+    frames
+        Pose block of each frame, (n, 7).
+    winds
+        Wind of each frame in [m/s], (f, 3).
+    path
+        File to write: ``.gif``, ``.png`` or ``.apng``.
+    rate
+        Frames a second in [Hz].
+    leaves
+        Its leaves; none are drawn if None.
+    camera
+        From where; from the south if None.
+    pixels
+        Height in [px].
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ParameterError
+        If there are no frames, or not as many winds.
+    FormatError
+        If the suffix names no moving picture, or the file cannot be written.
+    MissingDependencyError
+        If matplotlib or pillow is not there.
+
+    """
+    target = Path(path)
+    kind = _KINDS.get(target.suffix.lower())
+    if kind is None:
+        raise FormatError(
+            f"'{target.suffix}' is no moving picture",
+            where=str(target),
+            cure=f"end the name with one of: {', '.join(_KINDS)}",
+        )
+    blowing = np.asarray(winds, dtype=np.float64)
+    if len(frames) == 0 or blowing.shape != (len(frames), 3):
+        raise ParameterError(
+            f"{len(frames)} frames and winds {blowing.shape} do not go together",
+            cure="give one wind (3,) a frame, and at least one frame",
+        )
+    try:
+        from PIL import Image
+    except ImportError:
+        raise MissingDependencyError(
+            "moving pictures need pillow", cure="pip install 'tree_sway_ros[plot]'"
+        ) from None
+    camera = camera or Camera()
+    blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
+    frame = _frame_of_all(tree, blocks, camera)
+    images = [
+        Image.fromarray(_rendered(tree, block, wind, i / rate, leaves, camera, frame, pixels))
+        for i, (block, wind) in enumerate(zip(blocks, blowing, strict=True))
+    ]
+    if kind == "GIF":
+        palette = images[len(images) // 2].quantize(_GIF_COLORS)
+        images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    try:
+        images[0].save(
+            target, kind, save_all=True, append_images=images[1:], duration=1000.0 / rate, loop=0
+        )
+    except OSError as error:
+        raise FormatError(
+            f"cannot write the picture ({error.strerror})",
+            where=str(target),
+            cure="name a folder that exists and that you may write to",
+        ) from None
+    return target
+
+
+def _frame_of_all(tree: Tree, blocks: list[Floats], camera: Camera) -> Frame:
+    """Frame that holds the tree at rest and in every frame."""
+    corners = [_box(tree.start), _box(tree.end)]
+    for block in blocks:
+        corners += [_box(points) for points in ends_of_poses(block, tree.length)]
+    return frame_around(np.vstack(corners), camera)
+
+
+def _box(points: Floats) -> Floats:
+    """Points that touch each side of the cloud, so that many clouds are framed at little cost."""
+    return points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
+
+
+def _rendered(
+    tree: Tree,
+    block: Floats,
+    wind: Floats,
+    time: float,
+    leaves: LeafClusters | None,
+    camera: Camera,
+    frame: Frame,
+    pixels: int,
+) -> NDArray[np.uint8]:
+    figure = new_figure(pixels * frame.aspect / 100.0, pixels / 100.0)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    foliage = None
+    if leaves is not None:
+        angle = flutter_angle(leaves, float(np.linalg.norm(wind)), time)
+        foliage = leaf_poses(leaves, block, angle), leaves.size
+    draw_tree(axes, tree, *ends_of_poses(block, tree.length), camera, frame, foliage)
+    draw_wind(axes, frame, camera, wind)
+    figure.set_dpi(100.0)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
