@@ -39,5 +39,5 @@ def test_three_numbers_need_not_be_finite():
 
 @pytest.mark.parametrize("vector", [1.0, (1, 2), (1, 2, 3, 4), np.eye(3), "abc", None, (1, 2, 10**400)])
 def test_what_is_not_three_numbers_is_refused(vector):
-    with pytest.raises(ParameterError, match="wind: .* is not three numbers"):
+    with pytest.raises(ParameterError, match=r"wind: .* is not three numbers"):
         three_numbers("wind", vector)

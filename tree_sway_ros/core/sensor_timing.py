@@ -11,6 +11,7 @@ _LONGEST_BELIEVED = 3.0  # interval over the period: a longer one may be a dropo
 _SHORTEST_BELIEVED = 1 / 3  # a shorter one may be a burst of delayed samples
 _SHRINK = 0.6  # what such a short one makes of the period; a wrong guess must not last
 _LATENESS_GAIN = 0.02  # how fast the allowance for late samples is taken back
+_CATCH_UP = 0.25  # at most this part of an interval: a backlog is played out a little faster
 
 
 class SensorTiming:
@@ -55,6 +56,7 @@ class SensorTiming:
         else:
             self.period += _GAIN * (min(gap, _LONGEST_BELIEVED * self.period) - self.period)
 
-    def note_lateness(self, late: float) -> None:
-        """Take the time in [s] by which a sample came too late: at once up, slowly down."""
-        self.lateness = max(late, self.lateness + _LATENESS_GAIN * (late - self.lateness))
+    def note_lateness(self, late: float, gap: float) -> None:
+        """Take the time by which a sample came late, an interval after the one before, in [s]."""
+        step_back = min(_LATENESS_GAIN * (self.lateness - late), _CATCH_UP * gap)
+        self.lateness = max(late, self.lateness - step_back)

@@ -92,6 +92,7 @@ class WindAverage:
         self._timing = SensorTiming(self._timeout)
         self._newest: float | None = None  # time of the newest sample
         self._passed: float | None = None  # end of the latest step: before it nothing may change
+        self._is_new_clock = False  # the clock has jumped since the newest sample
 
     @property
     def period(self) -> float | None:
@@ -124,22 +125,27 @@ class WindAverage:
         if not (math.isfinite(time) and math.isfinite(x + y + z)):
             self.refused += 1
             return False
-        if self._newest is None:
-            gap = math.inf
-        elif time > self._newest:
-            self._clamp_clock(time - (self._timing.period or self._timeout))
-            gap = time - self._newest
-        elif time < self._newest - CLOCK_RESET:
+        if self._newest is not None and time <= self._newest:
+            if time > self._newest - CLOCK_RESET:
+                self.refused += 1
+                return False
             self._set_clock_back(time)
-            gap = math.inf
+        self._clamp_clock(time)
+        passed = -math.inf if self._passed is None else self._passed
+        if self._newest is None or self._is_new_clock:
+            gap = silence = math.inf
         else:
-            self.refused += 1
-            return False
-        if self._timing.is_dropout(gap):
-            self._resume(time, (x, y, z), gap)
-        else:
-            self._go_on(time, (x, y, z), gap)
+            gap = time - self._newest
+            silence = max(gap, passed - self._newest - self._timing.lateness)
+        if self._timing.is_dropout(silence):
+            self._start_anew(time, (x, y, z), silence)
+        elif self._timing.period is None:
+            self._curve.append(max(time, passed), self._curve.last)  # the first holds to the second
+        self._timing.note_interval(gap)
+        self._timing.note_lateness(max(0.0, passed - time), gap)
+        self._draw_to(time, passed, (x, y, z))
         self._newest = time
+        self._is_new_clock = False
         return True
 
     def mean(self, start: float, end: float) -> Floats:
@@ -195,38 +201,31 @@ class WindAverage:
     def _decay_start(self) -> float:
         return (self._newest or 0.0) + self._timing.lateness + self._timing.longest_hold
 
-    def _go_on(self, time: float, value: Vector, gap: float) -> None:
-        """Draw the curve on to a new sample."""
-        passed = -math.inf if self._passed is None else self._passed
-        timing = self._timing
-        is_second = timing.period is None
-        timing.note_interval(gap)
+    def _draw_to(self, time: float, passed: float, value: Vector) -> None:
+        """Draw the curve on to a new sample, from where the solver has passed at the earliest."""
         if not self._is_linear:
             self._curve.append(max(time, passed), value)
             return
-        if is_second:
-            self._curve.append(time, self._curve.last)  # the first one holds until the second
-        timing.note_lateness(max(0.0, passed - time))
-        knot = time + (timing.period or 0.0) + timing.lateness
+        knot = time + (self._timing.period or 0.0) + self._timing.lateness
         if self._curve.end < passed:
             self._curve.append(passed, self._curve.last)
         elif self._curve.end >= knot:
             self._curve.cut(max(passed, time))
         self._curve.append(knot, value)
 
-    def _resume(self, time: float, value: Vector, gap: float) -> None:
-        """Start a new curve; what there was until now fades out on top of it."""
-        since = time if self._passed is None else self._passed
-        before = _CALM if self._passed is None else self._mean(since, since)
-        duration = min(gap, self._blend)
-        self._timing.note_interval(gap)
+    def _start_anew(self, time: float, value: Vector, silence: float) -> None:
+        """Start a new curve at a value; what there was until now fades out on top of it."""
+        since = self._passed
+        before = _CALM if since is None else self._mean(since, since)
         self._curve.clear()
-        self._curve.append(since, value)
         self._fade.clear()
-        if self._passed is not None:
-            x, y, z = (b - v for b, v in zip(before, value, strict=True))
-            self._fade.append(since, (x, y, z))
-            self._fade.append(since + duration, _CALM)
+        if since is None:
+            self._curve.append(time, value)
+            return
+        self._curve.append(since, value)
+        x, y, z = (b - v for b, v in zip(before, value, strict=True))
+        self._fade.append(since, (x, y, z))
+        self._fade.append(since + min(silence, self._blend), _CALM)
 
     def _mean(self, start: float, end: float) -> Vector:
         if self._newest is None:
@@ -264,6 +263,7 @@ class WindAverage:
             self._newest = time
             self._curve.append(time, held)
         self._passed = time
+        self._is_new_clock = True
 
     def _clamp_clock(self, time: float) -> None:
         """Take a clock that jumps forward for one that stood still."""
@@ -277,6 +277,7 @@ class WindAverage:
             self._passed += jump
             if self._newest is not None:
                 self._newest += jump
+            self._is_new_clock = True
 
 
 def _sum(a: Vector, b: Vector, factor: float) -> Vector:
