@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
-from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
+from tree_sway_ros.core.reference.articulated_modes import end_displacements, joint_modes
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
 from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
 from tree_sway_ros.core.reference.refinement import refined
@@ -38,8 +38,8 @@ class ArticulatedTree:
     modulus, density
         Young's modulus in [Pa] and density in [kg/m^3] of the green wood.
     damping_ratio
-        Of the first mode in [-], by dampers in proportion to the springs: the ratio of a mode grows with
-        its frequency. Not used where `rayleigh` is given.
+        Of each of the lowest `damped_modes` in [-]; above them the ratio grows with the frequency, as by dampers
+        in proportion to the springs. Not used where `rayleigh` is given.
     drag_coefficient, drag_exponent
         C and N of Cd = C U^-N.
     gravity
@@ -48,6 +48,8 @@ class ArticulatedTree:
         Rigid pieces a segment.
     twist_ratio
         Stiffness of the joints in twist over that in bending, GJ/EI; by default they hardly twist.
+    damped_modes
+        How many modes get the same damping ratio.
     rayleigh
         Coefficients of damping by mass in [1/s] and by stiffness in [s].
     wind_factor
@@ -68,6 +70,7 @@ class ArticulatedTree:
         gravity: float = 0.0,
         subdivisions: int = 1,
         twist_ratio: float = RIGID_TWIST,
+        damped_modes: int = 40,
         rayleigh: tuple[float, float] | None = None,
         wind_factor: ArrayLike | None = None,
     ) -> None:
@@ -83,15 +86,18 @@ class ArticulatedTree:
         self._wind = np.zeros((n, 3))
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
-        self._twist_ratio = twist_ratio
         self._gravity = gravity
         if rayleigh is None:
-            lowest = 2.0 * math.pi * float(self.linear_modes(1)[0][0])
-            rayleigh = (0.0, 2.0 * damping_ratio / lowest)
+            by_mass, by_stiffness, by_mode, momentum = self._even_damping(damping_ratio, damped_modes)
+        else:
+            by_mass, by_stiffness = float(rayleigh[0]), float(rayleigh[1])
+            by_mode, momentum = np.zeros(0), np.zeros((0, n, 3))
         self.laws = Laws(
             gravity,
-            float(rayleigh[0]),
-            float(rayleigh[1]),
+            by_mass,
+            by_stiffness,
+            by_mode,
+            momentum,
             0.5 * air_density * drag_coefficient,
             drag_exponent,
             STREAMLINING_FROM,
@@ -153,14 +159,17 @@ class ArticulatedTree:
             Frequencies (count,) and shapes of unit modal mass, (count, n, 3).
 
         """
-        frequency, shapes = joint_modes(
-            self.bodies,
-            joint_mass(self.bodies),
-            joint_stiffness(self.bodies, self._gravity),
-            count,
-            twist=self._twist_ratio < RIGID_TWIST,
-        )
-        return frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]
+        modes = joint_modes(self.bodies, self._gravity, count)
+        shapes = end_displacements(self.bodies, modes.turn)
+        return modes.frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]
+
+    def _even_damping(self, ratio: float, count: int) -> tuple[float, float, Floats, Floats]:
+        """By stiffness so much that the last of these modes has the ratio, and the rest to each below it."""
+        modes = joint_modes(self.bodies, self._gravity, count)
+        circular = 2.0 * math.pi * modes.frequency
+        by_stiffness = 2.0 * ratio / float(circular[-1])
+        by_mode = 2.0 * ratio * circular - by_stiffness * circular**2
+        return 0.0, by_stiffness, by_mode, modes.momentum
 
     def _place_bodies(self) -> None:
         place_bodies(self.bodies, self.state.turn, self._rotation, *self._nodes)

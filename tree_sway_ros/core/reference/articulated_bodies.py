@@ -15,13 +15,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway_ros.core.reference.refinement import place_on_parent
-from tree_sway_ros.core.tree import Tree
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from tree_sway_ros.core.tree import Floats, Ints, Tree
 
 
 class Bodies(NamedTuple):
@@ -143,14 +139,16 @@ def _part_moments(
 
 def _tensor(mass: Floats, place: Floats) -> Floats:
     square = np.einsum("ni,ni->n", place, place)[:, None, None] * np.eye(3)
-    return mass[:, None, None] * (square - np.einsum("ni,nj->nij", place, place))
+    out: Floats = mass[:, None, None] * (square - np.einsum("ni,nj->nij", place, place))
+    return out
 
 
 def _parallel(mass: Floats, shift: Floats, first: Floats) -> Floats:
     """What the inertia gains when its point is moved back by `shift`."""
     cross = np.einsum("ni,nj->nij", shift, first)
     both = 2.0 * np.einsum("nii->n", cross)[:, None, None] * np.eye(3)
-    return _tensor(mass, shift) + both - cross - cross.transpose(0, 2, 1)
+    out: Floats = _tensor(mass, shift) + both - cross - cross.transpose(0, 2, 1)
+    return out
 
 
 def _holding_torque(

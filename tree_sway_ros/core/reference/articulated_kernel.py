@@ -95,8 +95,9 @@ def motion_of(n: int) -> Motion:
 
 def articulation_of(n: int) -> Articulation:
     """Make room for the articulated inertias of n bodies."""
-    matrices, vectors = np.zeros((4, n, 3, 3)), np.zeros((5, n, 3))
-    return Articulation(*matrices[:3], *vectors[:2], matrices[3], *vectors[2:])
+    A, B, C, inverse_A = np.zeros((4, n, 3, 3))
+    moment, force, drive, alpha, a = np.zeros((5, n, 3))
+    return Articulation(A, B, C, moment, force, inverse_A, drive, alpha, a)
 
 
 @kernel

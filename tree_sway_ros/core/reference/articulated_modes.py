@@ -1,81 +1,46 @@
 """
 Linear modes of the articulated tree: mass and stiffness of its joints at rest.
 
-The mass is the sum of J^T I J over the bodies, the stiffness the springs' and gravity's second variation;
-both are dense in the joints and meant for trees of up to some thousand segments.
+Both matrices couple a joint with those it rides on and those that ride on it only, so they are sparse.
 
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
-from numpy.typing import NDArray
-from scipy import linalg
+from scipy import sparse
+from scipy.sparse import linalg
 
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
+from tree_sway_ros.core.tree import Floats, Ints
 from tree_sway_ros.errors import TreeError
 
-Floats = NDArray[np.float64]
 
-
-def joint_mass(bodies: Bodies) -> Floats:
+class JointModes(NamedTuple):
     """
-    Mass matrix of the joints' rotations at rest in [kg m^2], (3 n, 3 n).
+    Modes of unit modal mass, lowest first.
 
-    Composite rigid bodies (Featherstone 2008, table 6.2).
-
-    """
-    n = len(bodies.mass)
-    mass, lever, tensor = _composite(bodies)
-    out = np.zeros((n, 3, n, 3))
-    for i in range(n):
-        # Momentum of the composite of i for a unit rate of joint i: linear (rows), angular about i.
-        linear, angular = -_cross_matrix(lever[i]), tensor[i].copy()
-        out[i, :, i, :] = angular
-        k = i
-        while bodies.carrier[k] >= 0:
-            angular = angular + _cross_matrix(bodies.arm[k]) @ linear
-            k = bodies.carrier[k]
-            out[k, :, i, :] = angular
-            out[i, :, k, :] = angular.T
-    return out.reshape(3 * n, 3 * n)
-
-
-def joint_stiffness(bodies: Bodies, gravity: float) -> Floats:
-    """
-    Stiffness matrix of the joints' rotations at rest in [N m/rad], (3 n, 3 n).
-
-    Gravity's part is the second variation of the height of the masses, with the torque that the springs
-    hold at rest: each joint turned in the axes its carrier has turned already.
+    Parameters
+    ----------
+    frequency
+        In [Hz], (k,).
+    turn
+        Rotations of the joints in [rad], (k, n, 3).
+    momentum
+        Mass matrix times these, (k, n, 3).
 
     """
-    n = len(bodies.mass)
-    out = np.zeros((n, 3, n, 3))
-    twist = np.einsum("ni,nj->nij", bodies.axis, bodies.axis)
-    own = bodies.bend[:, None, None] * (np.eye(3) - twist) + bodies.twist[:, None, None] * twist
-    out[np.arange(n), :, np.arange(n), :] = own
-    if gravity == 0.0:
-        return out.reshape(3 * n, 3 * n)
-    _, lever, _ = _composite(bodies)
-    weight = np.array([0.0, 0.0, -gravity])
-    for i in range(n):
-        # Potential -W . (a x (b x r)) for an outer joint a and an inner joint b; half of it for itself.
-        r = lever[i]
-        second = np.dot(weight, r) * np.eye(3) - np.outer(r, weight)
-        out[i, :, i, :] += 0.5 * (second + second.T)
-        k = bodies.carrier[i]
-        while k >= 0:
-            out[k, :, i, :] += second
-            out[i, :, k, :] += second.T
-            k = bodies.carrier[k]
-    return out.reshape(3 * n, 3 * n)
+
+    frequency: Floats
+    turn: Floats
+    momentum: Floats
 
 
-def joint_modes(
-    bodies: Bodies, mass: Floats, stiffness: Floats, count: int, *, twist: bool
-) -> tuple[Floats, Floats]:
+def joint_modes(bodies: Bodies, gravity: float, count: int) -> JointModes:
     """
-    Frequencies in [Hz], (count,), and displacements of the end nodes for unit modal mass.
+    Lowest modes about rest.
 
     Raises
     ------
@@ -83,25 +48,88 @@ def joint_modes(
         If the stiffness is not positive: the tree buckles under its own weight.
 
     """
-    basis = _joint_axes(bodies.axis, twist)
-    M, K = basis.T @ mass @ basis, basis.T @ stiffness @ basis
-    square, vectors = linalg.eigh(K, M, subset_by_index=(0, count - 1))
-    if square[0] <= 0.0:
+    mass, stiffness = joint_mass(bodies), joint_stiffness(bodies, gravity)
+    factor = linalg.splu(
+        stiffness,
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    if np.any(factor.U.diagonal() <= 0.0):
         raise TreeError(
             "buckles under its own weight: its stiffness is not positive with gravity",
             cure="check modulus, density and diameters, or leave gravity out",
         )
-    turn = (basis @ vectors).T.reshape(count, -1, 3)
-    shapes = np.zeros_like(turn)
-    total, place = np.zeros_like(turn), np.zeros_like(turn)
+    size = mass.shape[0]
+    solve = linalg.LinearOperator(mass.shape, matvec=factor.solve, dtype=np.float64)
+    inverse_square, vectors = linalg.eigsh(
+        mass, k=min(count, size - 1), M=stiffness, Minv=solve, v0=np.cos(1.0 + np.arange(size))
+    )
+    order = np.argsort(-inverse_square)
+    # Lanczos gives unit stiffness; unit mass is asked for.
+    circular = 1.0 / np.sqrt(inverse_square[order])
+    turn = vectors[:, order].T * circular[:, None]
+    momentum = (mass @ turn.T).T
+    shape = (len(circular), -1, 3)
+    return JointModes(circular / (2.0 * np.pi), turn.reshape(shape), momentum.reshape(shape))
+
+
+def joint_mass(bodies: Bodies) -> Any:
+    """
+    Mass matrix of the joints' rotations at rest in [kg m^2], sparse (3 n, 3 n).
+
+    Composite rigid bodies (Featherstone 2008, table 6.2).
+
+    """
+    _, lever, tensor = _composite(bodies)
+    own = [np.array(t) for t in tensor]
+    pairs = []
+    for i in range(len(bodies.mass)):
+        # Momentum of the composite of i for a unit rate of joint i: linear, and angular about k.
+        linear, angular = -_cross_matrix(lever[i]), tensor[i]
+        k = i
+        while bodies.carrier[k] >= 0:
+            angular = angular + _cross_matrix(bodies.arm[k]) @ linear
+            k = int(bodies.carrier[k])
+            pairs.append((k, i, angular))
+    return _symmetric(own, pairs)
+
+
+def joint_stiffness(bodies: Bodies, gravity: float) -> Any:
+    """
+    Stiffness matrix of the joints' rotations at rest in [N m/rad], sparse (3 n, 3 n).
+
+    Gravity's part is the second variation of the height of the masses, each joint turned in the axes its
+    carrier has turned already, with the springs' share in holding the rest shape.
+
+    """
+    twist = np.einsum("ni,nj->nij", bodies.axis, bodies.axis)
+    springs = bodies.bend[:, None, None] * (np.eye(3) - twist) + bodies.twist[:, None, None] * twist
+    own, pairs = list(springs), []
+    if gravity != 0.0:
+        _, lever, _ = _composite(bodies)
+        weight = np.array([0.0, 0.0, -gravity])
+        for i, arm in enumerate(lever):
+            # Potential -W . (a x (b x r)) of a joint a below and a joint b; half of it for one alone.
+            second = np.dot(weight, arm) * np.eye(3) - np.outer(arm, weight)
+            own[i] = own[i] + 0.5 * (second + second.T)
+            k = int(bodies.carrier[i])
+            while k >= 0:
+                pairs.append((k, i, second))
+                k = int(bodies.carrier[k])
+    return _symmetric(own, pairs)
+
+
+def end_displacements(bodies: Bodies, turn: Floats) -> Floats:
+    """Displacement of the end nodes by small rotations of the joints (k, n, 3), (k, n, 3)."""
+    out, total, place = np.zeros_like(turn), np.zeros_like(turn), np.zeros_like(turn)
     for i, carrier in enumerate(bodies.carrier):
-        held = carrier >= 0
-        total[:, i] = turn[:, i] + (total[:, carrier] if held else 0.0)
-        if held:
+        total[:, i] = turn[:, i]
+        if carrier >= 0:
+            total[:, i] += total[:, carrier]
             place[:, i] = place[:, carrier] + np.cross(total[:, carrier], bodies.arm[i])
-        half = bodies.reach[i, 1] * bodies.axis[i]
-        shapes[:, i] = place[:, i] + np.cross(total[:, i], half)
-    return np.sqrt(square) / (2.0 * np.pi), shapes
+        out[:, i] = place[:, i] + np.cross(total[:, i], bodies.reach[i, 1] * bodies.axis[i])
+    return out
 
 
 def _composite(bodies: Bodies) -> tuple[Floats, Floats, Floats]:
@@ -124,22 +152,21 @@ def _composite(bodies: Bodies) -> tuple[Floats, Floats, Floats]:
 
 def _point_inertia(mass: Floats, place: Floats) -> Floats:
     square = np.einsum("ni,ni->n", place, place)[:, None, None] * np.eye(3)
-    return mass[:, None, None] * (square - np.einsum("ni,nj->nij", place, place))
+    out: Floats = mass[:, None, None] * (square - np.einsum("ni,nj->nij", place, place))
+    return out
 
 
 def _cross_matrix(v: Floats) -> Floats:
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
-def _joint_axes(axis: Floats, twist: bool) -> Floats:
-    """Columns that span the joints' rotations, with or without twist, (3 n, 2 n or 3 n)."""
-    n = len(axis)
-    if twist:
-        return np.eye(3 * n)
-    aside = np.where(np.abs(axis[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
-    first = np.cross(aside, axis)
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    both = np.stack([first, np.cross(axis, first)], axis=2)
-    out = np.zeros((n, 3, n, 2))
-    out[np.arange(n), :, np.arange(n), :] = both
-    return out.reshape(3 * n, 2 * n)
+def _symmetric(own: list[Floats], pairs: list[tuple[int, int, Floats]]) -> Any:
+    """Sparse matrix of blocks on the diagonal and of blocks above it, mirrored below."""
+    n = len(own)
+    row: Ints = np.array([*range(n), *(p[0] for p in pairs), *(p[1] for p in pairs)])
+    column: Ints = np.array([*range(n), *(p[1] for p in pairs), *(p[0] for p in pairs)])
+    values = np.array([*own, *(p[2] for p in pairs), *(p[2].T for p in pairs)])
+    rows = np.broadcast_to(3 * row[:, None, None] + np.arange(3)[:, None], values.shape)
+    columns = np.broadcast_to(3 * column[:, None, None] + np.arange(3), values.shape)
+    entries = values.ravel(), (rows.ravel(), columns.ravel())
+    return sparse.coo_array(entries, shape=(3 * n, 3 * n)).tocsc()

@@ -55,6 +55,8 @@ class Laws(NamedTuple):
         In [m/s^2].
     mass_damping, stiffness_damping
         Rayleigh's coefficients in [1/s] and [s].
+    mode_damping, mode_momentum
+        Damping of single modes on top, (k,) in [1/s], and their momenta per rate, (k, n, 3).
     drag
         Half the density of air times C of Cd = C U^-N, in [kg/m^3 (m/s)^N].
     drag_exponent
@@ -67,6 +69,8 @@ class Laws(NamedTuple):
     gravity: float
     mass_damping: float
     stiffness_damping: float
+    mode_damping: Floats
+    mode_momentum: Floats
     drag: float
     drag_exponent: float
     slowest: float
@@ -163,6 +167,19 @@ def spring(bodies: Bodies, i: int, v: Vector, twist: float, twist_axis: Vector) 
 
 
 @kernel
+def damp_modes(laws: Laws, rate: Floats, torque: Floats) -> None:
+    """Take the damping of single modes off the torques of the joints, (n, 3)."""
+    for mode in range(len(laws.mode_damping)):
+        momentum = laws.mode_momentum[mode]
+        speed = 0.0
+        for i in range(len(rate)):
+            speed += dot(read(momentum, i), read(rate, i))
+        speed *= laws.mode_damping[mode]
+        for i in range(len(rate)):
+            write(torque, i, plus(read(torque, i), read(momentum, i), -speed))
+
+
+@kernel
 def respond(
     bodies: Bodies,
     laws: Laws,
@@ -204,6 +221,7 @@ def respond(
         torque = plus(torque, spring(bodies, i, v, twist, g), -1.0)
         v = plus(read(room.pull, i), read(rate, i), -late)
         write(room.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
+    damp_modes(laws, rate, room.torque)
     move(bodies, room.matrix, rate, motion)
     load(bodies, motion, laws.gravity, laws.mass_damping, articulation)
     push_drag(bodies, motion, laws, wind, articulation)

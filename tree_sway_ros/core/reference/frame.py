@@ -12,17 +12,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import linalg
 
 from tree_sway_ros.core.reference import frame_element as element
 from tree_sway_ros.core.reference.self_weight import self_weight
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree import Floats, Ints, Tree
 from tree_sway_ros.errors import TreeError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

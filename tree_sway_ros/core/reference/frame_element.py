@@ -14,9 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from tree_sway_ros.core.tree import Floats
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 POINTS: Floats = 0.5 * (_POINTS + 1.0)

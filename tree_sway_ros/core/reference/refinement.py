@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree import Floats, Tree
 
 
 def refined(tree: Tree, pieces: int) -> Tree:
@@ -38,14 +38,12 @@ def refined(tree: Tree, pieces: int) -> Tree:
     )
 
 
-def place_on_parent(tree: Tree) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def place_on_parent(tree: Tree) -> Floats:
     """Where each segment sits along its parent: 0 its start, 1 its end and the root's, (n,)."""
     parent = tree.segment_parent
     chord = tree.end[parent] - tree.start[parent]
     place = np.einsum("ij,ij->i", tree.start - tree.start[parent], chord)
     place = np.clip(place / np.einsum("ij,ij->i", chord, chord), 0.0, 1.0)
     # A start within rounding of the end node is at it.
-    out: np.ndarray[tuple[int], np.dtype[np.float64]] = np.where(
-        (parent < 0) | (place > 1.0 - 1e-9), 1.0, place
-    )
+    out: Floats = np.where((parent < 0) | (place > 1.0 - 1e-9), 1.0, place)
     return out

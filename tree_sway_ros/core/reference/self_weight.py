@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway_ros.core.reference.frame_element import POINTS, WEIGHTS
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from tree_sway_ros.core.tree import Floats, Ints
 
 
 @dataclass(frozen=True, eq=False)
