@@ -24,6 +24,8 @@ class TreeFile:
         Where it came from: a path, or the name of a built-in tree.
     notes
         What the importer changed or left out, one sentence each; empty if nothing.
+    origin
+        Where the tree's zero is in the frame of the file in [m].
 
     """
 
@@ -31,3 +33,4 @@ class TreeFile:
     species: Species
     source: str
     notes: tuple[str, ...] = ()
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -10,15 +10,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.importers.archi_csv import read_archi_csv
+from tree_sway_ros.importers.cylinder_tree import CylinderOptions, tree_of_cylinders
+from tree_sway_ros.importers.cylinders import Cylinders
 from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.importers.mtg import looks_like_mtg, read_mtg
+from tree_sway_ros.importers.raycloud_treefile import looks_like_treefile, read_treefile
+from tree_sway_ros.importers.simpleforest_csv import read_simpleforest_csv
+from tree_sway_ros.importers.swc import looks_like_swc, read_swc
 from tree_sway_ros.importers.text_file import read_head
 from tree_sway_ros.importers.tree_csv import read_csv_tree
 from tree_sway_ros.importers.tree_yaml import read_yaml_tree
+from tree_sway_ros.importers.treeqsm_mat import looks_like_mat, read_treeqsm_mat
+from tree_sway_ros.importers.treeqsm_text import looks_like_treeqsm_text, read_treeqsm_text
 
 
 @dataclass(frozen=True)
@@ -35,14 +44,27 @@ class TreeFormat:
     recognise
         Whether the beginning of a file, as text with all else replaced, looks like it.
     read
-        Reader of the trees of such a file.
+        Reader of such a file: of a tree, or of the cylinders of trees, which take all of
+        `CylinderOptions` besides the reader's own options.
 
     """
 
     name: str
     suffixes: tuple[str, ...]
     recognise: Callable[[str], bool]
-    read: Callable[..., TreeFile | tuple[TreeFile, ...]]
+    read: Callable[..., TreeFile | tuple[Cylinders, ...]]
+
+    @property
+    def own_options(self) -> tuple[str, ...]:
+        """Options of the reader itself."""
+        return tuple(name for name in self.read.__annotations__ if name not in ("path", "return"))
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """Every option that the format takes."""
+        if "Cylinders" not in str(self.read.__annotations__["return"]):
+            return self.own_options
+        return (*self.own_options, *(field.name for field in fields(CylinderOptions)))
 
 
 def _columns(*names: str) -> Callable[[str], bool]:
@@ -64,7 +86,14 @@ def _yaml(head: str) -> bool:
 
 TREE_FORMATS: tuple[TreeFormat, ...] = (
     TreeFormat("yaml", (".yaml", ".yml", ".json"), _yaml, read_yaml_tree),
-    TreeFormat("csv", (".csv", ".txt"), _columns("x0", "y0", "z0", "x1", "d0"), read_csv_tree),
+    TreeFormat("csv", (".csv",), _columns("x0", "y0", "z0", "x1", "d0"), read_csv_tree),
+    TreeFormat("simpleforest", (), _columns("ID", "parentID", "growthLength"), read_simpleforest_csv),
+    TreeFormat("archi", (), _columns("cyl_ID", "extension_ID"), read_archi_csv),
+    TreeFormat("treeqsm-mat", (".mat",), looks_like_mat, read_treeqsm_mat),
+    TreeFormat("treeqsm-text", (".cyl",), looks_like_treeqsm_text, read_treeqsm_text),
+    TreeFormat("treefile", (), looks_like_treefile, read_treefile),
+    TreeFormat("mtg", (".mtg",), looks_like_mtg, read_mtg),
+    TreeFormat("swc", (".swc",), looks_like_swc, read_swc),
 )
 
 
@@ -79,7 +108,8 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
     format
         Name of its format; found from content and suffix if None.
     **options
-        What the reader of the format takes, such as ``species``.
+        What the reader of the format takes, such as ``species``; for cylinder and skeleton formats
+        also those of `CylinderOptions`.
 
     Raises
     ------
@@ -88,20 +118,23 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
     TreeError
         A tree that cannot be.
     ParameterError
-        An option that the reader of this format does not have.
+        An option that this format does not have, or has otherwise.
 
     """
     path = Path(path)
     chosen = _format_of(path) if format is None else _format_named(format)
-    known = chosen.read.__annotations__
     for option in options:
-        if option not in known:
-            names = ", ".join(name for name in known if name not in ("path", "return")) or "none"
+        if option not in chosen.options:
+            names = ", ".join(chosen.options) or "none"
             raise ParameterError(
                 f"format {chosen.name} has no option '{option}'", cure=f"it has: {names}"
             )
-    trees = chosen.read(path, **options)
-    return (trees,) if isinstance(trees, TreeFile) else trees
+    own = {name: options.pop(name) for name in chosen.own_options if name in options}
+    content = chosen.read(path, **own)
+    if isinstance(content, TreeFile):
+        return (content,)
+    settings = CylinderOptions(**options)
+    return tuple(tree_of_cylinders(cylinders, path, settings) for cylinders in content)
 
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:
@@ -114,8 +147,7 @@ def read_tree(path: str | Path, format: str | None = None, **options: Any) -> Tr
     first, *others = read_trees(path, format, **options)
     if not others:
         return first
-    note = f"the file holds {len(others)} more trees"
-    return TreeFile(first.tree, first.species, first.source, (*first.notes, note))
+    return replace(first, notes=(*first.notes, f"the file holds {len(others)} more trees"))
 
 
 def _format_named(name: str) -> TreeFormat:
@@ -129,12 +161,13 @@ def _format_named(name: str) -> TreeFormat:
 
 def _format_of(path: Path) -> TreeFormat:
     head = read_head(path).decode("utf-8", errors="replace")
-    suffix = path.suffix.lower()
     by_content = [known for known in TREE_FORMATS if known.recognise(head)]
-    by_suffix = [known for known in by_content or TREE_FORMATS if suffix in known.suffixes]
-    candidates = by_suffix or by_content
-    if by_content or len(by_suffix) == 1:
-        return candidates[0]
+    by_suffix = [
+        known for known in by_content or TREE_FORMATS if path.suffix.lower() in known.suffixes
+    ]
+    for candidates in (by_suffix, by_content):
+        if candidates:
+            return candidates[0]
     raise FormatError(
         "a file of no known tree format",
         where=str(path),

@@ -1,0 +1,131 @@
+"""
+TreeQSM's MATLAB files: structs with a field ``cylinder``, or the loose variables of version 2.0.
+
+Up to version 7 of the file format through scipy. Version 7.3 is HDF5 and needs h5py. A file may hold
+several models, as variables or as an array of structs; each is a tree.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.io
+
+from tree_sway_ros.errors import FormatError, MissingDependencyError
+from tree_sway_ros.importers.cylinders import Cylinders
+from tree_sway_ros.importers.text_file import read_bytes
+from tree_sway_ros.importers.treeqsm_columns import treeqsm_cylinders
+
+_FIELDS = (
+    ("radius", "Rad"), ("length", "Len"), ("start", "Sta"), ("axis", "Axe"), ("parent", "CPar"),
+    ("extension", "CExt"),
+)  # fmt: skip
+"""Fields of ``cylinder``, and their names as loose variables."""
+
+
+def looks_like_mat(head: str) -> bool:
+    """Whether the beginning of a file is that of a MATLAB file."""
+    return head.startswith("MATLAB") or head.startswith("\ufffdHDF\r\n\x1a\n")
+
+
+def read_treeqsm_mat(path: Path) -> tuple[Cylinders, ...]:
+    """
+    Read every cylinder model of a MATLAB file.
+
+    Raises
+    ------
+    FormatError
+        Not a MATLAB file, damaged, or without a cylinder model.
+    MissingDependencyError
+        If it is of version 7.3 and h5py is not installed.
+
+    """
+    source = str(path)
+    head = read_bytes(path, at_most=128)
+    is_hdf5 = b"HDF\r\n" in head[:8] or head.startswith(b"MATLAB 7.3")
+    models = list(_models_of_hdf5(path) if is_hdf5 else _models_of_mat(path))
+    if not models:
+        raise FormatError(
+            "no struct with a field 'cylinder'", where=source, cure="save the QSM struct of TreeQSM"
+        )
+    return tuple(_cylinders(name, fields, source) for name, fields in models)
+
+
+def _cylinders(name: str, fields: Mapping[str, Any], source: str) -> Cylinders:
+    columns = []
+    for names in _FIELDS:
+        found = next((fields[key] for key in names if key in fields), None)
+        if found is None:
+            raise FormatError(f"{name} has no field '{names[0]}'", where=source)
+        try:
+            columns.append(np.atleast_1d(np.asarray(found, dtype=np.float64)))
+        except (TypeError, ValueError):
+            raise FormatError(f"{name}.{names[0]} is not numeric", where=source) from None
+    n = columns[0].size
+    for i in (2, 3):  # a single cylinder was squeezed to one dimension
+        columns[i] = columns[i].reshape(1, 3) if columns[i].shape == (3,) else columns[i]
+    labels = [f"{source}: {name} cylinder {i + 1}" for i in range(n)]
+    radius, length, start, axis, parent, extension = columns
+    cylinders = treeqsm_cylinders(radius, length, start, axis, parent, extension, labels, source)
+    cylinders.name = name
+    return cylinders
+
+
+def _models_of_mat(path: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    # A damaged file fails anywhere in scipy, zlib or numpy: whatever it is, it is the file's fault.
+    try:
+        content = scipy.io.loadmat(path, squeeze_me=True, struct_as_record=False)
+    except Exception as error:
+        raise FormatError(
+            f"not a MATLAB file that can be read: {type(error).__name__}: {error}"[:200],
+            where=str(path),
+        ) from error
+    for name, value in content.items():
+        several = isinstance(value, np.ndarray) and value.dtype == object
+        for number, item in enumerate(value.ravel() if several else [value], start=1):
+            fields = getattr(item, "__dict__", {})
+            cylinder = getattr(fields.get("cylinder", item), "__dict__", {})
+            if "radius" in cylinder:
+                yield (f"{name}{number}" if several else name), cylinder
+    if "Rad" in content:
+        yield "QSM", content
+
+
+def _models_of_hdf5(path: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    try:
+        import h5py
+    except ImportError as error:
+        raise MissingDependencyError(
+            "a MATLAB file of version 7.3 needs h5py",
+            where=str(path),
+            cure="pip install h5py, or save it with the option -v7",
+        ) from error
+    try:
+        with h5py.File(path, "r") as file:
+            for name, group in file.items():
+                if name.startswith("#") or not isinstance(group, h5py.Group):
+                    continue
+                inside = group.get("cylinder", group)
+                if isinstance(inside, h5py.Group):
+                    if "radius" in inside:
+                        yield name, _arrays(inside)
+                    continue
+                for number, reference in enumerate(np.ravel(inside[()]), start=1):
+                    yield f"{name}{number}", _arrays(file[reference])
+    except (FormatError, GeneratorExit):
+        raise
+    except Exception as error:
+        raise FormatError(
+            f"not an HDF5 file that can be read: {type(error).__name__}: {error}"[:200],
+            where=str(path),
+        ) from error
+
+
+def _arrays(group: Any) -> dict[str, Any]:
+    """Fields of a cylinder group; MATLAB's columns are HDF5's rows."""
+    wanted = {name for names in _FIELDS for name in names}
+    return {name: np.transpose(group[name][()]).squeeze() for name in group if name in wanted}
