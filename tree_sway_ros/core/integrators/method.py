@@ -10,16 +10,36 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.integrators import minimal_form, multiplier_form
 from tree_sway_ros.core.integrators.chain import PlanarChain
+from tree_sway_ros.errors import ParameterError
 
 Array = NDArray[Any]
+
+
+class Oscillator(NamedTuple):
+    """I x'' + k2 x' + k1 x = M over a step: I [kg m^2], k2 [N m s], k1 [N m], h [s]."""
+
+    inertia: Array
+    damping: Array
+    stiffness: Array
+    dt: float
+
+    def acceleration(self, x: Array, v: Array, m: Array) -> Array:
+        """Angular acceleration in [rad/s^2]."""
+        return (m - self.damping * v - self.stiffness * x) / self.inertia  # type: ignore[no-any-return]
+
+    def implicit(self, x: Array, v: Array, m: Array, step: float) -> tuple[Array, Array]:
+        """Solve x1 = x + s v1, v1 = v + s a(x1, v1, m)."""
+        i, c, k = self.inertia, self.damping, self.stiffness
+        v1 = (i * v + step * (m - k * x)) / (i + step * c + step * step * k)
+        return x + step * v1, v1
 
 
 @dataclass(frozen=True)
@@ -74,6 +94,41 @@ class Method(ABC):
     def rates(self, state: Array) -> Array:
         """Angular velocities in [rad/s], (n,), a view of the state."""
 
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """
+        Step the linear oscillator under a moment that runs from m0 to m1: what the solver runs.
+
+        Parameters
+        ----------
+        x, v, m0, m1
+            Angle [rad], rate [rad/s], moments at both ends [N m]; any shape that fits the body's.
+        body
+            The oscillator and its step.
+
+        Returns
+        -------
+        x, v
+            At the end of the step.
+
+        Raises
+        ------
+        ParameterError
+            A method that the solver cannot run.
+
+        """
+        raise ParameterError(f"integrator {self.name!r} is not real-time capable",
+                             cure="take one whose real_time is True")
+
+    def propagator(self, inertia: Array, damping: Array, stiffness: Array, dt: float) -> Array:
+        """Eight coefficients a row, as `oscillators.propagator`, of this method's own step, (n, 8)."""
+        i, c, k = np.broadcast_arrays(*(np.atleast_1d(np.asarray(a, float))
+                                        for a in (inertia, damping, stiffness)))
+        body = Oscillator(i[:, None], c[:, None], k[:, None], dt)
+        with np.errstate(all="ignore"):
+            x0, v0, m0, m1 = np.eye(4)
+            x, v = self.advance(x0, v0, m0, m1, body)
+        return np.ascontiguousarray(np.hstack(np.broadcast_arrays(x, v)))
+
     def reactions(self, chain: PlanarChain, state: Array, load: Array) -> Array:
         """Force that each joint carries in [N], (n, 2), at a state under a load."""
         return minimal_form.reactions(chain.table, self.angles(state), self.rates(state), load)
@@ -93,11 +148,11 @@ class MinimalMethod(Method):
 
     def angles(self, state: Array) -> Array:
         """Return the first row."""
-        return state[0]
+        return state[0]  # type: ignore[no-any-return]
 
     def rates(self, state: Array) -> Array:
         """Return the second row."""
-        return state[1]
+        return state[1]  # type: ignore[no-any-return]
 
 
 @dataclass(frozen=True)
@@ -127,66 +182,3 @@ class MultiplierMethod(Method):
     def gap(self, chain: PlanarChain, state: Array) -> float:
         """Return the largest violation of the constraints in [m]."""
         return float(np.max(np.abs(multiplier_form.constraint(chain.table, state[0]))))
-
-
-@dataclass
-class Trajectory:
-    """
-    What `integrate` returns.
-
-    Parameters
-    ----------
-    theta
-        Angles after each step in [rad], (steps + 1, n).
-    iterations
-        Newton iterations summed over all steps (0 for explicit methods).
-    failed
-        Number of steps whose iteration did not converge.
-    state
-        The last state.
-
-    """
-
-    theta: NDArray[np.float64]
-    iterations: int = 0
-    failed: int = 0
-    state: Array = field(default_factory=lambda: np.empty(0))
-
-
-def sample(
-    wind: Callable[[NDArray[np.float64]], Array], nodes: tuple[float, ...], dt: float, steps: int
-) -> Array:
-    """Loads at a method's nodes: wind(time (k,)) -> (k, n, 2) gives (steps, nodes, n, 2)."""
-    times = dt * (np.arange(steps)[:, None] + np.asarray(nodes)[None, :])
-    values = wind(times.ravel())
-    return np.ascontiguousarray(values.reshape(steps, len(nodes), *values.shape[1:]))
-
-
-def integrate(
-    method: Method, chain: PlanarChain, loads: Array, dt: float,
-    theta: Array | None = None, omega: Array | None = None, first: Array | None = None,
-) -> Trajectory:  # fmt: skip
-    """
-    Run a method over loads, (steps, nodes, n, 2), from rest or from given angles and rates.
-
-    A state that is no longer finite stops the run; the rest of the angles is NaN.
-
-    """
-    n, kind = chain.n_segments, chain.table.dtype
-    theta = np.zeros(n, kind) if theta is None else np.asarray(theta, kind)
-    omega = np.zeros(n, kind) if omega is None else np.asarray(omega, kind)
-    state = method.start(chain, theta, omega, loads[0, 0] if first is None else first, dt)
-    options = method.options(chain, dt).astype(kind)
-    step, angles = type(method).kernel, method.angles
-    out = np.full((len(loads) + 1, n), np.nan)
-    out[0] = theta
-    result = Trajectory(out, state=state)
-    for k in range(len(loads)):
-        iterations = step(chain.table, state, loads[k], dt, options)
-        result.iterations += max(iterations, 0)
-        result.failed += iterations < 0
-        values = angles(state)
-        if not np.all(np.abs(values) < 1e6):
-            break
-        out[k + 1] = values
-    return result

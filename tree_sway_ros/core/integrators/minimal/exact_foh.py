@@ -7,9 +7,10 @@ from typing import Any, ClassVar
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.integrators.chain import PlanarChain
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
 from tree_sway_ros.core.integrators.minimal.held_moment import apply, rest_moment
 from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.oscillators import propagator
 
 Array = NDArray[Any]
 
@@ -54,3 +55,9 @@ class ExactFirstOrderHold(MinimalMethod):
     def options(self, chain: PlanarChain, dt: float) -> Array:
         """Return the propagator of the straight chain, (2n, 4n)."""
         return chain.first_order_hold(dt)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        i, c, k = body.inertia.ravel(), body.damping.ravel(), body.stiffness.ravel()
+        c0, c1, c2, c3, c4, c5, c6, c7 = propagator(i, c, k, body.dt).T[:, :, None]
+        return c0 * x + c1 * v + c2 * m0 + c3 * m1, c4 * x + c5 * v + c6 * m0 + c7 * m1

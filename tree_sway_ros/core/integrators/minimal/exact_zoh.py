@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.integrators.chain import PlanarChain
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
+from tree_sway_ros.core.integrators.minimal.exact_foh import ExactFirstOrderHold
 from tree_sway_ros.core.integrators.minimal.held_moment import apply, rest_moment
 from tree_sway_ros.core.kernel import kernel
 
@@ -36,3 +37,7 @@ class ExactZeroOrderHold(MinimalMethod):
     def options(self, chain: PlanarChain, dt: float) -> Array:
         """Return the propagator of the straight chain, (2n, 4n)."""
         return chain.first_order_hold(dt)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        return ExactFirstOrderHold().advance(x, v, m0, m0, body)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
 from tree_sway_ros.core.integrators.minimal.newton import solve_stage
 from tree_sway_ros.core.kernel import kernel
 
@@ -34,3 +34,8 @@ class ImplicitMidpoint(MinimalMethod):
     notes: ClassVar[str] = "A-stable, not L-stable: stiff modes ring at the step's own rate"
     source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, IV.3"
     kernel = staticmethod(step)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        x1, v1 = body.implicit(x, v, 0.5 * (m0 + m1), 0.5 * body.dt)
+        return 2.0 * x1 - x, 2.0 * v1 - v

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
 from tree_sway_ros.core.integrators.minimal_form import acceleration
 from tree_sway_ros.core.kernel import kernel
 
@@ -40,3 +40,16 @@ class RungeKutta4(MinimalMethod):
     notes: ClassVar[str] = "stable for w h < 2 sqrt(2) without damping, 2.785 for an overdamped mode"
     source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, IV.2"
     kernel = staticmethod(step)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        h, middle = body.dt, 0.5 * (m0 + m1)
+        a1 = body.acceleration(x, v, m0)
+        v2 = v + 0.5 * h * a1
+        a2 = body.acceleration(x + 0.5 * h * v, v2, middle)
+        v3 = v + 0.5 * h * a2
+        a3 = body.acceleration(x + 0.5 * h * v2, v3, middle)
+        v4 = v + h * a3
+        a4 = body.acceleration(x + h * v3, v4, m1)
+        x = x + h / 6.0 * (v + 2.0 * (v2 + v3) + v4)
+        return x, v + h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4)

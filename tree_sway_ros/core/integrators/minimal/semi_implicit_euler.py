@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
 from tree_sway_ros.core.integrators.minimal_form import acceleration
 from tree_sway_ros.core.kernel import kernel
 
@@ -34,3 +34,8 @@ class SemiImplicitEuler(MinimalMethod):
     notes: ClassVar[str] = "stable for w h < 2 without damping; damping lowers it to 2 (sqrt(1+z^2) - z)"
     source: ClassVar[str] = "Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2"
     kernel = staticmethod(step)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        v = v + body.dt * body.acceleration(x, v, m0)
+        return x + body.dt * v, v

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
 from tree_sway_ros.core.integrators.minimal.newton import solve_stage
 from tree_sway_ros.core.integrators.minimal_form import acceleration
 from tree_sway_ros.core.kernel import kernel
@@ -46,3 +46,10 @@ class TrBdf2(MinimalMethod):
     notes: ClassVar[str] = "A- and L-stable; light damping of slow modes"
     source: ClassVar[str] = "Hosea and Shampine 1996, Appl. Numer. Math. 20; Bank et al. 1985"
     kernel = staticmethod(step)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        h = HALF * body.dt
+        x1, v1 = x + h * v, v + h * body.acceleration(x, v, m0)
+        x1, v1 = body.implicit(x1, v1, m0 + GAMMA * (m1 - m0), h)
+        return body.implicit(MIDDLE * x1 - OLD * x, MIDDLE * v1 - OLD * v, m1, h)

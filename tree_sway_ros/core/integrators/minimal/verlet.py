@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.integrators.method import MinimalMethod
+from tree_sway_ros.core.integrators.method import MinimalMethod, Oscillator
 from tree_sway_ros.core.integrators.minimal_form import acceleration
 from tree_sway_ros.core.kernel import kernel
 
@@ -40,3 +40,9 @@ class Verlet(MinimalMethod):
     notes: ClassVar[str] = "stable for w h < 2; damping lowers it, the predicted rate acts explicitly"
     source: ClassVar[str] = "Swope, Andersen, Berens, Wilson 1982, J. Chem. Phys. 76, eq. 11"
     kernel = staticmethod(step)
+
+    def advance(self, x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> tuple[Array, Array]:
+        """Step the linear oscillator."""
+        kick = 0.5 * body.dt * body.acceleration(x, v, m0)
+        x = x + body.dt * (v + kick)
+        return x, v + kick + 0.5 * body.dt * body.acceleration(x, v + 2.0 * kick, m1)

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.integrators.method import MultiplierMethod
 from tree_sway_ros.core.integrators.chain import PlanarChain
+from tree_sway_ros.core.integrators.method import MultiplierMethod
 from tree_sway_ros.core.integrators.multiplier.index1_steps import runge_kutta
 from tree_sway_ros.core.integrators.multiplier.project import project_position, project_velocity
 from tree_sway_ros.core.kernel import kernel

@@ -69,7 +69,7 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 @kernel
 def _mass(table: Array, i: int) -> float:
     """Mass, mass or moment of inertia of a coordinate."""
-    return table[i // 3, 0] if i % 3 < 2 else table[i // 3, 1]
+    return table[i // 3, 0] if i % 3 < 2 else table[i // 3, 1]  # type: ignore[no-any-return]
 
 
 class Rattle(MultiplierMethod):
