@@ -7,6 +7,8 @@ One hour at 20 Hz, 7 m/s at 10 m, IEC class B, Kaimal: for each frequency the cl
 the Welch estimate of its record, of u, v, w, both in m^2/s^2/Hz. Takes some minutes.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pandas as pd
 import scipy.signal
@@ -30,7 +32,7 @@ def main() -> None:
     closed = kaimal_spectrum(frequency, points, **CASE) * iec_sig(points, **CASE) ** 2
     print("frequency,closed_u,closed_v,closed_w,record_u,record_v,record_w")
     edges = np.geomspace(0.02, 9.5, 25)
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         band = (frequency >= low) & (frequency < high)
         if band.any():
             row = [frequency[band].mean(), *closed[band].mean(axis=0), *estimate[band].mean(axis=0)]
