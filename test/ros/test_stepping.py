@@ -63,13 +63,11 @@ def test_each_period_is_a_step():
 
 def test_late_ticks_leave_no_trace_in_the_motion():
     poses = []
-    rng = np.random.default_rng(3)
-    for lateness in ([1] * 600, [4] * 150, rng.integers(1, 9, 60).tolist()):
+    for lateness in ([1] * 600, [4] * 150, [1, 7, 2, 20, 3, 5, 8, 4] * 12):
         simulator = SwaySimulator(TREE, rung="subtree")
         made = stepper(simulator)
         made.warm_up()
         play(made, lateness)
-        made.advance(START + 700 * PERIOD, 700 - sum(lateness), 0.02)
         poses.append(simulator.place().copy())
     np.testing.assert_array_equal(poses[0], poses[1])
     np.testing.assert_array_equal(poses[0], poses[2])

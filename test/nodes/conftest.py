@@ -1,0 +1,160 @@
+import itertools
+import os
+import threading
+import time
+
+import pytest
+
+# An int in a float field can end the process: have every field checked.
+os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
+os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+
+DEADLINE = 10.0
+_domains = itertools.count(os.getpid() * 7)
+
+TREE = """\
+segment,parent,branch,x0,y0,z0,x1,y1,z1,d0,d1
+0,-1,0,0,0,0,0,0,.5,.02,.018
+1,0,0,0,0,.5,0,0,1,.018,.014
+2,1,0,0,0,1,0,0,1.5,.014,.008
+3,1,1,0,0,1,.3,0,1.3,.006,.004
+4,1,2,0,0,1,0,.3,1.3,.006,.004
+5,1,3,0,0,1,-.3,0,1.3,.006,.004
+6,1,4,0,0,1,0,-.3,1.3,.006,.004
+"""
+
+
+class Observer:
+    """A node of a test's own, in a context of its own: another process as far as DDS goes."""
+
+    def __init__(self, domain):
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+
+        self.context = Context()
+        rclpy.init(args=[], context=self.context, domain_id=domain)
+        self.node = rclpy.create_node("observer", context=self.context)
+        self._executor = SingleThreadedExecutor(context=self.context)
+        self._executor.add_node(self.node)
+        self._more = threading.Condition()
+        self._closing = False
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def listen(self, topic, kind=None, name=None, raw=False):
+        """A list that fills with the messages of a topic of the table."""
+        from tree_sway_ros.ros.topics import message_class, qos_profile
+
+        messages = []
+
+        def take(message):
+            with self._more:
+                messages.append(message)
+                self._more.notify_all()
+
+        kind = kind or message_class(topic)
+        self.node.create_subscription(kind, name or topic.name, take, qos_profile(topic), raw=raw)
+        self._executor.wake()
+        return messages
+
+    def publisher(self, topic, kind=None, name=None):
+        """A publisher on a topic of the table, once somebody listens to it."""
+        from tree_sway_ros.ros.topics import message_class, qos_profile
+
+        made = self.node.create_publisher(
+            kind or message_class(topic), name or topic.name, qos_profile(topic)
+        )
+        self.until(lambda: made.get_subscription_count() > 0, "a subscriber")
+        return made
+
+    def call(self, kind, name, request):
+        """The response of a service."""
+        client = self.node.create_client(kind, name)
+        self.until(client.service_is_ready, name)
+        future = client.call_async(request)
+        self.until(future.done, f"a response of {name}")
+        return future.result()
+
+    def until(self, condition, what, deadline=DEADLINE):
+        """Wait until something is true; fail after the deadline."""
+        end = time.monotonic() + deadline
+        with self._more:
+            while not condition():
+                assert time.monotonic() < end, f"waited {deadline} s for {what}"
+                self._more.wait(0.02)
+
+    def close(self):
+        self._closing = True
+        self._executor.wake()
+        self._thread.join(5.0)
+        self._executor.shutdown(1.0)
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+    def _spin(self):
+        while not self._closing:
+            self._executor.spin_once(timeout_sec=0.2)
+
+
+@pytest.fixture
+def domain():
+    """A ROS domain for one test alone."""
+    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+    return 1 + next(_domains) % 99
+
+
+@pytest.fixture
+def observer(domain):
+    made = Observer(domain)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def compose(domain):
+    """Start nodes in this process: ``compose(solver={...})``."""
+    from tree_sway_ros.ros.composition import Composition
+
+    made = []
+
+    def start(namespace="", **parameters):
+        made.append(Composition(parameters, namespace=namespace, domain_id=domain))
+        return made[-1]
+
+    yield start
+    for composition in made:
+        composition.check()
+        composition.close()
+
+
+@pytest.fixture
+def tree_file(tmp_path):
+    path = tmp_path / "sapling.csv"
+    path.write_text(TREE)
+    return str(path)
+
+
+@pytest.fixture
+def statuses(observer):
+    """Newest status of each name on /diagnostics: ``statuses("solver: wind")``."""
+    from tree_sway_ros.ros.topics import DIAGNOSTICS
+
+    arrays = observer.listen(DIAGNOSTICS)
+
+    def newest(name):
+        found = [s for array in list(arrays) for s in array.status if s.name == name]
+        return found[-1] if found else None
+
+    return newest
+
+
+@pytest.fixture
+def level(statuses):
+    """Newest level of a name on /diagnostics, None before the first."""
+
+    def newest(name):
+        status = statuses(name)
+        return None if status is None else status.level[0]
+
+    return newest

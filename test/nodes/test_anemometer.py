@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytestmark = pytest.mark.ros
+
+from rclpy.parameter import Parameter  # noqa: E402
+
+from tree_sway_ros.core.anemometer_model import AnemometerModel  # noqa: E402
+from tree_sway_ros.errors import TreeSwayError  # noqa: E402
+from tree_sway_ros.ros.topics import WIND  # noqa: E402
+
+
+def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
+    compose(anemometer={"rate": 50.0, "seed": 3, "mean_speed": 8.0})
+    said = observer.listen(WIND)
+    observer.until(lambda: len(said) > 40, "wind")
+    stamps = np.array([m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in said])
+    periods = np.diff(stamps) / 2e7
+    np.testing.assert_allclose(periods, np.round(periods), atol=1e-9)
+    model = AnemometerModel(8.0, intensity=0.2, rate=50.0, seed=3, bearing_to=1.5708)
+    known = {tuple(model.sample(tick)) for tick in range(2000)}
+    assert all((m.vector.x, m.vector.y, m.vector.z) in known for m in said)
+
+
+def test_the_wind_changes_while_it_blows(compose, observer):
+    nodes = compose(anemometer={"turbulence": "none", "rate": 50.0})
+    said = observer.listen(WIND)
+    observer.until(lambda: said, "wind")
+    assert said[-1].vector.x == pytest.approx(6.0)
+    (result,) = nodes["anemometer"].set_parameters([Parameter("mean_speed", value=9)])
+    assert result.successful
+    observer.until(lambda: said[-1].vector.x == pytest.approx(9.0), "9 m/s")
+    (result,) = nodes["anemometer"].set_parameters([Parameter("mean_speed", value=99.0)])
+    assert not result.successful
+    n = len(said)
+    observer.until(lambda: len(said) > n + 2, "more wind")
+    assert said[-1].vector.x == pytest.approx(9.0)
+
+
+@pytest.mark.parametrize("kind", ["one_minus_cos", "extreme_operating_gust", "step"])
+def test_gusts_rise_over_the_mean(compose, observer, kind):
+    gust = {"gust": kind, "gust_speed": 5.0, "gust_duration": 0.5, "gust_every": 1.0}
+    compose(anemometer={"turbulence": "none", "rate": 50.0, **gust})
+    said = observer.listen(WIND)
+    observer.until(lambda: said and max(m.vector.x for m in said) > 8.0, "a gust")
+
+
+def test_a_turn_turns(compose, observer):
+    gust = {"gust": "turn", "gust_angle": 1.5708, "gust_duration": 0.3, "gust_every": 0.5}
+    compose(anemometer={"turbulence": "none", "rate": 50.0, **gust})
+    said = observer.listen(WIND)
+    observer.until(lambda: said and max(m.vector.y for m in said) > 5.9, "a turn to the north")
+
+
+def test_gusts_that_overlap_are_refused(compose):
+    with pytest.raises(TreeSwayError, match="every"):
+        compose(anemometer={"gust": "step", "gust_duration": 5.0, "gust_every": 1.0})

@@ -1,0 +1,206 @@
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytestmark = pytest.mark.ros
+
+from geometry_msgs.msg import Vector3Stamped  # noqa: E402
+from rcl_interfaces.srv import SetParameters  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
+from rclpy.serialization import deserialize_message  # noqa: E402
+from std_srvs.srv import SetBool, Trigger  # noqa: E402
+
+from tree_sway_ros.core.simulator import SwaySimulator  # noqa: E402
+from tree_sway_ros.errors import MissingDependencyError, ParameterError, TreeSwayError  # noqa: E402
+from tree_sway_ros.importers.tree_source import open_tree  # noqa: E402
+from tree_sway_ros.ros.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.ros.topics import (  # noqa: E402
+    MARKERS,
+    SEGMENT_POSES,
+    TREE_DESCRIPTION,
+    WIND_FILTERED,
+)
+from tree_sway_ros.ros.wind_messages import WindSample, wind_to_message  # noqa: E402
+
+
+def block(message):
+    return np.array(
+        [
+            [p.position.x, p.position.y, p.position.z]
+            + [p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w]
+            for p in message.poses
+        ]
+    )
+
+
+def stamp(message):
+    return message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+
+
+class Breeze:
+    """Publishes `wind/filtered` from a timer of the observer."""
+
+    def __init__(self, observer, vector, name=None, rate=20.0):
+        self.vector = vector
+        self._publisher = observer.publisher(WIND_FILTERED, name=name)
+        self._clock = observer.node.get_clock()
+        self._timer = observer.node.create_timer(1.0 / rate, self.blow)
+
+    def blow(self):
+        if self.vector is not None:
+            sample = WindSample(self._clock.now().nanoseconds, "map", *self.vector)
+            self._publisher.publish(wind_to_message(Vector3Stamped, sample))
+
+
+def test_without_wind_the_rest_pose_comes_at_the_full_rate(compose, observer, statuses, tree_file):
+    compose(solver={"tree": tree_file})
+    frames = observer.listen(SEGMENT_POSES)
+    observer.until(lambda: len(frames) > 60, "a second of frames")
+    rest = SwaySimulator(open_tree(tree_file).tree).place()
+    assert frames[0].header.frame_id == "map"
+    np.testing.assert_array_equal(block(frames[0]), rest)
+    np.testing.assert_array_equal(block(frames[60]), rest)
+    stamps = np.array([stamp(frame) for frame in frames])
+    assert np.median(np.diff(stamps)) == pytest.approx(1e9 / 60, rel=1e-6)
+    observer.until(lambda: statuses("solver: wind") is not None, "diagnostics")
+    assert statuses("solver: wind").level[0] == WARN
+    assert "no wind yet" in statuses("solver: wind").message
+    assert statuses("solver: model").level[0] == OK
+
+
+def test_a_late_joiner_gets_the_structure_and_the_next_pose(compose, observer, tree_file):
+    compose(solver={"tree": tree_file})
+    described = observer.listen(TREE_DESCRIPTION)
+    observer.until(lambda: described, "the description")
+    told = json.loads(described[0].data)
+    frames = observer.listen(SEGMENT_POSES)
+    markers = observer.listen(MARKERS)
+    observer.until(lambda: frames and markers, "a frame")
+    assert len(frames[0].poses) == len(told["segments"]["names"]) == 7
+    lines = sum(len(marker.points) for marker in markers[0].markers)
+    assert lines == 2 * 7
+
+
+def test_a_dropout_decays_to_rest_while_poses_go_on(compose, observer, level, tree_file):
+    nodes = compose(solver={"tree": tree_file, "timeout": 0.4, "decay": 0.2, "damping_ratio": 0.5})
+    frames = observer.listen(SEGMENT_POSES)
+    observer.until(lambda: frames, "a frame")
+    rest = block(frames[0])
+    breeze = Breeze(observer, (8.0, 0.0, 0.0))
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, "the tree to bend east")
+    observer.until(lambda: level("solver: wind") == OK, "OK")
+    breeze.vector = None
+    levels = []
+
+    def at_rest():
+        levels.append(level("solver: wind"))
+        return levels[-1] == STALE and np.abs(block(frames[-1]) - rest).max() < 1e-4
+
+    observer.until(at_rest, "rest")
+    breeze.vector = (8.0, 0.0, 0.0)
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, "the tree to bend again")
+    x = np.array([block(frame)[2, 0] for frame in frames])
+    seconds = np.diff([stamp(frame) for frame in frames]) * 1e-9
+    fastest_swing = 2.0 * np.pi * nodes["solver"].simulator.frequencies()[0] * np.ptp(x)
+    assert (np.abs(np.diff(x)) / seconds).max() < fastest_swing
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e300])
+def test_bad_wind_leaves_the_state_alone(compose, observer, tree_file, bad):
+    nodes = compose(solver={"tree": tree_file})
+    frames = observer.listen(SEGMENT_POSES)
+    breeze = Breeze(observer, (bad, 0.0, 0.0))
+    counts = nodes["solver"]._gate.counts
+    observer.until(lambda: counts.refused > 3 and len(frames) > 5, "refusals")
+    np.testing.assert_array_equal(block(frames[-1]), block(frames[0]))
+    breeze.vector = (5.0, 0.0, 0.0)
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-4, "the tree to bend")
+
+
+def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tree_file):
+    nodes = compose(solver={"tree": tree_file})
+
+    def change(name, value):
+        request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
+        return observer.call(SetParameters, "solver/set_parameters", request).results[0]
+
+    assert not change("publish_every", 0).successful
+    assert "0 .. 2" in change("wind_delay", "x").reason
+    assert "read at start only" in change("rate", 30.0).reason
+    assert nodes["solver"].values["rate"] == 60.0
+    frames = observer.listen(SEGMENT_POSES)
+    assert change("publish_every", 4).successful
+    n = len(frames)
+    observer.until(lambda: len(frames) > n + 6, "frames")
+    steps = np.diff([stamp(frame) for frame in frames[n + 2 :]])
+    assert np.median(steps) == pytest.approx(4e9 / 60, rel=1e-6)
+
+
+def test_pause_holds_the_pose_and_reset_goes_to_rest(compose, observer, tree_file):
+    compose(solver={"tree": tree_file})
+    frames = observer.listen(SEGMENT_POSES)
+    observer.until(lambda: frames, "a frame")
+    rest = block(frames[0])
+    breeze = Breeze(observer, (8.0, 3.0, 0.0))
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, "the tree to bend")
+    assert observer.call(SetBool, "solver/pause", SetBool.Request(data=True)).success
+    n = len(frames) + 2
+    observer.until(lambda: len(frames) > n + 10, "frames while paused")
+    held = [block(frame) for frame in frames[n:]]
+    assert all((pose == held[0]).all() for pose in held)
+    assert observer.call(Trigger, "solver/reset", Trigger.Request()).success
+    observer.until(lambda: (block(frames[-1]) == rest).all(), "rest")
+    breeze.vector = None
+    assert observer.call(SetBool, "solver/pause", SetBool.Request(data=False)).message == "running"
+
+
+def test_two_trees_side_by_side(compose, observer, tree_file):
+    compose(namespace="oak", solver={"tree": tree_file})
+    compose(namespace="elm", solver={"tree": tree_file})
+    oak = observer.listen(SEGMENT_POSES, name="oak/segment_poses")
+    elm = observer.listen(SEGMENT_POSES, name="elm/segment_poses")
+    Breeze(observer, (8.0, 0.0, 0.0), name="oak/wind/filtered")
+    observer.until(lambda: oak and block(oak[-1])[2, 0] > 1e-3, "the oak to bend")
+    np.testing.assert_array_equal(block(elm[-1]), block(elm[0]))
+    topics = dict(observer.node.get_topic_names_and_types())
+    assert not {"/segment_poses", "/markers", "/tree_description"} & set(topics)
+
+
+def test_bytes_on_the_wire_are_a_pose_array(compose, observer, tree_file):
+    from geometry_msgs.msg import PoseArray
+
+    compose(solver={"tree": tree_file})
+    raw = observer.listen(SEGMENT_POSES, raw=True)
+    observer.until(lambda: raw, "a frame")
+    assert len(deserialize_message(raw[0], PoseArray).poses) == 7
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"tree": "oka.yaml"}, "no tree 'oka.yaml'"),
+        ({"species": "oka"}, "unknown species 'oka'"),
+        ({"fidelity": "brnch"}, "did you mean 'branch'"),
+        ({"rats": 60.0}, "did you mean 'rate'"),
+    ],
+)
+def test_what_cannot_start_says_why(compose, parameters, message):
+    with pytest.raises(TreeSwayError, match=message):
+        compose(solver=parameters)
+
+
+def test_transforms_need_their_message(compose, tree_file):
+    try:
+        import tf2_msgs  # noqa: F401
+    except ImportError:
+        with pytest.raises(MissingDependencyError, match="leave publish_tf false"):
+            compose(solver={"tree": tree_file, "publish_tf": True})
+    else:
+        pytest.skip("tf2_msgs is installed")
+
+
+def test_a_parameter_of_another_kind_names_itself(compose):
+    with pytest.raises(ParameterError, match="parameter 'rate': 'fast' is not a number"):
+        compose(solver={"rate": "fast"})
