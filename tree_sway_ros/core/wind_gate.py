@@ -194,7 +194,7 @@ class WindGate:
 
         """
         x, y, z = three_numbers("wind", vector)
-        is_repeated = stamp == self._stamp and (x, y, z) == self._seen
+        is_repeated = stamp > 0.0 and stamp == self._stamp and (x, y, z) == self._seen
         time = self._time_of(stamp, stamp if arrival is None else arrival)
         if is_repeated:
             reason = Reason.REPEATED
