@@ -14,23 +14,14 @@ from tree_sway_ros.importers.imported_tree import TreeFile
 from tree_sway_ros.importers.tree_source import open_tree
 
 
-def add_tree_arguments(parser: argparse.ArgumentParser, *, default: str | None = None) -> None:
-    """
-    Add TREE and what can be said of its wood.
+def add_tree_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add TREE and what can be said of its wood."""
+    parser.add_argument("tree", metavar="TREE", help="benjamina, goldcrest, broadleaf, or a file")
+    add_wood_arguments(parser)
 
-    Parameters
-    ----------
-    parser
-        Parser of the command.
-    default
-        The tree if none is given, by the option ``--tree``; a positional argument if None.
 
-    """
-    meaning = "benjamina, goldcrest, broadleaf, or a file"
-    if default is None:
-        parser.add_argument("tree", metavar="TREE", help=meaning)
-    else:
-        parser.add_argument("--tree", default=default, help=f"{meaning} (%(default)s)")
+def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what can be said of the wood of a tree."""
     parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
     parser.add_argument("--species", help=f"its wood, if not the tree's own: {', '.join(species_keys())}")
     parser.add_argument("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")

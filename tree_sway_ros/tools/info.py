@@ -1,0 +1,164 @@
+"""``tree-sway info``: what a tree is, and how it would sway."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.banks import Bank, build_bank
+from tree_sway_ros.core.settings import RUNGS, SimulatorSettings
+from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.tools.mode_table import ModeRow, mode_table
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
+
+_BREAST_HEIGHT = 1.3
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_tree_arguments(parser)
+    parser.add_argument("--rung", choices=RUNGS, default="modes", help="model (%(default)s)")
+    parser.add_argument(
+        "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
+    )
+    parser.add_argument(
+        "--count", type=int, default=10, metavar="N", help="how many frequencies (%(default)s)"
+    )
+    parser.add_argument("--json", action="store_true", help="for programs, SI units")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print what a tree is."""
+    if arguments.count < 1:
+        raise ParameterError(f"{arguments.count} frequencies", where="--count", cure="ask for 1 or more")
+    tree_file = opened_tree(arguments)
+    facts = tree_facts(
+        tree_file, rung=arguments.rung, has_gravity=arguments.gravity == "on", count=arguments.count
+    )
+    print(json.dumps(facts, indent=2) if arguments.json else _text(facts, tree_file))
+    return 0
+
+
+def tree_facts(tree_file: TreeFile, *, rung: str, has_gravity: bool, count: int) -> dict[str, Any]:
+    """
+    Gather what there is to say about a tree.
+
+    Parameters
+    ----------
+    tree_file
+        The tree and its wood.
+    rung
+        Model of the sway.
+    has_gravity
+        Whether its own weight makes it softer.
+    count
+        How many natural frequencies.
+
+    Returns
+    -------
+    dict
+        SI units throughout; fit for JSON.
+
+    Raises
+    ------
+    TreeSwayError
+        A tree that cannot be modelled.
+
+    """
+    tree, species = tree_file.tree, tree_file.species
+    gravity, notes = 9.81 if has_gravity else 0.0, list(tree_file.notes)
+    try:
+        bank = _bank(tree_file, rung, gravity, count)
+    except TreeError as error:
+        if not has_gravity:
+            raise
+        # A scan of leaves and noise may not stand; its size is asked for all the same.
+        gravity = 0.0
+        notes.append(f"modes without its own weight, as it cannot stand: {error}")
+        bank = _bank(tree_file, rung, gravity, count)
+    rows = mode_table(tree, bank, count)
+    return {
+        "name": tree.name,
+        "source": tree_file.source,
+        "notes": notes,
+        "branches": tree.n_branches,
+        "segments": tree.n_segments,
+        "height": tree.height,
+        "length": float(tree.length.sum()),
+        "volume": float(tree.volume.sum()),
+        "base_diameter": float(tree.base_diameter[0]),
+        "breast_height_diameter": _diameter_at(tree_file, _BREAST_HEIGHT),
+        "species": species.key,
+        "species_is_estimate": species.is_estimate,
+        "modulus": species.modulus,
+        "density": species.density,
+        "mass": bank.mass,
+        "stem_mass": float(species.density * tree.volume[tree.segments_of(0)].sum()),
+        "gravity": gravity,
+        "rung": rung,
+        "solved": bank.n_solved,
+        "copied": tree.n_branches - bank.n_solved,
+        "frequencies": [row.frequency for row in rows],
+        "modes": [_mode(row) for row in rows],
+    }
+
+
+def _bank(tree_file: TreeFile, rung: str, gravity: float, count: int) -> Bank:
+    # A branch has two coordinates at least; a small tree may have fewer modes than were asked for.
+    n_modes = min(count, 2 * tree_file.tree.n_branches)
+    settings = SimulatorSettings(rung=rung, gravity=gravity, n_modes=n_modes)
+    return build_bank(tree_file.tree, tree_file.species, settings)
+
+
+def _mode(row: ModeRow) -> dict[str, Any]:
+    return {
+        "frequency": row.frequency,
+        "damping_ratio": row.damping_ratio,
+        "axis": [round(float(component), 6) for component in row.axis],
+        "direction": row.direction,
+        "branch": row.branch,
+    }
+
+
+def _diameter_at(tree_file: TreeFile, height: float) -> float | None:
+    """Diameter of the stem at a height above the ground in [m]; None if it is not that high."""
+    tree = tree_file.tree
+    stem = tree.segments_of(0)
+    level = np.concatenate([tree.start[stem, 2], tree.end[stem, 2][-1:]]) - tree.start[0, 2]
+    thick = np.concatenate([tree.base_diameter[stem], tree.tip_diameter[stem][-1:]])
+    above = np.flatnonzero(level >= height)
+    if not len(above):
+        return None
+    at = int(above[0])
+    return float(np.interp(height, level[at - 1 : at + 1], thick[at - 1 : at + 1]))
+
+
+def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
+    breast = facts["breast_height_diameter"]
+    estimate = " (an estimate)" if facts["species_is_estimate"] else ""
+    weight = "with its own weight" if facts["gravity"] else "without its own weight"
+    lines = [
+        f"{facts['name']}, from {facts['source']}",
+        f"  size       {facts['branches']} branches, {facts['segments']} segments, "
+        f"{facts['height']:.2f} m high, {facts['volume'] * 1e3:.4g} l of wood",
+        f"  diameter   {facts['base_diameter'] * 1e3:.1f} mm at the ground"
+        + (f", {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m" if breast is not None else ""),
+        f"  wood       {tree_file.species.title}{estimate}: {facts['modulus'] / 1e9:.3g} GPa, "
+        f"{facts['density']:.4g} kg/m^3",
+        f"  mass       {facts['mass']:.4g} kg, {facts['stem_mass']:.4g} kg of it in the stem",
+        f"  model      {facts['rung']}: {facts['solved']} branches solved, {facts['copied']} copied",
+    ]
+    lines += [f"  note       {note}" for note in facts["notes"]]
+    if facts["modes"]:
+        lines.append(f"  natural modes, {weight}:")
+        lines.append("       Hz   damping   sways along (east = 0, north = 90)   most in branch")
+    for mode in facts["modes"]:
+        lines.append(
+            f"  {mode['frequency']:7.3f}   {mode['damping_ratio']:7.3f}   "
+            f"{mode['direction']:35}  {mode['branch']}"
+        )
+    return "\n".join(lines)

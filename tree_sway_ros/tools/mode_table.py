@@ -1,0 +1,115 @@
+"""
+Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that bends most.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway_ros.core.banks import Bank
+from tree_sway_ros.core.kinematics import place
+from tree_sway_ros.core.modal import ModalBank
+from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.uncoupled import UncoupledBank
+from tree_sway_ros.view.projection import ends_of_poses
+
+_SMALL_ANGLE = 1e-4
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """
+    One natural mode.
+
+    Parameters
+    ----------
+    frequency
+        Without air in [Hz].
+    damping_ratio
+        Of the wood and leaves, without air, in [-].
+    axis
+        Direction that most of the moving mass sways in, a unit vector whose sign means nothing, (3,).
+    branch
+        Name of the branch that bends most.
+
+    """
+
+    frequency: float
+    damping_ratio: float
+    axis: Floats
+    branch: str
+
+    @property
+    def direction(self) -> str:
+        """The axis for people: degrees from east to north, and upwards where it is not level."""
+        x, y, z = self.axis if self.axis[np.argmax(np.abs(self.axis))] > 0.0 else -self.axis
+        level = float(np.hypot(x, y))
+        up = float(np.degrees(np.arctan2(z, level)))
+        if abs(up) > 80.0:
+            return "up and down"
+        azimuth = float(np.degrees(np.arctan2(y, x))) % 180.0
+        side = up if y > 0.0 or (y == 0.0 and x > 0.0) else -up
+        return f"{azimuth:5.1f} deg" + (f", {side:+.0f} up" if abs(side) >= 10.0 else "")
+
+
+def mode_table(tree: Tree, bank: Bank, count: int) -> list[ModeRow]:
+    """
+    List the slowest modes.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    bank
+        The tree as one rung of the ladder models it. Where branches swing on their own, each has a
+        mode a branch and axis.
+    count
+        How many modes at most.
+
+    Returns
+    -------
+    list of ModeRow
+        The slowest first; empty for a frozen tree.
+
+    """
+    frequencies, ratios, shapes = _modes(bank, count)
+    owner = np.repeat(np.arange(tree.n_branches), bank.branches["n_coordinates"])
+    rows = []
+    for frequency, ratio, shape in zip(frequencies, ratios, shapes.T, strict=True):
+        branch = int(owner[np.argmax(np.abs(shape))])
+        axis = _axis(tree, bank, shape)
+        rows.append(ModeRow(float(frequency), float(ratio), axis, tree.branch_names[branch]))
+    return rows
+
+
+def _modes(bank: Bank, count: int) -> tuple[Floats, Floats, Floats]:
+    """Frequencies in [Hz], damping ratios and key rotations (N, m) of the slowest modes."""
+    oscillators = bank.oscillators
+    if isinstance(oscillators, ModalBank):
+        circular = np.sqrt(oscillators.stiffness[:count])
+        ratios = oscillators.damping[:count] / (2.0 * circular)
+        return circular / (2.0 * np.pi), ratios, oscillators.shapes[:, :count]
+    if not isinstance(oscillators, UncoupledBank):
+        return np.zeros(0), np.zeros(0), np.zeros((0, 0))
+    circular = np.repeat(np.sqrt(oscillators.stiffness / oscillators.inertia), 2)
+    ratios = np.repeat(oscillators.damping / oscillators.inertia, 2) / (2.0 * circular)
+    slowest = np.argsort(circular, kind="stable")[:count]
+    shapes = np.zeros((len(circular), len(slowest)))
+    shapes[slowest, np.arange(len(slowest))] = 1.0
+    return circular[slowest] / (2.0 * np.pi), ratios[slowest], shapes
+
+
+def _axis(tree: Tree, bank: Bank, shape: Floats) -> Floats:
+    """Principal direction of the motion of the wood in a mode, (3,)."""
+    poses = np.zeros((tree.n_segments, 7))
+    small = _SMALL_ANGLE / np.abs(shape).max() * shape
+    work = bank.oscillators.work.copy()
+    place(bank.branches, bank.segments, work, small, tree.start[0], poses)
+    start, end = ends_of_poses(poses, tree.length)
+    moved = (start + end - tree.start - tree.end) / (2.0 * _SMALL_ANGLE)
+    _, axes = np.linalg.eigh(np.einsum("n,ni,nj->ij", tree.volume, moved, moved))
+    axis: Floats = axes[:, -1]
+    return axis

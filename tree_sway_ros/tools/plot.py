@@ -1,0 +1,85 @@
+"""
+``tree-sway plot``: the wind and the motion of the tip over time, or with ``--tree`` the tree itself.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway_ros.core.anemometer_model import AnemometerModel
+from tree_sway_ros.core.settings import RUNGS
+from tree_sway_ros.core.simulator import SwaySimulator
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.importers.wind_file import read_wind
+from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
+from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_tree
+from tree_sway_ros.view.pictures import picture_in_wind
+from tree_sway_ros.view.plots import plot_wind_and_tip
+
+_SETTLING = 60.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        "tree", nargs="?", default="benjamina", metavar="TREE", help="name or file (%(default)s)"
+    )
+    parser.add_argument(
+        "--tree",
+        nargs="?",
+        const="",
+        dest="portrait",
+        metavar="TREE",
+        help="draw the tree at rest and, beside it, in a steady westerly",
+    )
+    add_wood_arguments(parser)
+    parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
+    parser.add_argument("--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --tree)")
+    parser.add_argument("--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)")
+    parser.add_argument("--rung", choices=RUNGS, default="modes", help="model of the sway (%(default)s)")
+    parser.add_argument("-o", "--output", default="sway.png", metavar="FILE", help="picture (%(default)s)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draw, and say where the picture is."""
+    if not 0.0 < arguments.seconds <= 3600.0:
+        raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0 to 3600")
+    arguments.tree = arguments.portrait or arguments.tree
+    tree_file = opened_tree(arguments)
+    if arguments.portrait is not None:
+        _portrait(tree_file, arguments)
+    else:
+        _motion(tree_file, arguments)
+    print(arguments.output)
+    return 0
+
+
+def _portrait(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
+    speed = 10.0 if arguments.speed is None else arguments.speed
+    simulator = SwaySimulator(tree_file.tree, tree_file.species, rung=arguments.rung)
+    wind = np.array([speed, 0.0, 0.0])
+    for _ in range(round(_SETTLING * 60.0)):
+        simulator.step(wind, 1.0 / 60.0)
+    picture_in_wind(tree_file.tree, simulator.place(), wind, arguments.output)
+
+
+def _motion(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
+    speed = 6.0 if arguments.speed is None else arguments.speed
+    source = f"simulated wind, mean {speed:g} m/s"
+    samples: Samples
+    if arguments.wind is None:
+        samples = simulated(AnemometerModel(speed))
+    else:
+        record = read_wind(arguments.wind)
+        samples, source = recorded(record), Path(record.source).name
+    simulator = SwaySimulator(tree_file.tree, tree_file.species, rung=arguments.rung)
+    result = ride(simulator, samples, arguments.seconds)
+    if len(result.time) < 2:
+        raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
+    title = f"{tree_file.tree.name}, {arguments.rung}, {source}"
+    plot_wind_and_tip(result.time, result.wind, result.tip, arguments.output, title=title)

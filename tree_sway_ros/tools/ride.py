@@ -1,0 +1,93 @@
+"""
+A tree taken through a wind without ROS, as fast as the machine can.
+
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway_ros.core.anemometer_model import AnemometerModel
+from tree_sway_ros.core.simulator import SwaySimulator
+from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.wind_averaging import WindAverage
+from tree_sway_ros.importers.wind_record import WindRecord
+
+Samples = Iterator[tuple[float, Floats]]
+
+
+@dataclass(frozen=True)
+class Ride:
+    """
+    What happened, one row a step.
+
+    Parameters
+    ----------
+    time
+        End of each step in [s], (n,).
+    wind
+        Mean wind over the step in [m/s], (n, 3).
+    tip
+        Displacement of the highest tip from rest in [m], (n, 3).
+
+    """
+
+    time: Floats
+    wind: Floats
+    tip: Floats
+
+
+def recorded(record: WindRecord) -> Samples:
+    """Samples of a record: time in [s] and velocity in [m/s], (3,)."""
+    yield from zip(record.time.tolist(), record.velocity, strict=True)
+
+
+def simulated(model: AnemometerModel) -> Samples:
+    """Samples of a simulated anemometer, without end."""
+    for tick in itertools.count():
+        yield tick / model.rate, model.sample(tick)
+
+
+def ride(simulator: SwaySimulator, samples: Samples, seconds: float, rate: float = 60.0) -> Ride:
+    """
+    Take a tree through a wind.
+
+    Parameters
+    ----------
+    simulator
+        The tree; goes on from the state it is in.
+    samples
+        Time in [s] and velocity in [m/s], rising in time; ends when they end.
+    seconds
+        Ends after so long at the latest [s].
+    rate
+        Steps a second in [Hz].
+
+    Returns
+    -------
+    Ride
+        Time, wind and tip.
+
+    """
+    average = WindAverage()
+    dt = 1.0 / rate
+    time, wind, tip = [], [], []
+    coming = next(samples, None)
+    for step in range(round(seconds * rate)):
+        begin, end = step * dt, (step + 1) * dt
+        while coming is not None and coming[0] <= end:
+            average.add(*coming)
+            coming = next(samples, None)
+        if coming is None:
+            break
+        mean = average.mean(begin, end)
+        simulator.step(mean, dt)
+        simulator.place()
+        time.append(end)
+        wind.append(np.array(mean))
+        tip.append(simulator.tip_displacement)
+    return Ride(np.array(time), np.array(wind).reshape(-1, 3), np.array(tip).reshape(-1, 3))
