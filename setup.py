@@ -52,7 +52,7 @@ extras = {
     ],
     "bag": ["rosbags>=0.10"],
     "plot": ["matplotlib>=3.6"],
-    "gltf": ["pygltflib>=1.16"],
+    "gltf": ["trimesh>=4.0"],
     "h5": ["h5py>=3.7"],
     # colcon runs pytest only where an extra of this name asks for it.
     "test": ["pytest>=7,<9", "hypothesis>=6.60", "mpmath>=1.2"],
