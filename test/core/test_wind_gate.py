@@ -172,6 +172,12 @@ class TestStamps:
         assert (verdict.accepted, verdict.reason) == (False, Reason.REPEATED)
         assert gate.counts.duplicate_stamp == gate.counts.repeated == 1
 
+    def test_equal_readings_without_stamps_are_no_repeats(self):
+        gate = WindGate()
+        for i in range(20):
+            assert gate.offer(0.0, (3.0, 0.0, 0.0), 100.0 + i * PERIOD).accepted
+        assert gate.counts.zero_stamp == 20
+
     def test_stamps_of_whole_seconds_are_spread_by_arrival(self):
         gate = WindGate()
         times = []
