@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tree_sway_ros.errors import FormatError
@@ -21,6 +21,7 @@ def test_one_wrong_stamp_costs_one_sample():
     assert record.first_refused == "line 3: its time is out of order"
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(-1e6, 1e6), max_size=60))
 def test_what_is_kept_increases_and_nothing_more_could_be(times):
     kept = np.array(times)[increasing(np.array(times))]

@@ -54,8 +54,7 @@ def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -
     Make what is thinner than a scan can see taper to a measured twig diameter.
 
     From the place where a branch first gets thinner than is trusted, its diameter falls in a straight
-    line to that of a twig at its tip; a branch that is thin from its base begins no thicker than its
-    parent is there. After the idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of
+    line to that of a twig at its tip; it begins no thicker than what it sits on. After the idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of
     untrusted cylinders by a taper towards twigs measured by hand.
 
     Parameters
@@ -76,12 +75,11 @@ def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -
         if len(thin) == 0:
             continue
         first = int(thin[0])
+        widest = float(base[part][first])
         if first > 0:
-            widest = float(tip[part][first - 1])
+            widest = min(widest, float(tip[part][first - 1]))
         elif tree.segment_parent[part.start] >= 0:
-            widest = min(float(base[part.start]), float(base[tree.segment_parent[part.start]]))
-        else:
-            widest = float(base[part.start])
+            widest = min(widest, float(base[tree.segment_parent[part.start]]))
         widest = max(widest, twig_diameter, _LEAST_DIAMETER)
         along = (reach - reach[first]) / (reach[-1] - reach[first])
         line = np.maximum(widest + (twig_diameter - widest) * along, _LEAST_DIAMETER)

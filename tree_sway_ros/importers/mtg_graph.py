@@ -70,15 +70,17 @@ def parse_mtg(lines: list[str], source: str) -> list[MtgVertex]:
     latest: list[int] = []
     for number, line in enumerate(lines[begin + 1 :], start=begin + 2):
         cells = line.rstrip().split("\t")
-        column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
-        if column is None:
+        if not line.strip():
             continue
         where = f"{source}:{number}"
+        column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
+        if column is None:
+            raise FormatError(f"no code in the first {first} columns", where=where)
         code = cells[column].strip()
         goes_on = code.startswith("^")
         if column - (not goes_on) >= len(latest):
             raise TreeError(
-                f"'{code[:20]}' sits on nothing", where=where, cure="indent it one column further"
+                f"'{code[:20]}' sits on nothing", where=where, cure="check its column"
             )
         reference = latest[column] if goes_on else (latest[column - 1] if column else -1)
         reference = _add(vertices, code.removeprefix("^"), reference, scales, where)
