@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.tree import Floats, Ints, Tree
 from tree_sway_ros.core.tree_building import tree_from_segments
 
 RATIOS: tuple[tuple[float, float], ...] = ((0.65, 0.6), (0.5, 0.6), (0.4, 0.35))
@@ -121,7 +121,10 @@ def _grown(orders: list[_Order], segments: int, angle: float, name: str) -> Tree
                 seat = base + node / segments * orders[order].length * direction
                 way = _aside(direction, math.radians(angle), turns * _GOLDEN_ANGLE)
                 shoots.append((seat, way, order + 1, segments * index + node - 1))
-    start, end, width, parent = [], [], [], []
+    start: list[Floats] = []
+    end: list[Floats] = []
+    width: list[Floats] = []
+    parent: list[Ints] = []
     for base, direction, order, seat_segment in shoots:
         kind = orders[order]
         nodes = base + place[:, None] * kind.length * direction
