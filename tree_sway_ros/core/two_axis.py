@@ -16,7 +16,7 @@ cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 
 **Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right to
 3e-9 up to the guard; no root, sine or cosine is taken.
-**Guard.** t is held at T_MAX, where sinc = .3 (2.36 rad): beyond it the moment is bounded, not right.
+**Guard.** For these terms (x, y) is held within sinc >= .3 (2.36 rad): beyond it they are the circle's.
 The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max k1, and the
 gyroscopic term is left out where w h >= .5, where a step sees no ellipse. A bounded moment on an exact,
 stable propagator is a bounded motion, for any wind and any step.
@@ -38,6 +38,17 @@ T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = .3
 LOAD_MAX = 3.0  # s_max: largest load over stiffness that is followed, |W| / k1 [rad]
 MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
+
+
+@fused
+def _held(x: float, y: float) -> tuple[float, float, float]:
+    """Return x, y and t, pulled back to the guard's circle where they lie beyond it."""
+    t = x * x + y * y
+    limit = like(T_MAX, x)
+    if t > limit:
+        shrink = math.sqrt(limit / t)
+        return x * shrink, y * shrink, limit
+    return x, y, t
 
 
 @fused
@@ -76,7 +87,7 @@ def true_force(
         Generalised force over the inertia of each direction, in [N m]; (w1, w2) at zero.
 
     """
-    t = min(x * x + y * y, like(T_MAX, x))
+    x, y, t = _held(x, y)
     s, c, _, _ = _series(t)
     one = like(1.0, x)
     sinc = one + t * s
@@ -103,7 +114,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
         Acceleration in [rad/s^2]; zero for motion in one plane.
 
     """
-    t = min(x * x + y * y, like(T_MAX, x))
+    x, y, t = _held(x, y)
     s, c, s1, c1 = _series(t)
     one, two, three = like(1.0, x), like(2.0, x), like(3.0, x)
     inverse = one / (one + t * s)
