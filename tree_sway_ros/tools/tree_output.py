@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.importers.yaml_writing import write_yaml_tree
+from tree_sway_ros.importers.tree_export import write_tree
 
-OUTPUT_HELP = "file to write: .yaml"
+OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
 
 
 def write_tree_file(path: str, tree: Tree, species: Species) -> None:
     """Write a tree and say what was written."""
-    write_yaml_tree(Path(path), tree, species)
+    write_tree(path, tree, species)
     size = f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
     print(f"{path}: {tree.name}, {size}")

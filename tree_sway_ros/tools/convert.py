@@ -1,0 +1,24 @@
+"""``tree-sway convert``: any tree this package reads, written in a format that others read."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
+from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_tree_arguments(parser)
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read a tree and write it."""
+    tree_file = opened_tree(arguments)
+    for note in tree_file.notes:
+        print(f"note: {note}", file=sys.stderr)
+    write_tree_file(arguments.output, tree_file.tree, tree_file.species)
+    return 0
