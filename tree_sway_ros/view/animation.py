@@ -116,7 +116,7 @@ def _frame_of_all(tree: Tree, blocks: list[Floats], camera: Camera) -> Frame:
     corners = [_box(tree.start), _box(tree.end)]
     for block in blocks:
         corners += [_box(points) for points in ends_of_poses(block, tree.length)]
-    return frame_around(np.vstack(corners), camera)
+    return frame_around(np.vstack(corners), camera, headroom=0.1)
 
 
 def _box(points: Floats) -> Floats:

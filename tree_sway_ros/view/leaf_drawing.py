@@ -2,21 +2,53 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.view.projection import Camera
 
-# Each cluster is a short spray: where its blades sit along it, how they fan out and tilt in [rad].
-_SEATS = np.array([-0.55, -0.3, -0.05, 0.15])
-_FANS = np.array([0.95, -0.85, 0.7, -0.25])
-_TILTS = np.array([0.35, -0.3, 0.4, -0.2])
-_PER_CLUSTER = len(_SEATS)
-# Blades of this length and shape show together the area of a disc as wide as the cluster.
-_LENGTH = 0.9
-_NEEDLE_LENGTH, _NEEDLE_WIDTH = 1.5, 0.65
-_NEEDLES = ("goldcrest", "spruce", "sitka", "pine", "douglas_fir")
+
+@dataclass(frozen=True)
+class _Spray:
+    """
+    How a cluster is drawn: a short spray of blades that together show the area of a disc as wide.
+
+    Parameters
+    ----------
+    seats
+        Place of each blade along the spray in lengths of a blade.
+    fans, tilts
+        How each fans out in the plane of the cluster, and turns about itself, in [rad].
+    length, width
+        Of a blade over the size of the cluster, and over those of `_BLADE`.
+
+    """
+
+    seats: Floats
+    fans: Floats
+    tilts: Floats
+    length: float
+    width: float
+
+
+_LEAVES = _Spray(
+    seats=np.array([-0.55, -0.3, -0.05, 0.15]),
+    fans=np.array([0.95, -0.85, 0.7, -0.25]),
+    tilts=np.array([0.35, -0.3, 0.4, -0.2]),
+    length=0.9,
+    width=1.0,
+)
+_NEEDLES = _Spray(
+    seats=np.linspace(-0.7, 0.2, 9),
+    fans=np.array([0.8, -0.7, 0.6, -0.8, 0.5, -0.5, 0.4, -0.35, 0.05]),
+    tilts=np.linspace(-0.8, 0.8, 9),
+    length=1.0,
+    width=0.36,
+)
+_NEEDLED = ("goldcrest", "spruce", "sitka", "pine", "douglas_fir")
 _GREEN = np.array([0.30, 0.50, 0.20])
 _GREENS = {
     "goldcrest": np.array([0.63, 0.70, 0.22]),
@@ -41,7 +73,7 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
     Parameters
     ----------
     species
-        Key in the species table; blades of conifers are narrow.
+        Key in the species table; blades of conifers are narrow and more.
     poses
         Pose block of the clusters, (m, 7), as of `leaf_poses`.
     size
@@ -50,20 +82,19 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
     Returns
     -------
     corners, normal
-        Corners of each blade in [m], (4 m, 6, 3), and the unit vector across it, (4 m, 3).
+        Corners of each blade in [m], (k m, 6, 3), and the unit vector across it, (k m, 3).
 
     """
-    m = len(poses)
-    cluster = Rotation.from_quat(np.repeat(poses[:, 3:], _PER_CLUSTER, axis=0))
-    fan = np.column_stack([np.tile(_FANS, m), np.tile(_TILTS, m)])
-    own = cluster * Rotation.from_euler("ZX", fan)
-    length = _LENGTH * np.repeat(size, _PER_CLUSTER)
-    blade = np.concatenate([_BLADE, np.zeros((len(_BLADE), 1))], axis=1)
-    if species in _NEEDLES:
-        blade = blade * [_NEEDLE_LENGTH, _NEEDLE_WIDTH, 1.0]
+    spray = _NEEDLES if species in _NEEDLED else _LEAVES
+    m, k = len(poses), len(spray.seats)
+    cluster = Rotation.from_quat(np.repeat(poses[:, 3:], k, axis=0))
+    turn = np.column_stack([np.tile(spray.fans, m), np.tile(spray.tilts, m)])
+    own = cluster * Rotation.from_euler("ZX", turn)
+    blade = np.column_stack([_BLADE[:, 0], spray.width * _BLADE[:, 1], np.zeros(len(_BLADE))])
+    length = spray.length * np.repeat(size, k)
+    seat = np.repeat(poses[:, :3], k, axis=0)
+    seat = seat + (np.tile(spray.seats, m) * length)[:, None] * cluster.apply([1.0, 0.0, 0.0])
     corners = np.einsum("mij,kj->mki", own.as_matrix(), blade)
-    seat = np.repeat(poses[:, :3], _PER_CLUSTER, axis=0)
-    seat = seat + (np.tile(_SEATS, m) * length)[:, None] * cluster.apply([1.0, 0.0, 0.0])
     return seat[:, None] + length[:, None, None] * corners, own.apply([0.0, 0.0, 1.0])
 
 

@@ -89,7 +89,7 @@ def picture_in_wind(
     """
     camera = camera or Camera()
     start, end = ends_of_poses(poses, tree.length)
-    frame = frame_around(np.vstack([tree.start, tree.end, start, end]), camera)
+    frame = frame_around(np.vstack([tree.start, tree.end, start, end]), camera, headroom=0.1)
     figure = new_figure(max(2.0 * _INCHES_HIGH * frame.aspect, 6.0), _INCHES_HIGH + 0.4)
     left = figure.add_axes((0.0, 0.0, 0.5, 0.93))
     right = figure.add_axes((0.5, 0.0, 0.5, 0.93))

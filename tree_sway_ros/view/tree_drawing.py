@@ -45,14 +45,29 @@ class Frame:
         return (self.right - self.left) / (self.top - self.bottom)
 
 
-def frame_around(points: Floats, camera: Camera, margin: float = 0.06) -> Frame:
-    """Frame that holds every point (..., 3) in [m], with a relative margin, and is not a sliver."""
+def frame_around(
+    points: Floats, camera: Camera, margin: float = 0.06, headroom: float = 0.0
+) -> Frame:
+    """
+    Frame what is to be seen.
+
+    Parameters
+    ----------
+    points
+        All that must be in it in [m], (..., 3).
+    camera
+        From where.
+    margin, headroom
+        Space round it, and more above it, over its larger side.
+
+    """
     seen = camera.project(points).reshape(-1, 3)
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
     size = float((high - low).max())
     middle = 0.5 * float(low[0] + high[0])
     half = max(0.5 * float(high[0] - low[0]), 0.3 * size) + margin * size
-    return Frame(middle - half, middle + half, float(low[1]) - 0.14 * size, float(high[1]) + margin * size)
+    top = float(high[1]) + (margin + headroom) * size
+    return Frame(middle - half, middle + half, float(low[1]) - 0.14 * size, top)
 
 
 def draw_tree(
@@ -128,7 +143,7 @@ def draw_wind(axes: Axes, frame: Frame, camera: Camera, wind: Floats) -> None:
         return
     along = camera.project(wind)[:2] / speed
     length = 0.16 * size
-    middle = np.array([frame.left + 0.14 * size, frame.top - 0.10 * size])
+    middle = np.array([frame.left + 0.14 * size, frame.top - 0.09 * size])
     base, tip = middle - 0.5 * length * along, middle + 0.5 * length * along
     arrow = {"arrowstyle": "-|>,head_width=.35,head_length=.7", "lw": 2.2, "color": "#1f6fb4"}
     axes.annotate("", xy=tuple(tip), xytext=tuple(base), arrowprops=arrow)

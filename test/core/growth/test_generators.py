@@ -62,7 +62,7 @@ def test_diameters_fall_without_steps_and_children_are_thinner(
 
 @every_habit
 @given(seed=ANY_SEED)
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=2, deadline=None)
 def test_same_seed_same_tree_another_seed_another(generate: Generator, seed: int) -> None:
     one, again, other = (generate(np.random.default_rng(s)) for s in (seed, seed, seed + 1))
     np.testing.assert_array_equal(one.end, again.end)
@@ -89,7 +89,7 @@ def test_twigs_of_a_branch_are_alike_in_groups(generate: Generator, seed: int) -
     diameter = np.round(tree.base_diameter[twigs], 9)
     owner = tree.branch_of_segment[tree.segment_parent[twigs]]
     kinds = np.unique(np.column_stack([owner, diameter, offset]), axis=0)
-    assert len(kinds) < 0.8 * len(twigs)
+    assert len(kinds) < 0.6 * len(twigs)
 
 
 @every_habit

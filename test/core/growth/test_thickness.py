@@ -40,12 +40,15 @@ def test_the_given_diameter_stands_where_it_was_measured() -> None:
     assert np.interp(1.3, [0, 1, 2, 3], stem) == pytest.approx(0.03, rel=1e-12)
 
 
-def test_a_child_that_carries_nearly_all_is_still_thinner_than_its_parent() -> None:
+def test_a_parent_is_thick_enough_for_a_child_that_carries_nearly_all() -> None:
     skeleton = Skeleton()
-    stem = skeleton.add(np.array([[0.0, 0, 0], [0, 0, 1.0]]))
-    skeleton.add(np.array([[0.0, 0, 1], [3.0, 0, 1]]), stem, 1)
-    below, child = node_diameters(skeleton, 0.05, at_height=0.0, tip_diameter=0.002)
-    assert child[0] == pytest.approx(0.76 * below[1])
+    stem = skeleton.add(np.array([[0.0, 0, 0], [0, 0, 1.0], [0, 0, 1.1]]))
+    branch = skeleton.add(np.array([[0.0, 0, 1], [1.0, 0, 1], [1.1, 0, 1]]), stem, 1)
+    skeleton.add(np.array([[1.0, 0, 1], [4.0, 0, 1]]), branch, 1)
+    below, middle, child = node_diameters(skeleton, 0.05, at_height=0.0, tip_diameter=0.002)
+    assert child[0] / middle[1] == pytest.approx(0.76)
+    assert middle[0] / below[1] <= 0.76 * (1.0 + 1e-12)
+    assert below[0] == pytest.approx(0.05)
 
 
 def test_a_stem_thinner_than_its_tips_is_refused() -> None:

@@ -24,7 +24,7 @@ def grow_benjamina(
     rng: np.random.Generator,
     *,
     height: float = 1.3,
-    diameter: float = 0.028,
+    diameter: float = 0.0235,
     name: str = "benjamina",
     species: str = "benjamina",
 ) -> Tree:
@@ -51,7 +51,7 @@ def grow_benjamina(
         _add_stem(skeleton, stock, 2 if i else 1, azimuth, 0.0 if i == 2 else 1.0, rng)
     skeleton.scale_to_height(height)
     diameters = node_diameters(
-        skeleton, diameter, at_height=0.0, tip_diameter=0.0012 * height / 1.3, exponent=2.2
+        skeleton, diameter, at_height=0.0, tip_diameter=0.0012 * height / 1.3, exponent=2.5
     )
     return skeleton.to_tree(diameters, name, species)
 

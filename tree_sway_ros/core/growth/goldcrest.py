@@ -23,7 +23,7 @@ def grow_goldcrest(
     rng: np.random.Generator,
     *,
     height: float = 1.2,
-    diameter: float = 0.024,
+    diameter: float = 0.019,
     name: str = "goldcrest",
     species: str = "goldcrest",
 ) -> Tree:

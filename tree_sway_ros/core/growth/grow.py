@@ -25,7 +25,7 @@ Habit = Literal["conifer", "broadleaf", "pot"]
 HABITS: tuple[Habit, ...] = get_args(Habit)
 """Habits that `grow` knows."""
 
-_SLENDERNESS: dict[Habit, float] = {"conifer": 60.0, "broadleaf": 45.0, "pot": 48.0}
+_SLENDERNESS: dict[Habit, float] = {"conifer": 60.0, "broadleaf": 45.0, "pot": 58.0}
 _HEIGHTS: dict[Habit, tuple[float, float]] = {
     "conifer": (1.0, 60.0),
     "broadleaf": (1.0, 50.0),

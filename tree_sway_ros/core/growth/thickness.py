@@ -83,12 +83,22 @@ def node_diameters(
     carried = _at_height(stem, beyond[0], at_height)
     w = carried / ((diameter / tip_diameter) ** exponent - 1.0)
     diameters = [tip_diameter * (1.0 + each / w) ** (1.0 / exponent) for each in beyond]
+    _support(skeleton, diameters)
     # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)
     for shoot, own in zip(skeleton.shoots[1:], diameters[1:], strict=True):
         limit = INSERTION_RATIO * diameters[shoot.parent][shoot.at]
         own *= min(1.0, limit / own[0])
     return diameters
+
+
+def _support(skeleton: Skeleton, diameters: list[Floats]) -> None:
+    """Thicken every shoot where it would be too thin for what sits on it, and below."""
+    for shoot, own in zip(reversed(skeleton.shoots), reversed(diameters), strict=True):
+        own[:] = np.maximum.accumulate(own[::-1])[::-1]
+        if shoot.parent >= 0:
+            below = diameters[shoot.parent]
+            below[shoot.at] = max(below[shoot.at], own[0] / INSERTION_RATIO)
 
 
 def _at_height(stem: Shoot, values: Floats, height: float) -> float:
