@@ -150,6 +150,8 @@ def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Ban
 def _enriched(tree: Tree, enrich: str) -> frozenset[int]:
     if enrich == "all":
         return frozenset(range(tree.n_branches))
+    if enrich == "carriers":
+        return frozenset([0, *tree.branch_parent[1:].tolist()])
     return frozenset([0]) if enrich == "stem" else frozenset()
 
 

@@ -22,19 +22,21 @@ from tree_sway_ros.core.tree import Floats, Ints
 N_POINTS = 5
 
 
-def _integration_rows(places: Floats) -> Floats:
-    """Weights w of ``integral from 0 to xi of f = w . f(points)`` for each place xi in 0 .. 1."""
-    columns = []
-    for i, node in enumerate(_POINTS):
-        others = np.delete(_POINTS, i)
-        basis = Polynomial.fromroots(others) / np.prod(node - others)
-        columns.append(basis.integ()(places))
-    return np.stack(columns, axis=-1)
-
-
 _ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
 _POINTS = (_ROOTS + 1.0) / 2.0
 _WEIGHTS = _ROOT_WEIGHTS / 2.0
+_OTHERS = [(node, np.delete(_POINTS, i)) for i, node in enumerate(_POINTS)]
+_PRIMITIVES = np.stack(
+    [(Polynomial.fromroots(rest) / np.prod(node - rest)).integ().coef for node, rest in _OTHERS]
+)
+
+
+def _integration_rows(places: Floats) -> Floats:
+    """Weights w of ``integral from 0 to xi of f = w . f(points)`` for each place xi in 0 .. 1."""
+    rows: Floats = places[:, None] ** np.arange(N_POINTS + 1) @ _PRIMITIVES.T
+    return rows
+
+
 _TO_POINTS = _integration_rows(_POINTS)
 
 
@@ -208,7 +210,7 @@ class SlopeShape:
         self.slope, self.node_slope, self.child_slope = beam.from_base(curvature)
         whole = (beam.weight * self.slope).sum(axis=1)
         self.segment_slope = whole / beam.length
-        self.deflection, self.node_deflection, _ = beam.from_base(self.slope)
+        self.deflection, self.node_deflection, self.child_deflection = beam.from_base(self.slope)
 
     def stiffness(self, other: SlopeShape, modulus: float) -> float:
         """Bending energy between two shapes, the integral of E I kappa kappa', in [N m/rad]."""

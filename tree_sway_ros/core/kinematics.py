@@ -50,9 +50,8 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     for branch, model in enumerate(models):
         here = tree.segments_of(branch)
         records["gap"][here.start : here.stop - 1] = tree.start[here][1:] - tree.end[here][:-1]
-        for way in model.coordinates[::2]:
-            column = 2 if way.is_twist else int(way is not model.coordinates[0])
-            records["slope"][here, column] = way.shape.segment_slope
+        for column, shape in enumerate(_distinct_shapes(model)):
+            records["slope"][here, column] = shape.segment_slope
         records["tip_slope"][here] = _tip_load_slope(model)
     records["has_gap"] = np.abs(records["gap"]).max(axis=1) > 1e-12
     return records
@@ -67,6 +66,7 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
         record["seat"] = tree.segment_parent[here.start]
         record["first"], record["end"] = here.start, here.stop
         record["n_coordinates"] = len(model.coordinates)
+        record["n_pairs"] = sum(not way.is_twist for way in model.coordinates) // 2
         record["source"] = branch
         for i, way in enumerate(model.coordinates):
             record["axis"][i] = way.axis
@@ -78,6 +78,12 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
             w, x, y, z = rest[record["seat"]]
             offset = tree.start[here.start] - tree.start[record["seat"]]
             record["offset"] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
+
+
+def _distinct_shapes(model: BranchModel) -> list[SlopeShape]:
+    """Shapes of a branch, each once: pairs share theirs."""
+    pairs = [way.shape for way in model.coordinates if not way.is_twist][::2]
+    return pairs + [way.shape for way in model.coordinates if way.is_twist]
 
 
 def _skew(slope: Floats, length: Floats) -> float:
@@ -165,20 +171,17 @@ def _follow(
     dw: float, dx: float, dy: float, dz: float, px: float, py: float, pz: float, out: Floats,
 ) -> None:  # fmt: skip
     """Place the segments of a branch that bends far, has a second shape or twists."""
-    i, k, axis = branch.coordinate, branch.n_coordinates, branch.axis
+    i, axis, paired = branch.coordinate, branch.axis, 2 * branch.n_pairs
     t = x[i] * x[i] + x[i + 1] * x[i + 1]
     blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
     stretch = 1.0 + t * (branch.skew + blend * (branch.tip_skew - branch.skew))
     for j in range(branch.first, branch.end):
         segment = segments[j]
-        slope = stretch * (segment.slope[0] + blend * (segment.tip_slope - segment.slope[0]))
+        first = stretch * (segment.slope[0] + blend * (segment.tip_slope - segment.slope[0]))
         rx = ry = rz = 0.0
-        for c in range(k):
-            if c == 2:
-                slope = segment.slope[1]
-            elif c == 4:
-                slope = segment.slope[2]
-            angle = slope * x[i + c]
+        for c in range(branch.n_coordinates):
+            shape = c // 2 if c < paired else c - branch.n_pairs
+            angle = (first if shape == 0 else segment.slope[shape]) * x[i + c]
             rx += angle * axis[c, 0]
             ry += angle * axis[c, 1]
             rz += angle * axis[c, 2]
@@ -228,6 +231,12 @@ def _seat(
     dw, dx, dy, dz = product(base[0], base[1], base[2], base[3], qw, qx, qy, qz)
     s = branch.seat
     ox, oy, oz = rotated(
-        out[s, 6], out[s, 3], out[s, 4], out[s, 5], branch.offset[0], branch.offset[1], branch.offset[2]
+        out[s, 6],
+        out[s, 3],
+        out[s, 4],
+        out[s, 5],
+        branch.offset[0],
+        branch.offset[1],
+        branch.offset[2],
     )
     return dw, dx, dy, dz, out[s, 0] + ox, out[s, 1] + oy, out[s, 2] + oz

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.core.reduction import MAX_COORDINATES
+from tree_sway_ros.core.branch_shapes import MAX_COORDINATES, N_SHAPES, N_TWISTS
 
 BRANCH = np.dtype(
     [
@@ -21,7 +21,8 @@ BRANCH = np.dtype(
         ("first", "i8"),  # its first segment
         ("end", "i8"),  # one past its last segment
         ("coordinate", "i8"),  # its first coordinate
-        ("n_coordinates", "i8"),  # 2, 4 or 5: x, y; second x, y; twist
+        ("n_coordinates", "i8"),  # pairs x, y, then twists
+        ("n_pairs", "i8"),
         ("source", "i8"),  # branch whose motion it copies, itself if solved
         ("frame", "f8", (3, 3)),  # b, e1, e2 as rows
         ("axis", "f8", (MAX_COORDINATES, 3)),  # rotation vector of each coordinate
@@ -45,7 +46,7 @@ BRANCH = np.dtype(
 
 SEGMENT = np.dtype(
     [
-        ("slope", "f8", (3,)),  # of the first shape, the second and the twist
+        ("slope", "f8", (N_SHAPES + N_TWISTS,)),  # of each shape, then of each twist
         ("tip_slope", "f8"),  # of the shape under a load at the tip
         ("length", "f8"),
         ("has_gap", "i8"),  # whether the next segment starts elsewhere than this one ends

@@ -26,11 +26,8 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway_ros.core.branch_model import BranchModel
+from tree_sway_ros.core.branch_shapes import MAX_COORDINATES
 from tree_sway_ros.core.tree import Floats, Ints, Tree
-
-MAX_COORDINATES = 5
-"""Coordinates of an enriched branch: two shapes about two axes, and a twist."""
-
 
 @dataclass(frozen=True)
 class Reduction:
@@ -42,7 +39,7 @@ class Reduction:
     first
         First coordinate of each branch, and N at the end, (b + 1,).
     twist
-        Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root, (b, 5, 6).
+        Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root, (b, 9, 6).
     mass, gravity
         Symmetric sparse matrices (N, N) in [kg m^2] and [N m/rad].
     elastic

@@ -45,7 +45,8 @@ class SimulatorSettings:
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
-        Branches that get a second shape and a twist in the rungs ``modes`` and ``coupled``: ``stem``, ``none`` or ``all``.
+        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``: ``none``, ``stem``, those
+        that carry others (``carriers``) or ``all``.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,).
     max_wind
@@ -63,7 +64,7 @@ class SimulatorSettings:
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
     twig_tolerance: float = 0.05
-    enrich: str = "stem"
+    enrich: str = "carriers"
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
     max_wind: float = 150.0
@@ -72,7 +73,7 @@ class SimulatorSettings:
         """Refuse what is out of range."""
         _one_of("rung", self.rung, RUNGS)
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
-        _one_of("enrich", self.enrich, ("none", "stem", "all"))
+        _one_of("enrich", self.enrich, ("none", "stem", "carriers", "all"))
         if self.stiffness == "volume_rule" and self.rung in ("modes", "coupled"):
             raise ParameterError(
                 f"the volume rule on rung '{self.rung}'",
