@@ -75,7 +75,8 @@ def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Flo
         In [N m], (n, 2).
 
     """
-    t = np.minimum(np.square(e).sum(axis=1), T_MAX)
+    e = e * np.minimum(1.0, np.sqrt(T_MAX / np.maximum(np.square(e).sum(axis=1), T_MAX)))[:, None]
+    t = np.square(e).sum(axis=1)
     angle = np.sqrt(t)
     sinc, cos = np.sinc(angle / np.pi), np.cos(angle)
     some = np.maximum(t, _SMALL)

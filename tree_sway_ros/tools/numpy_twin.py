@@ -58,6 +58,12 @@ class NumpyTwin:
         order = tree.branch_order
         self._levels = [np.flatnonzero(order == k) for k in range(1, int(order.max()) + 1)]
         self._origin = tree.start[0]
+        # Coordinates are pairs that share a shape, then twists; those that are not there come last and stand still.
+        column, pairs = np.arange(branches["axis"].shape[1]), branches["n_pairs"][:, None]
+        self._is_there = column < branches["n_coordinates"][:, None]
+        shape = np.where(column < 2 * pairs, column // 2, column - pairs)
+        self._shape = np.where(self._is_there, shape, 0)
+        self._column = np.where(self._is_there, branches["coordinate"][:, None] + column, 0)
         self._dt = 0.0
         b = tree.n_branches
         self.x, self.v, self._moment = np.zeros((3, b, 2))
@@ -129,7 +135,7 @@ class NumpyTwin:
         t = np.square(angles[:, :2]).sum(axis=1)
         blend = np.clip((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0, 1.0)
         stretch = 1.0 + t * (branch["skew"] + blend * (branch["tip_skew"] - branch["skew"]))
-        slope = segment["slope"][:, [0, 0, 1, 1, 2]]
+        slope = np.take_along_axis(segment["slope"], self._shape[owner], axis=1)
         bent = slope[:, 0] + blend[owner] * (segment["tip_slope"] - slope[:, 0])
         slope[:, :2] = (stretch[owner] * bent)[:, None]
         bend = quaternions_of(np.einsum("jc,jc,jck->jk", slope, angles[owner], branch["axis"][owner]))
@@ -171,10 +177,8 @@ class NumpyTwin:
         self._dt = dt
 
     def _angles(self, rotations: Floats) -> Floats:
-        """Key rotations of each branch side by side, zeros where it has fewer than five, (b, 5)."""
-        place = self._branch["coordinate"][:, None] + np.arange(5)
-        is_there = np.arange(5) < self._branch["n_coordinates"][:, None]
-        angles: Floats = np.where(is_there, rotations[np.where(is_there, place, 0)], 0.0)
+        """Key rotations of each branch side by side, zeros where it has fewer than others, (b, c)."""
+        angles: Floats = np.where(self._is_there, rotations[self._column], 0.0)
         return angles
 
     def _ride(self, x: Floats, v: Floats) -> Floats:
