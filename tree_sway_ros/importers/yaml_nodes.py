@@ -9,6 +9,7 @@ small file up, and depth has a bound.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,9 @@ from tree_sway_ros.errors import FormatError
 
 # The C parser, where PyYAML was built with it, is ten times faster.
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_NODE_EVENTS = frozenset(
+    (yaml.ScalarEvent, yaml.SequenceStartEvent, yaml.MappingStartEvent, yaml.AliasEvent)
+)
 _MAX_DEPTH = 16
 
 
@@ -81,71 +85,58 @@ def parse_yaml(text: str, source: str) -> YamlNode:
 def _compose(text: str, source: str) -> YamlNode:
     root: YamlNode | None = None
     stack: list[_Open] = []
-    for event in yaml.parse(text, Loader=_LOADER):
-        if isinstance(event, (yaml.SequenceEndEvent, yaml.MappingEndEvent)):
+    events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
+    for event in events:
+        kind = type(event)
+        if kind is yaml.SequenceEndEvent or kind is yaml.MappingEndEvent:
             stack.pop()
             continue
-        if not isinstance(event, yaml.NodeEvent):
+        if kind not in _NODE_EVENTS:
             continue
-        assert event.start_mark is not None
         line = event.start_mark.line + 1
-        where = f"{source}:{line}"
-        _refuse_references(event, where)
-        node = _node(event, line)
-        if not stack:
-            if root is not None:
-                raise FormatError("a second document", where=where, cure="keep one tree a file")
-            root = node
-        elif isinstance(node.value, str) and stack[-1].key is None and _is_mapping(stack[-1]):
-            _take_key(stack[-1], node.value, where)
+        if event.anchor is not None or getattr(event, "tag", None) is not None:
+            what = f"a tag {event.tag!r}" if event.anchor is None else "an anchor or alias"
+            raise FormatError(what, where=f"{source}:{line}", cure="write the value itself")
+        if kind is yaml.ScalarEvent:
+            node = YamlNode(event.value, line, is_plain=event.style in (None, "", "plain"))
         else:
-            _attach(stack[-1], node, where)
-        if not isinstance(node.value, str):
+            node = YamlNode([] if kind is yaml.SequenceStartEvent else {}, line)
+        if stack:
+            _put(stack[-1], node, source)
+        elif root is None:
+            root = node
+        else:
+            raise FormatError(
+                "a second document", where=f"{source}:{line}", cure="keep one tree a file"
+            )
+        if kind is not yaml.ScalarEvent:
             if len(stack) >= _MAX_DEPTH:
-                raise FormatError(f"nested deeper than {_MAX_DEPTH}", where=where)
+                raise FormatError(f"nested deeper than {_MAX_DEPTH}", where=f"{source}:{line}")
             stack.append(_Open(node))
     if root is None:
         raise FormatError("no document", where=source, cure="describe a tree in it")
     return root
 
 
-def _refuse_references(event: yaml.NodeEvent, where: str) -> None:
-    if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
-        raise FormatError("an anchor or alias", where=where, cure="write the value itself")
-    tag = getattr(event, "tag", None)
-    if tag is not None:
-        raise FormatError(f"a tag {tag!r}", where=where, cure="leave the tag out")
-
-
-def _node(event: yaml.NodeEvent, line: int) -> YamlNode:
-    if isinstance(event, yaml.ScalarEvent):
-        return YamlNode(event.value, line, is_plain=event.style in (None, "", "plain"))
-    return YamlNode([] if isinstance(event, yaml.SequenceStartEvent) else {}, line)
-
-
-def _is_mapping(opened: _Open) -> bool:
-    return isinstance(opened.node.value, dict)
-
-
-def _take_key(opened: _Open, key: str, where: str) -> None:
-    entries = opened.node.value
-    assert isinstance(entries, dict)
-    if key in entries:
-        raise FormatError(
-            f"key '{key}' stands twice, first in line {entries[key].line}",
-            where=where,
-            cure="remove one of them",
-        )
-    opened.key = key
-
-
-def _attach(opened: _Open, node: YamlNode, where: str) -> None:
+def _put(opened: _Open, node: YamlNode, source: str) -> None:
+    """Put a node into the list or mapping that is open, as an item, a key or its value."""
     container = opened.node.value
     if isinstance(container, list):
         container.append(node)
         return
     assert isinstance(container, dict)
-    if opened.key is None:
-        raise FormatError(f"{node.kind} as a key", where=where, cure="use a word as the key")
-    container[opened.key] = node
-    opened.key = None
+    if opened.key is not None:
+        container[opened.key] = node
+        opened.key = None
+        return
+    if not isinstance(node.value, str):
+        raise FormatError(
+            f"{node.kind} as a key", where=f"{source}:{node.line}", cure="use a word as the key"
+        )
+    if node.value in container:
+        raise FormatError(
+            f"key '{node.value}' stands twice, first in line {container[node.value].line}",
+            where=f"{source}:{node.line}",
+            cure="remove one of them",
+        )
+    opened.key = node.value
