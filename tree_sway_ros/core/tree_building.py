@@ -157,9 +157,13 @@ def _integers(values: ArrayLike, n: int, what: str) -> Ints:
 def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
     """Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size."""
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
-    distance, index = cKDTree(ends).query(starts, distance_upper_bound=1e-4 * extent)
-    parents = np.where(np.isfinite(distance), index, -1).astype(np.int64)
-    return parents
+    # Two are asked for, as the end nearest to the start of a very short root is its own.
+    distance, index = cKDTree(ends).query(starts, k=2, distance_upper_bound=1e-4 * extent)
+    distance[index == np.arange(len(starts))[:, None]] = np.inf
+    nearest = np.argmin(distance, axis=1)[:, None]
+    found = np.isfinite(np.take_along_axis(distance, nearest, axis=1))
+    parents = np.where(found, np.take_along_axis(index, nearest, axis=1), -1)[:, 0]
+    return parents.astype(np.int64)
 
 
 def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
@@ -265,6 +269,8 @@ def _depth_first(chains: dict[int, NDArray[np.int64]], keys: Ints, parents: Ints
 def _names(ordered: list[int], branch_names: Sequence[str] | None) -> tuple[str, ...]:
     if branch_names is None:
         return tuple("stem" if i == 0 else f"b{i}" for i in range(len(ordered)))
+    if len(branch_names) != len(ordered):
+        raise TreeError(f"{len(branch_names)} branch names for {len(ordered)} branches")
     by_key = dict(zip(sorted(ordered), branch_names, strict=True))
     return tuple(by_key[key] for key in ordered)
 
