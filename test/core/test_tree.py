@@ -1,0 +1,40 @@
+"""The tree's own figures, against hand counts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+
+def test_figures_of_a_fork(fork):
+    tree = fork()
+    assert (tree.n_segments, tree.n_branches) == (11, 4)
+    assert tree.branch_order.tolist() == [0, 1, 2, 1]
+    assert tree.branch_parent.tolist() == [-1, 0, 1, 0]
+    assert tree.subtree_end.tolist() == [4, 3, 3, 4]
+    assert [tree.segments_of(b).stop for b in range(4)] == [4, 7, 9, 11]
+    assert tree.branch_of_segment.tolist() == [0] * 4 + [1] * 3 + [2] * 2 + [3] * 2
+    assert tree.length.sum() == pytest.approx(tree.branch_length.sum())
+
+
+def test_volume_is_that_of_frustums(stem):
+    cone = stem(length=3.0, base=0.2, tip=1e-12, cuts=7)
+    assert cone.volume.sum() == pytest.approx(math.pi / 3 * 0.1**2 * 3.0)
+    assert stem(length=3.0, base=0.2).volume.sum() == pytest.approx(math.pi * 0.1**2 * 3.0)
+
+
+def test_height_is_that_of_the_highest_node_over_the_root(stem, sketch):
+    assert stem(length=2.0, direction=(3.0, 0.0, 4.0)).height == pytest.approx(1.6)
+    drawn = sketch()
+    drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.01, 2)
+    drawn.add(0, 2, (1, 0, -3), 2.0, 0.01, 0.01, 2)
+    assert drawn.tree().height == pytest.approx(1.0)
+
+
+def test_a_weeping_branch_has_its_length_along_the_wood(fork):
+    tree = fork()
+    own = tree.segments_of(1)
+    chord = np.linalg.norm(tree.end[own][-1] - tree.start[own][0])
+    assert tree.branch_length[1] > chord
