@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.banks import Bank, build_bank
+from tree_sway_ros.core.banks import build_bank
 from tree_sway_ros.core.settings import RUNGS, SimulatorSettings
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaf_settings
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
 
-_BREAST_HEIGHT = 1.3
+_BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser)
+    add_leaves_argument(parser)
     parser.add_argument("--rung", choices=RUNGS, default="modes", help="model (%(default)s)")
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
@@ -36,14 +39,19 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.count < 1:
         raise ParameterError(f"{arguments.count} frequencies", where="--count", cure="ask for 1 or more")
     tree_file = opened_tree(arguments)
-    facts = tree_facts(
-        tree_file, rung=arguments.rung, has_gravity=arguments.gravity == "on", count=arguments.count
+    settings = SimulatorSettings(
+        rung=arguments.rung,
+        gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
+        # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
+        n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
+        **leaf_settings(tree_file.tree, arguments),
     )
+    facts = tree_facts(tree_file, settings, arguments.count)
     print(json.dumps(facts, indent=2) if arguments.json else _text(facts, tree_file))
     return 0
 
 
-def tree_facts(tree_file: TreeFile, *, rung: str, has_gravity: bool, count: int) -> dict[str, Any]:
+def tree_facts(tree_file: TreeFile, settings: SimulatorSettings, count: int) -> dict[str, Any]:
     """
     Gather what there is to say about a tree.
 
@@ -51,10 +59,8 @@ def tree_facts(tree_file: TreeFile, *, rung: str, has_gravity: bool, count: int)
     ----------
     tree_file
         The tree and its wood.
-    rung
-        Model of the sway.
-    has_gravity
-        Whether its own weight makes it softer.
+    settings
+        How it is modelled.
     count
         How many natural frequencies.
 
@@ -70,16 +76,16 @@ def tree_facts(tree_file: TreeFile, *, rung: str, has_gravity: bool, count: int)
 
     """
     tree, species = tree_file.tree, tree_file.species
-    gravity, notes = 9.81 if has_gravity else 0.0, list(tree_file.notes)
+    notes = list(tree_file.notes)
     try:
-        bank = _bank(tree_file, rung, gravity, count)
+        bank = build_bank(tree, species, settings)
     except TreeError as error:
-        if not has_gravity:
+        if settings.gravity == 0.0:
             raise
-        # A scan of leaves and noise may not stand; its size is asked for all the same.
-        gravity = 0.0
+        # A scan full of noise may not stand; its size is asked for all the same.
+        settings = replace(settings, gravity=0.0)
         notes.append(f"modes without its own weight, as it cannot stand: {error}")
-        bank = _bank(tree_file, rung, gravity, count)
+        bank = build_bank(tree, species, settings)
     rows = mode_table(tree, bank, count)
     return {
         "name": tree.name,
@@ -98,20 +104,14 @@ def tree_facts(tree_file: TreeFile, *, rung: str, has_gravity: bool, count: int)
         "density": species.density,
         "mass": bank.mass,
         "stem_mass": float(species.density * tree.volume[tree.segments_of(0)].sum()),
-        "gravity": gravity,
-        "rung": rung,
+        "gravity": settings.gravity,
+        "rung": settings.rung,
+        "in_leaf": settings.in_leaf,
         "solved": bank.n_solved,
         "copied": tree.n_branches - bank.n_solved,
         "frequencies": [row.frequency for row in rows],
         "modes": [_mode(row) for row in rows],
     }
-
-
-def _bank(tree_file: TreeFile, rung: str, gravity: float, count: int) -> Bank:
-    # A branch has two coordinates at least; a small tree may have fewer modes than were asked for.
-    n_modes = min(count, 2 * tree_file.tree.n_branches)
-    settings = SimulatorSettings(rung=rung, gravity=gravity, n_modes=n_modes)
-    return build_bank(tree_file.tree, tree_file.species, settings)
 
 
 def _mode(row: ModeRow) -> dict[str, Any]:
@@ -149,7 +149,8 @@ def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
         + (f", {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m" if breast is not None else ""),
         f"  wood       {tree_file.species.title}{estimate}: {facts['modulus'] / 1e9:.3g} GPa, "
         f"{facts['density']:.4g} kg/m^3",
-        f"  mass       {facts['mass']:.4g} kg, {facts['stem_mass']:.4g} kg of it in the stem",
+        f"  mass       {facts['mass']:.4g} kg {'in leaf' if facts['in_leaf'] else 'without leaves'}, "
+        f"{facts['stem_mass']:.4g} kg of it in the stem",
         f"  model      {facts['rung']}: {facts['solved']} branches solved, {facts['copied']} copied",
     ]
     lines += [f"  note       {note}" for note in facts["notes"]]

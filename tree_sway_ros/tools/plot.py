@@ -16,6 +16,11 @@ from tree_sway_ros.core.simulator import SwaySimulator
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.importers.imported_tree import TreeFile
 from tree_sway_ros.importers.wind_file import read_wind
+from tree_sway_ros.tools.leaves_argument import (
+    add_leaves_argument,
+    drawn_leaves,
+    leaf_settings,
+)
 from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
 from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_tree
 from tree_sway_ros.view.pictures import picture_in_wind
@@ -38,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="draw the tree at rest and, beside it, in a steady westerly",
     )
     add_wood_arguments(parser)
+    add_leaves_argument(parser)
     parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
     parser.add_argument("--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --tree)")
     parser.add_argument("--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)")
@@ -61,11 +67,22 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _portrait(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
     speed = 10.0 if arguments.speed is None else arguments.speed
-    simulator = SwaySimulator(tree_file.tree, tree_file.species, rung=arguments.rung)
+    simulator = _simulator(tree_file, arguments)
     wind = np.array([speed, 0.0, 0.0])
     for _ in range(round(_SETTLING * 60.0)):
         simulator.step(wind, 1.0 / 60.0)
-    picture_in_wind(tree_file.tree, simulator.place(), wind, arguments.output)
+    picture_in_wind(
+        tree_file.tree,
+        simulator.place(),
+        wind,
+        arguments.output,
+        leaves=drawn_leaves(tree_file.tree, arguments),
+    )
+
+
+def _simulator(tree_file: TreeFile, arguments: argparse.Namespace) -> SwaySimulator:
+    leaves = leaf_settings(tree_file.tree, arguments)
+    return SwaySimulator(tree_file.tree, tree_file.species, rung=arguments.rung, **leaves)
 
 
 def _motion(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
@@ -77,8 +94,7 @@ def _motion(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
     else:
         record = read_wind(arguments.wind)
         samples, source = recorded(record), Path(record.source).name
-    simulator = SwaySimulator(tree_file.tree, tree_file.species, rung=arguments.rung)
-    result = ride(simulator, samples, arguments.seconds)
+    result = ride(_simulator(tree_file, arguments), samples, arguments.seconds)
     if len(result.time) < 2:
         raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
     title = f"{tree_file.tree.name}, {arguments.rung}, {source}"
