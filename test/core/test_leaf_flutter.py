@@ -1,5 +1,7 @@
 """The law of flutter, and leaves that ride on their segments."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,8 +11,10 @@ from scipy.spatial.transform import Rotation
 from tree_sway_ros.core.leaf_flutter import (
     AIR_VISCOSITY,
     LARGEST_ANGLE,
+    air_speed,
     flutter_amplitude,
     flutter_angle,
+    leaf_list,
     leaf_poses,
 )
 from tree_sway_ros.core.leaves import LeafClusters, leaf_clusters
@@ -94,3 +98,26 @@ def test_flutter_turns_a_leaf_about_its_stalk_alone() -> None:
     before, after = (Rotation.from_quat(block[:, 3:]) for block in (still, turned))
     np.testing.assert_allclose(before.apply([1, 0, 0]), after.apply([1, 0, 0]), atol=1e-12)
     np.testing.assert_allclose((before.inv() * after).magnitude(), 0.4, rtol=1e-9)
+
+
+def test_a_leaf_that_goes_with_the_wind_feels_none() -> None:
+    before = np.zeros((2, 3))
+    after = np.array([[0.1, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(air_speed(after, before, 0.05, [2.0, 0.0, 0.0]), [0.0, 2.0])
+    each = [[2.0, 0.0, 3.0], [0.0, 4.0, 3.0]]
+    np.testing.assert_allclose(air_speed(after, before, 0.05, each), [3.0, 5.0])
+
+
+def test_the_list_alone_is_enough_to_draw_them() -> None:
+    """As a viewer would that has only the text and the poses."""
+    tree = twig()
+    leaves = leaves_of(tree)
+    told = json.loads(json.dumps(leaf_list(leaves)))
+    gain, largest = told["flutter"]["gain"], told["flutter"]["largest_angle"]
+    frequency, phase = np.array(told["frequency"]), np.array(told["phase"])
+    angle = largest * np.tanh(gain * 3.0**2 / (frequency * largest))
+    angle *= np.sin(2.0 * np.pi * frequency * 0.7 + phase)
+    np.testing.assert_allclose(angle, flutter_angle(leaves, 3.0, 0.7), atol=1e-3)
+    carrier = Rotation.from_quat(poses_at_rest(tree)[told["segment"], 3:])
+    centre = tree.start[told["segment"]] + carrier.apply(told["offset"])
+    np.testing.assert_allclose(centre, leaf_poses(leaves, poses_at_rest(tree))[:, :3], atol=2e-4)

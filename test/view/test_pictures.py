@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
+from tree_sway_ros.core.leaves import leaf_clusters
 from tree_sway_ros.core.tree import Tree
 from tree_sway_ros.core.tree_building import tree_from_segments
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
@@ -84,6 +85,48 @@ def test_a_moving_picture_has_its_frames_and_its_pace(
     first = np.asarray(image.convert("RGB")).astype(float)
     image.seek(2)
     assert np.abs(np.asarray(image.convert("RGB")) - first).max() > 100
+
+
+def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
+    tree = builtin_tree("benjamina")
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=300)
+    bare = pixels(picture_at_rest(tree, tmp_path / "bare.png"))
+    green = pixels(picture_at_rest(tree, tmp_path / "leafy.png", leaves=leaves))
+
+    def is_green(picture: np.ndarray) -> np.ndarray:
+        return picture[..., 1] > picture[..., [0, 2]].max(axis=2) + 20
+
+    assert is_green(bare).sum() == 0
+    assert is_green(green).mean() > 0.05
+    beside = pixels(
+        picture_in_wind(tree, leaning(tree, 0.3), [8, 0, 0], tmp_path / "w.png", leaves=leaves)
+    )
+    left, right = np.split(is_green(beside)[:, : beside.shape[1] // 2 * 2], 2, axis=1)
+    middle = [np.average(np.arange(side.shape[1]), weights=side.sum(axis=0)) for side in (left, right)]
+    assert middle[1] > middle[0] + 30
+
+
+def test_a_moving_picture_with_leaves(tmp_path: Path) -> None:
+    tree = pole()
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=30)
+    path = tmp_path / "leaves.gif"
+    still = [leaning(tree, 0.0)] * 2
+    animate_poses(tree, still, np.full((2, 3), 5.0), path, rate=7.3, leaves=leaves, pixels=160)
+    image = Image.open(path)
+    first = np.asarray(image.convert("RGB")).astype(float)
+    image.seek(1)
+    # The tree stands still; its leaves do not.
+    assert np.abs(np.asarray(image.convert("RGB")) - first).max() > 30
+
+
+def test_what_is_no_moving_picture_is_refused(tmp_path: Path) -> None:
+    tree = pole()
+    with pytest.raises(FormatError, match=r"'\.jpg' is no moving picture; .*\.gif"):
+        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / "a.jpg")
+    with pytest.raises(ParameterError, match="0 frames"):
+        animate_poses(tree, [], np.ones((0, 3)), tmp_path / "a.gif")
+    with pytest.raises(FormatError, match="cannot write"):
+        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / "no" / "a.gif")
 
 
 def test_plot_of_wind_and_tip(tmp_path: Path) -> None:

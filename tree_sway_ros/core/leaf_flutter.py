@@ -94,3 +94,43 @@ def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) ->
     block[:, :3] = carrier[:, :3] + turn.apply(clusters.offset)
     block[:, 3:] = (turn * own * Rotation.from_rotvec(flutter)).as_quat()
     return block
+
+
+def air_speed(positions: Floats, before: Floats, interval: float, wind: ArrayLike) -> Floats:
+    """
+    Speed of the air past each leaf in [m/s], (m,).
+
+    Parameters
+    ----------
+    positions, before
+        Centres of the clusters now and one interval ago in [m], (m, 3).
+    interval
+        In [s].
+    wind
+        Wind where each is in [m/s], (m, 3), or one for all, (3,).
+
+    """
+    own = (positions - before) / interval
+    return np.asarray(np.linalg.norm(np.asarray(wind, dtype=np.float64) - own, axis=1))
+
+
+def leaf_list(clusters: LeafClusters) -> dict[str, object]:
+    """
+    Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them with the poses.
+
+    Parameters
+    ----------
+    clusters
+        The leaves.
+
+    Returns
+    -------
+    dict
+        One list a field of `LeafClusters`, rounded to .1 mm and 1e-4, and ``flutter`` with the law
+        and its two constants.
+
+    """
+    columns = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}
+    law = "largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)"
+    flutter = {"law": law, "gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
+    return {**columns, "flutter": flutter}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway_ros.core.leaf_flutter import flutter_angle, leaf_poses
+from tree_sway_ros.core.leaf_flutter import air_speed, flutter_angle, leaf_poses
 from tree_sway_ros.core.leaves import LeafClusters
 from tree_sway_ros.core.tree import Floats, Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
@@ -91,10 +91,15 @@ def animate_poses(
     camera = camera or Camera()
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
     frame = _frame_of_all(tree, blocks, camera)
-    images = [
-        Image.fromarray(_rendered(tree, block, wind, i / rate, leaves, camera, frame, pixels))
-        for i, (block, wind) in enumerate(zip(blocks, blowing, strict=True))
-    ]
+    images = []
+    for i, (block, wind) in enumerate(zip(blocks, blowing, strict=True)):
+        foliage = None
+        if leaves is not None:
+            foliage = _fluttering(leaves, block, blocks[max(i - 1, 0)], wind, i, rate), leaves.size
+        start, end = ends_of_poses(block, tree.length)
+        images.append(
+            Image.fromarray(_rendered(tree, start, end, wind, foliage, camera, frame, pixels))
+        )
     if kind == "GIF":
         palette = images[len(images) // 2].quantize(_GIF_COLORS)
         images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
@@ -124,12 +129,21 @@ def _box(points: Floats) -> Floats:
     return points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
 
 
+def _fluttering(
+    leaves: LeafClusters, block: Floats, before: Floats, wind: Floats, step: int, rate: float
+) -> Floats:
+    """Pose block of the leaves in the air that passes them."""
+    now, then = (leaf_poses(leaves, poses)[:, :3] for poses in (block, before))
+    speed = air_speed(now, then, 1.0 / rate, wind)
+    return leaf_poses(leaves, block, flutter_angle(leaves, speed, step / rate))
+
+
 def _rendered(
     tree: Tree,
-    block: Floats,
+    start: Floats,
+    end: Floats,
     wind: Floats,
-    time: float,
-    leaves: LeafClusters | None,
+    foliage: tuple[Floats, Floats] | None,
     camera: Camera,
     frame: Frame,
     pixels: int,
@@ -138,11 +152,7 @@ def _rendered(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    foliage = None
-    if leaves is not None:
-        angle = flutter_angle(leaves, float(np.linalg.norm(wind)), time)
-        foliage = leaf_poses(leaves, block, angle), leaves.size
-    draw_tree(axes, tree, *ends_of_poses(block, tree.length), camera, frame, foliage)
+    draw_tree(axes, tree, start, end, camera, frame, foliage)
     draw_wind(axes, frame, camera, wind)
     figure.set_dpi(100.0)
     canvas = FigureCanvasAgg(figure)
