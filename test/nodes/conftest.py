@@ -76,13 +76,13 @@ class Observer:
         self.until(future.done, f"a response of {name}")
         return future.result()
 
-    def until(self, condition, what, deadline=DEADLINE):
+    def until(self, condition, what, deadline=DEADLINE, poll=0.02):
         """Wait until something is true; fail after the deadline."""
         end = time.monotonic() + deadline
         with self._more:
             while not condition():
                 assert time.monotonic() < end, f"waited {deadline} s for {what}"
-                self._more.wait(0.02)
+                self._more.wait(poll)
 
     def close(self):
         self._closing = True

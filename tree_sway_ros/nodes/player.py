@@ -33,7 +33,7 @@ class PlayerNode(TreeSwayNode):
         self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
         self._wind = self.publisher(WIND, self._writer.message_class)
         has_clock, speed = self.values["publish_clock"], self.values["speed"]
-        self._clock: Any = self.publisher(CLOCK) if has_clock else None
+        self._clock_publisher: Any = self.publisher(CLOCK) if has_clock else None
         playback = Playback(
             self._record.time,
             epoch=self._record.epoch,
@@ -54,7 +54,7 @@ class PlayerNode(TreeSwayNode):
 
     def _publish(self, row: int, stamp: int) -> None:
         if row < 0:
-            self._clock.publish(clock_message(stamp))
+            self._clock_publisher.publish(clock_message(stamp))
         else:
             self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
 

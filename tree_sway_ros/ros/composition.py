@@ -69,6 +69,7 @@ class Composition:
         )
         self._executor = SingleThreadedExecutor(context=self.context)
         self._is_closing = False
+        self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._spin, name="executor", daemon=True)
         try:
             for name, values in parameters.items():
@@ -111,7 +112,9 @@ class Composition:
         return self._nodes[name]
 
     def check(self) -> None:
-        """Raise what the thread of a node died of."""
+        """Raise what a callback or the thread of a node died of."""
+        if self._failure is not None:
+            raise self._failure
         for node in self._nodes.values():
             if node.failure is not None:
                 raise node.failure
@@ -154,3 +157,5 @@ class Composition:
                 self._executor.spin_once(timeout_sec=_CHECK_PERIOD)
         except ExternalShutdownException:
             pass
+        except Exception as error:
+            self._failure = error

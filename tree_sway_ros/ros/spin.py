@@ -44,6 +44,8 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
     except TreeSwayError as error:
         print(f"{module.rsplit('.', 1)[-1]}: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        pass
     return 0
 
 
@@ -116,8 +118,8 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
     from rclpy.executors import ExternalShutdownException
 
     node = None
+    init(rclpy, args)
     try:
-        init(rclpy, args)
         node = create(getattr(importlib.import_module(module), node_class))
         while rclpy.ok() and node.failure is None and not node.is_done:
             rclpy.spin_once(node, timeout_sec=_CHECK_PERIOD)
@@ -125,6 +127,9 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
             raise node.failure
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except Exception:
+        if rclpy.ok():  # otherwise told to end, amid whatever it was doing
+            raise
     finally:
         # A second Ctrl-C while things close would end the process with an error.
         signal.signal(signal.SIGINT, signal.SIG_IGN)

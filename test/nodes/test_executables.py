@@ -1,0 +1,123 @@
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytestmark = pytest.mark.ros
+
+from tree_sway_ros.ros.topics import SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.ros.wind_messages import stamp_to_ns  # noqa: E402
+
+START = "from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())"
+WITHOUT_ROS = "import sys; sys.modules['rclpy'] = None; "
+
+
+@pytest.fixture
+def run(domain):
+    """Start an executable in a process of its own."""
+    processes = []
+
+    def start(name, *parameters, remap=(), before="", **environment):
+        arguments = [part for p in parameters for part in ("-p", p)]
+        arguments += [part for r in remap for part in ("-r", r)]
+        process = subprocess.Popen(
+            [sys.executable, "-c", before + START.format(name), "--ros-args", *arguments],
+            env=os.environ | {"ROS_DOMAIN_ID": str(domain)} | environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        processes.append(process)
+        return process
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+def ended(process):
+    """Exit code and what it said on the way."""
+    _, errors = process.communicate(timeout=60.0)
+    return process.returncode, errors
+
+
+def started(observer, process, name=None):
+    """Frames of a solver that runs; start-up includes imports on a busy machine."""
+    frames = observer.listen(SEGMENT_POSES, name=name)
+    observer.until(lambda: frames or process.poll() is not None, "frames", deadline=60.0)
+    assert process.poll() is None, process.communicate()[1]
+    return frames
+
+
+@pytest.mark.parametrize(
+    "signals", [[signal.SIGINT], [signal.SIGTERM], [signal.SIGINT] * 3], ids=["int", "term", "int3"]
+)
+def test_a_node_that_is_told_to_end_ends_well(run, observer, tree_file, signals):
+    process = run("solver", f"tree:={tree_file}", "rate:=40")  # a whole number for a double
+    started(observer, process)
+    for number in signals:
+        process.send_signal(number)
+    code, errors = ended(process)
+    assert code == 0, errors
+    assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "environment", "message"),
+    [
+        ("solver", ["rats:=40"], {}, "unknown parameter 'rats'; did you mean 'rate'"),
+        ("player", [], {}, "no file to play"),
+        ("wind", [], {"ROS_DOMAIN_ID": "three"}, "ROS_DOMAIN_ID=three is no domain"),
+        ("wind", [], {"ROS_DOMAIN_ID": "300"}, "ROS_DOMAIN_ID=300 is no domain"),
+        ("wind", ["max_speed:=-1.0"], {}, "give 1 .. 200 [m/s]"),
+        ("anemometer", ["rate:=[1"], {}, "ROS 2 cannot start"),
+    ],
+)
+def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
+    run, name, parameters, environment, message
+):
+    code, errors = ended(run(name, *parameters, **environment))
+    assert code == 2, errors
+    assert errors.splitlines()[-1].startswith(f"{name}: ")
+    assert message in errors
+    assert "Traceback" not in errors
+
+
+def test_without_ros_one_line_says_so(run):
+    code, errors = ended(run("wind", before=WITHOUT_ROS))
+    assert code == 2
+    assert len(errors.splitlines()) == 1
+    assert "rclpy" in errors
+    assert "source /opt/ros/jazzy/setup.bash" in errors
+
+
+def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
+    run, compose, observer, tree_file
+):
+    """Beside it a solver that was never killed; both tick on the same grid."""
+    parameters = {"tree": tree_file, "damping_ratio": 0.5, "wind_delay": 0.5}
+    compose(solver=parameters, wind={}, anemometer={"mean_speed": 8.0})
+    steady = observer.listen(SEGMENT_POSES)
+    arguments = [f"{name}:={value}" for name, value in parameters.items()]
+    remap = ["segment_poses:=mortal", "__node:=mortal"]
+    process = run("solver", *arguments, remap=remap)
+    started(observer, process, "mortal")
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    frames = started(observer, run("solver", *arguments, remap=remap), "mortal")
+    begin = stamp_to_ns(frames[0].header.stamp)
+    settled = begin + 4 * 10**9
+
+    def late(messages):
+        poses = {stamp_to_ns(m.header.stamp): m.poses[2].position for m in list(messages)}
+        return {stamp: pose for stamp, pose in poses.items() if stamp > settled}
+
+    observer.until(lambda: len(set(late(frames)) & set(late(steady))) > 10, "both", deadline=20.0)
+    ours, theirs = late(frames), late(steady)
+    for stamp in set(ours) & set(theirs):
+        assert ours[stamp].x == pytest.approx(theirs[stamp].x, abs=1e-7)
+    assert max(pose.x for pose in ours.values()) > 1e-3

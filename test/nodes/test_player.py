@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytestmark = pytest.mark.ros
+
+from tree_sway_ros.errors import TreeSwayError  # noqa: E402
+from tree_sway_ros.importers.wind_file import read_wind  # noqa: E402
+from tree_sway_ros.ros.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
+from tree_sway_ros.ros.wind_messages import stamp_to_ns  # noqa: E402
+
+
+@pytest.fixture
+def wind_file(tmp_path):
+    """Four seconds of a gusty westerly at 20 Hz."""
+    time = np.arange(80) * 0.05
+    wind = 6.0 + 2.0 * np.sin(2.0 * time) + 0.3 * np.cos(9.0 * time)
+    path = tmp_path / "wind.csv"
+    rows = [f"{t:.2f},{u:.4f},{0.2 * np.sin(t):.4f},0.0" for t, u in zip(time, wind, strict=True)]
+    path.write_text("time,u,v,w\n" + "\n".join(rows) + "\n")
+    return str(path)
+
+
+def test_a_record_is_played_as_it_is_and_then_ends(compose, observer, wind_file):
+    said = observer.listen(WIND)
+    nodes = compose(player={"file": wind_file, "speed": 20.0, "loop": False})
+    observer.until(lambda: nodes.is_done, "the end")
+    record = read_wind(wind_file)
+    observer.until(lambda: len(said) >= 78, "the samples")
+    known = {tuple(v) for v in record.velocity}
+    assert all((m.vector.x, m.vector.y, m.vector.z) in known for m in said)
+    periods = np.diff([stamp_to_ns(m.header.stamp) for m in said])
+    np.testing.assert_allclose(np.median(periods), 0.05 / 20.0 * 1e9, rtol=1e-3)
+
+
+def test_the_clock_goes_on_over_the_seam_of_a_loop(compose, observer, wind_file):
+    said, ticks = observer.listen(WIND), observer.listen(CLOCK)
+    compose(player={"file": wind_file, "speed": 40.0, "publish_clock": True})
+    observer.until(lambda: len(said) > 200, "two rounds and a half")
+    clock = [stamp_to_ns(tick.clock) for tick in ticks]
+    stamps = [stamp_to_ns(m.header.stamp) for m in said]
+    assert (np.diff(clock) > 0).all()
+    assert (np.diff(stamps) > 0).all()
+    assert np.median(np.diff(stamps)) == pytest.approx(5e7, abs=2)
+    assert stamps[0] >= 10**9
+
+
+def poses_of(compose, observer, wind_file, tree_file, until):
+    """Poses by stamp of a player, wind and solver that begin anew."""
+    frames = observer.listen(SEGMENT_POSES)
+    simulated = {"use_sim_time": True}
+    nodes = compose(
+        solver={"tree": tree_file, "damping_ratio": 0.5, "wind_delay": 0.5, **simulated},
+        wind=simulated,
+        player={"file": wind_file, "publish_clock": True},
+    )
+    last = 10**9 + until
+    observer.until(lambda: frames and stamp_to_ns(frames[-1].header.stamp) > last, "the poses")
+    nodes.close()
+    return {stamp_to_ns(frame.header.stamp): frame.poses for frame in frames}
+
+
+def test_the_same_record_gives_the_same_poses(compose, observer, wind_file, tree_file):
+    """Once the memory of how each began has died away; half a second of delay outlasts any load."""
+    first = poses_of(compose, observer, wind_file, tree_file, 35 * 10**8)
+    second = poses_of(compose, observer, wind_file, tree_file, 35 * 10**8)
+    shared = sorted(set(first) & set(second))
+    late = [stamp for stamp in shared if stamp > 3 * 10**9]
+    assert len(late) > 10
+    for stamp in late:
+        a, b = first[stamp][2].position, second[stamp][2].position
+        assert (a.x, a.y) == pytest.approx((b.x, b.y), abs=1e-7)
+    assert max(first[stamp][2].position.x for stamp in late) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [({}, "no file to play"), ({"file": "nowhere.csv"}, "nowhere.csv"), ({"speed": 0.0}, "speed")],
+)
+def test_what_cannot_be_played_says_why(compose, parameters, message):
+    with pytest.raises(TreeSwayError, match=message):
+        compose(player=parameters)
+
+
+def test_a_start_behind_the_end_is_refused(compose, wind_file):
+    with pytest.raises(TreeSwayError, match="smaller start"):
+        compose(player={"file": wind_file, "start": 100.0})
