@@ -86,7 +86,7 @@ def _random_tree(seed, n=12):
     for i in range(1, n):
         parent[i] = rng.integers(max(0, i - 4), i)
         start[i] = end[parent[i]]
-        step = rng.normal(size=3) + (0.0, 0.0, 0.5)
+        step = rng.normal(size=3) + np.array([0.0, 0.0, 0.5])
         end[i] = start[i] + rng.uniform(0.1, 0.6) * step / np.linalg.norm(step)
     diameter = rng.uniform(0.002, 0.02, n)
     order = rng.permutation(n)

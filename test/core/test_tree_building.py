@@ -109,7 +109,7 @@ def test_a_tree_builds_again_from_itself(random_tree, seed, n):
 
 def test_siblings_stand_from_base_to_tip_of_their_parent():
     nodes = np.array([[0, 0, z] for z in range(5)], dtype=float)
-    side = nodes[1:4] + [0.5, 0, 0]
+    side = nodes[1:4] + np.array([0.5, 0, 0])
     start = np.vstack([nodes[:-1], nodes[[3, 1, 2]]])
     end = np.vstack([nodes[1:], side[[2, 0, 1]]])
     tree = tree_from_segments(start, end, [0.1] * 4 + [0.02] * 3)
@@ -120,7 +120,7 @@ def test_nodes_need_not_meet_exactly_but_nearly():
     close = START + np.array([[0, 0, 0], [0, 0, 1e-5], [1e-5, 0, 0]])
     assert tree_from_segments(close, END, THICK).segment_parent.tolist() == [-1, 0, 0]
     with pytest.raises(TreeError, match="2 roots"):
-        tree_from_segments(START + [[0, 0, 0], [0, 0, 0], [0.01, 0, 0]], END, THICK)
+        tree_from_segments(START + np.array([[0], [0], [0.01]]), END, THICK)
 
 
 def test_a_root_far_shorter_than_the_tree_is_not_its_own_parent():
