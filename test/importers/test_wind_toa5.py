@@ -69,3 +69,14 @@ def test_recorded_quarter_of_an_hour():
     assert record.period == pytest.approx(0.05, abs=1e-9)
     assert np.linalg.norm(record.velocity.mean(axis=0)[:2]) == pytest.approx(1.48, abs=0.01)
     assert np.linalg.norm(record.velocity[:, :2], axis=1).max() == pytest.approx(5.9, abs=0.06)
+
+
+def test_good_and_damaged_rows_are_read_alike(tmp_path):
+    """One row that numpy does not take must not change how the others are read."""
+    whole = read_toa5_wind(SONIC)
+    for damage in ('"2024-03-02 00:00:09",1\n', '"2024-03-02 00:00:09,1,2,3\n', "\n\n", "\x00,\n"):
+        (tmp_path / "a.dat").write_text(SONIC.read_text() + damage)
+        record = read_toa5_wind(tmp_path / "a.dat")
+        np.testing.assert_array_equal(record.time, whole.time)
+        np.testing.assert_array_equal(record.velocity, whole.velocity)
+        assert record.refused == whole.refused + (damage != "\n\n")

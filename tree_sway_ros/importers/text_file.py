@@ -17,7 +17,7 @@ from tree_sway_ros.errors import FormatError
 MAX_BYTES = 256 * 1024 * 1024
 """Larger files are refused, so that no input takes the memory of the machine [bytes]."""
 
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
 
 def read_bytes(path: Path, at_most: int = -1) -> bytes:

@@ -15,7 +15,7 @@ from typing import Any
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError
 from tree_sway_ros.importers.wind_record import WindRecord, WindRows
-from tree_sway_ros.importers.wind_units import check_convention, turned
+from tree_sway_ros.importers.wind_units import check_convention
 
 WIND_TYPES = tuple(
     f"geometry_msgs/msg/{name}"
@@ -75,8 +75,8 @@ def read_bag_wind(
                 n_unstamped += not stamp
                 epoch = epoch or stamp or recorded
                 vector = _vector(message)
-                velocity = turned((vector.x, vector.y, vector.z), yaw, direction_convention)
-                rows.add(number, ((stamp or recorded) - epoch) * 1e-9, velocity)
+                seconds = ((stamp or recorded) - epoch) * 1e-9
+                rows.add(number, seconds, (vector.x, vector.y, vector.z))
     except FormatError:
         raise
     except Exception as error:
@@ -86,7 +86,12 @@ def read_bag_wind(
     notes.append(f"topic {connection.topic}, {connection.msgtype}")
     if n_unstamped:
         notes.append(f"{n_unstamped} messages without a stamp have the time they were recorded at")
-    return rows.record(epoch=epoch * 1e-9, notes=tuple(notes))
+    return rows.record(
+        epoch=epoch * 1e-9,
+        notes=tuple(notes),
+        yaw=yaw,
+        direction_convention=direction_convention,
+    )
 
 
 def _bag(path: Path) -> Path:

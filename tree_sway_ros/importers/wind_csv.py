@@ -12,6 +12,7 @@ Components point where the wind blows to, a direction says where it comes from, 
 from __future__ import annotations
 
 import re
+from array import array
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -25,10 +26,8 @@ from tree_sway_ros.importers.wind_units import (
     ANGLE_UNITS,
     SPEED_UNITS,
     TIME_UNITS,
-    Velocity,
     check_convention,
     from_bearing,
-    turned,
     unit_factor,
 )
 
@@ -92,15 +91,18 @@ def read_csv_wind(
             continue
         stamps.append(cells[time.index])
         if u and v:
-            velocity: Velocity = (values[0], values[1], values[2] if w else 0.0)
-            rows.add(number, 0.0, turned(velocity, yaw, direction_convention or "to"))
+            rows.add(number, 0.0, (values[0], values[1], values[2] if w else 0.0))
         elif values[0] < 0.0:
             rows.refuse(number, f"speed is {values[0]:g}")
             stamps.pop()
         else:
             bearing = values[1] - yaw
             rows.add(number, 0.0, from_bearing(values[0], bearing, direction_convention or "from"))
-    rows.time, epoch = _times(stamps, time.factor)
+    seconds, epoch = _times(stamps, time.factor)
+    rows.time = array("d", seconds)
+    if u and v:
+        convention = direction_convention or "to"
+        return rows.record(epoch=epoch, yaw=yaw, direction_convention=convention)
     return rows.record(epoch=epoch)
 
 

@@ -10,15 +10,20 @@ instrument to instrument and are not read.
 
 from __future__ import annotations
 
+from array import array
 from pathlib import Path
 
+import numpy as np
+
+from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.importers.table_file import TextTable, split_row
 from tree_sway_ros.importers.text_file import finite, read_lines
 from tree_sway_ros.importers.time_stamps import seconds_of_stamps
 from tree_sway_ros.importers.wind_record import WindRecord, WindRows
-from tree_sway_ros.importers.wind_units import SPEED_UNITS, check_convention, turned, unit_factor
+from tree_sway_ros.importers.wind_units import SPEED_UNITS, check_convention, unit_factor
 
+_BLOCK = 1 << 16
 _COMPONENTS = (("Ux", "Uy", "Uz"), ("Ux_Avg", "Uy_Avg", "Uz_Avg"), ("U", "V", "W"))
 
 
@@ -62,25 +67,59 @@ def read_toa5_wind(
         for i in indices
     ]
     rows, stamps = WindRows(source), list[str]()
-    needed = max(stamp_column, *indices) + 1
-    for number, line in enumerate(lines[4:], start=5):
-        if not line.strip():
+    for begin in range(4, len(lines), _BLOCK):
+        block = lines[begin : begin + _BLOCK]
+        filled = [row for row, line in enumerate(block) if line.strip()]
+        block = [block[row] for row in filled]
+        if not block:
             continue
-        cells = split_row(line, ",")
-        if len(cells) < needed:
-            rows.refuse(number, f"{len(cells)} cells of {len(header.columns)}")
-            continue
-        values = [finite(cells[i]) for i in indices]
-        u, v, w = (x if x is None else k * x for x, k in zip(values, scale, strict=True))
-        if u is None or v is None or w is None:
-            bad = values.index(None)
-            rows.refuse(number, f"{names[bad]} is '{cells[indices[bad]][:20]}'")
-            continue
-        stamps.append(cells[stamp_column])
-        rows.add(number, 0.0, turned((u, v, w), yaw, direction_convention))
+        numbers = begin + 1 + np.array(filled, dtype=np.int64)
+        values = _values(block, indices)
+        good = np.isfinite(values).all(axis=1)
+        for row in np.flatnonzero(~good):
+            rows.refuse(int(numbers[row]), _reason(split_row(block[row], ","), indices, names))
+        stamps += [_cell(block[row], stamp_column) for row in np.flatnonzero(good)]
+        rows.add_block(numbers[good], values[good] * scale)
     seconds, epoch = seconds_of_stamps(stamps)
-    rows.time = seconds.tolist()
-    return rows.record(epoch=epoch)
+    rows.time = array("d", seconds)
+    return rows.record(epoch=epoch, yaw=yaw, direction_convention=direction_convention)
+
+
+def _values(block: list[str], indices: list[int]) -> Floats:
+    """Cells of some columns as numbers, NaN where a cell is none, (n, 3)."""
+    try:
+        values = np.loadtxt(
+            block, delimiter=",", usecols=indices, quotechar='"', comments=None, ndmin=2
+        )
+    except ValueError:
+        values = np.empty((0, 3))
+    if len(values) == len(block):
+        return values
+    # Somewhere is a row that numpy does not take: one by one, then.
+    values = np.full((len(block), len(indices)), np.nan)
+    for row, line in enumerate(block):
+        cells = split_row(line, ",")
+        for column, index in enumerate(indices):
+            number = finite(cells[index]) if index < len(cells) else None
+            values[row, column] = np.nan if number is None else number
+    return values
+
+
+def _reason(cells: tuple[str, ...], indices: list[int], names: tuple[str, str, str]) -> str:
+    """Why a row is refused."""
+    for index, name in zip(indices, names, strict=True):
+        if index >= len(cells):
+            return f"{len(cells)} cells, none for {name}"
+        if finite(cells[index]) is None:
+            return f"{name} is '{cells[index][:20]}'"
+    return "not a row of numbers"
+
+
+def _cell(line: str, index: int) -> str:
+    if index == 0:
+        return line.split(",", 1)[0].strip(' "')
+    cells = split_row(line, ",")
+    return cells[index] if index < len(cells) else ""
 
 
 def _components_of(header: TextTable) -> tuple[str, str, str]:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from math import cos, pi, radians, sin
 
+import numpy as np
+
+from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.errors import FormatError, ParameterError
 
 Velocity = tuple[float, float, float]
@@ -71,14 +74,14 @@ def from_bearing(speed: float, bearing: float, direction_convention: str = "from
     return sign * speed * sin(bearing), sign * speed * cos(bearing), 0.0
 
 
-def turned(velocity: Velocity, yaw: float, direction_convention: str = "to") -> Velocity:
+def turned(velocity: Floats, yaw: float, direction_convention: str = "to") -> Floats:
     """
-    Velocity from a sensor's axes to east, north, up.
+    Velocities from a sensor's axes to east, north, up.
 
     Parameters
     ----------
     velocity
-        In the sensor's axes, z up, in [m/s].
+        In the sensor's axes, z up, in [m/s], (n, 3).
     yaw
         From east to the sensor's x axis, counter-clockwise seen from above, in [rad].
     direction_convention
@@ -86,9 +89,9 @@ def turned(velocity: Velocity, yaw: float, direction_convention: str = "to") -> 
 
     """
     sign = -1.0 if direction_convention == "from" else 1.0
-    u, v, w = velocity
-    c, s = sign * cos(yaw), sign * sin(yaw)
-    return c * u - s * v, s * u + c * v, sign * w
+    c, s = cos(yaw), sin(yaw)
+    rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray(sign * velocity @ rotation, dtype=np.float64)
 
 
 def degrees_to_bearing(degrees: float) -> float | None:
