@@ -12,7 +12,13 @@ from tree_sway_ros.core.leaves import LeafClusters
 from tree_sway_ros.core.tree import Floats, Tree
 from tree_sway_ros.view.plotting import new_figure, save_figure
 from tree_sway_ros.view.projection import Camera, ends_of_poses, rest_poses
-from tree_sway_ros.view.tree_drawing import draw_scale, draw_tree, draw_wind, frame_around
+from tree_sway_ros.view.tree_drawing import (
+    draw_ghost,
+    draw_scale,
+    draw_tree,
+    draw_wind,
+    frame_around,
+)
 
 _INCHES_HIGH = 6.0
 
@@ -68,7 +74,7 @@ def picture_in_wind(
     title: str | None = None,
 ) -> Path:
     """
-    Draw a tree at rest and, beside it, in wind.
+    Draw a tree at rest and, beside it, in wind; there with its shape at rest behind it.
 
     Parameters
     ----------
@@ -96,6 +102,7 @@ def picture_in_wind(
     blowing = np.asarray(wind, dtype=np.float64)
     fluttering = _leaves_in_wind(leaves, np.asarray(poses, dtype=np.float64), blowing, 0.0)
     draw_tree(left, tree, tree.start, tree.end, camera, frame, _leaves_at_rest(tree, leaves))
+    draw_ghost(right, tree, camera)
     draw_tree(right, tree, start, end, camera, frame, fluttering)
     draw_scale(left, frame)
     draw_wind(right, frame, camera, blowing)

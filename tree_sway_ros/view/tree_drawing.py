@@ -20,6 +20,7 @@ _POT = "#b5694a"
 _POT_RIM = "#c67f60"
 _POTTED = ("benjamina", "goldcrest")
 _GROUND = "#8d8d86"
+_GHOST = "#dedad6"
 
 
 @dataclass(frozen=True)
@@ -125,6 +126,17 @@ def draw_tree(
     )
     drawn.set_joinstyle("round")
     axes.add_collection(drawn)
+
+
+def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
+    """Draw the tree at rest as a pale shape behind whatever else is drawn, to see how far it moved."""
+    from matplotlib.collections import PolyCollection
+
+    base, tip = camera.project(tree.start), camera.project(tree.end)
+    shape = list(_tapered(base, tip, tree.base_diameter, tree.tip_diameter))
+    axes.add_collection(
+        PolyCollection(shape, facecolors=_GHOST, edgecolors=_GHOST, linewidths=0.6, zorder=0.5)
+    )
 
 
 def draw_scale(axes: Axes, frame: Frame) -> None:
