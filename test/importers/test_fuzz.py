@@ -161,7 +161,7 @@ def fuzz(samples, folder: Path, n_examples: int) -> None:
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning", "ignore::UserWarning")
 def test_some_damaged_files(samples, tmp_path):
-    fuzz(samples, tmp_path, 300)
+    fuzz(samples, tmp_path, 200)
 
 
 @pytest.mark.long
@@ -186,3 +186,31 @@ def test_ten_thousand_damaged_files(samples, tmp_path):
 )
 def test_large_and_nasty(tmp_path, suffix, content):
     check(tmp_path / f"file{suffix}", "tree", content, None)
+
+
+def nasty_mtg(n: int) -> bytes:
+    """A chain of vertices without diameters, and mostly without positions."""
+    head = "CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\nENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n"
+    chain = "".join(f"\t^<S{i}\n" for i in range(n))
+    return (head + chain + "\t^<S9\t0\t0\t1\n").encode()
+
+
+def nasty_swc(n: int) -> bytes:
+    """A chain of points at one place, each with a side branch."""
+    rows = ["1 1 0 0 0 1 -1", "2 1 0 0 1 1 1"]
+    rows += [f"{2 * i + 1} 1 0 0 1 .9 {2 * i - 1 if i > 1 else 2}" for i in range(1, n)]
+    rows += [f"{2 * i + 2} 1 1 0 1 .1 {2 * i + 1}" for i in range(1, n)]
+    return "\n".join(rows).encode()
+
+
+@pytest.mark.parametrize(("suffix", "content"), [(".mtg", nasty_mtg(20_000)), (".swc", nasty_swc(5_000))],
+                         ids=["mtg", "swc"])  # fmt: skip
+def test_long_ways_back_are_not_walked_again_and_again(tmp_path, suffix, content):
+    check(tmp_path / f"file{suffix}", "tree", content, None)
+
+
+def test_ten_thousand_columns_are_enough(tmp_path):
+    content = b"time,u,v" + b",x" * 10_000 + b"\n0,1,2"
+    (tmp_path / "a.csv").write_bytes(content)
+    with pytest.raises(TreeSwayError, match="a header of 10003 columns"):
+        read_wind(tmp_path / "a.csv")

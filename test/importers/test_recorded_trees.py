@@ -109,7 +109,7 @@ def test_walnut():
     assert tree.base_diameter[0] == pytest.approx(0.270)
 
 
-@pytest.mark.parametrize("name", ["walnut.mtg", "qsm_treeqsm_struct.mat"])
+@pytest.mark.parametrize("name", ["walnut.mtg", "qsm_treeqsm_v5.mat"])
 def test_written_and_read_again(tmp_path, name):
     first = read_tree(TREES / name).tree
     write_tree(tmp_path / "again.yaml", first)

@@ -34,14 +34,14 @@ def random_tree(seed: int, n: int = 30, joined: bool = False) -> Tree:
 
 
 @pytest.mark.parametrize("joined", [False, True])
-@settings(deadline=None)
+@settings(deadline=None, max_examples=30)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_reading_back_is_the_identity(joined, seed):
     tree = random_tree(seed, joined=joined)
     assert_same_tree(parse_yaml_tree(yaml_of_tree(tree)).tree, tree)
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=30)
 @given(name=st.text(min_size=1).filter(lambda text: not any(0xD800 <= ord(c) < 0xE000 for c in text)))
 def test_any_name_survives(name):
     tree = replace(random_tree(0, n=1), name=name, branch_names=(name,))

@@ -108,11 +108,10 @@ def _remaining(
     kept = np.flatnonzero(keep)
     number = np.full(len(keep), -1, dtype=np.int64)
     number[kept] = np.arange(len(kept))
-    parent = []
-    for above in cylinders.parent[kept].tolist():
-        while above >= 0 and stand_in[above] != above:
-            above = int(stand_in[above])
-        parent.append(-1 if above < 0 else int(number[above]))
+    parent = [
+        -1 if above < 0 else int(number[_standing(stand_in, above)])
+        for above in cylinders.parent[kept].tolist()
+    ]
     return replace(
         cylinders,
         start=cylinders.start[kept],
@@ -122,3 +121,13 @@ def _remaining(
         continues=None if cylinders.continues is None else goes_on[kept],
         labels=[cylinders.labels[index] for index in kept],
     )
+
+
+def _standing(stand_in: Ints, index: int) -> int:
+    """Who stands in for a cylinder at last; the way there is shortened, as it may be long."""
+    last = index
+    while stand_in[last] != last:
+        last = int(stand_in[last])
+    while stand_in[index] != last:
+        stand_in[index], index = last, int(stand_in[index])
+    return last

@@ -56,24 +56,25 @@ def read_mtg(
     vertices = parse_mtg(read_lines(path), source)
     placed = [all(name in vertex.features for name in _POSITION) for vertex in vertices]
     scale_of_segments = _scale_of_segments(vertices, placed)
-    segment_of: dict[int, int] = {}
     start, end, diameter = list[list[float]](), list[list[float]](), list[list[float]]()
     parent, continues, labels = list[int](), list[bool](), list[str]()
+    width, place, carrier = list[float](), list[int](), list[int]()
     for index, vertex in enumerate(vertices):
-        if vertex.scale != scale_of_segments or not placed[index]:
-            continue
-        before, follows = _before(vertices, index, placed)
-        if before < 0:
-            continue  # the first point of a plant that has no base
-        carrier = _carrier(vertices, index, segment_of)
-        width = _diameter(vertices, index)
-        base = vertices[before].features.get(_DIAMETER, width)
-        segment_of[index] = len(start)
+        before = _before(vertices, vertex, placed, place)
+        on = carrier[vertex.parent] if vertex.parent >= 0 else -1
+        # What a vertex does not have, those after it take from before it.
+        own = vertex.features.get(_DIAMETER, 0.0)
+        width.append(own if own > 0.0 or vertex.parent < 0 else width[vertex.parent])
+        place.append(index if placed[index] else before)
+        carrier.append(on)
+        if vertex.scale != scale_of_segments or not placed[index] or before < 0:
+            continue  # without anything before it, it is the first point of a plant
+        carrier[index] = len(start)
         start.append([vertices[before].features[name] for name in _POSITION])
         end.append([vertex.features[name] for name in _POSITION])
-        diameter.append([base if base > 0.0 else width, width])
-        parent.append(carrier)
-        continues.append(follows and carrier >= 0)
+        diameter.append([width[before] if width[before] > 0.0 else width[index], width[index]])
+        parent.append(on)
+        continues.append(vertex.edge == "<" and before == vertex.parent and on >= 0)
         labels.append(vertex.label)
     if not start:
         raise FormatError(
@@ -99,39 +100,18 @@ def _scale_of_segments(vertices: list[MtgVertex], placed: list[bool]) -> int:
     return max((v.scale for v, is_placed in zip(vertices, placed, strict=True) if is_placed), default=0)
 
 
-def _before(vertices: list[MtgVertex], index: int, placed: list[bool]) -> tuple[int, bool]:
-    """Vertex at whose position a segment begins, -1 if none, and whether the segment goes on from it."""
-    vertex = vertices[index]
-    while True:
-        if vertex.edge == "/":
-            whole = vertex.complex
-            while whole >= 0:
-                if placed[whole]:
-                    return whole, False
-                if vertices[whole].edge != "/":
-                    break
-                whole = vertices[whole].complex
-            before = vertex.parent
-            return (before, False) if before >= 0 and placed[before] else (-1, False)
-        before = vertex.parent
-        if before < 0 or placed[before]:
-            return before, before >= 0 and vertex.edge == "<"
-        vertex = vertices[before]
+def _before(
+    vertices: list[MtgVertex], vertex: MtgVertex, placed: list[bool], place: list[int]
+) -> int:
+    """
+    Vertex at whose position another one begins, -1 if there is none.
 
+    The base of the axis that it is the first part of, if that has a position; else what it sits on.
 
-def _carrier(vertices: list[MtgVertex], index: int, segment_of: dict[int, int]) -> int:
-    """Segment that a vertex sits on, looked for towards the root past those that are none; -1 if none."""
-    above = vertices[index].parent
-    while above >= 0 and above not in segment_of:
-        above = vertices[above].parent
-    return segment_of.get(above, -1)
-
-
-def _diameter(vertices: list[MtgVertex], index: int) -> float:
-    """Diameter of a vertex, or of the nearest before it that has one; 0 if none has."""
-    while index >= 0:
-        width = vertices[index].features.get(_DIAMETER, 0.0)
-        if width > 0.0:
-            return width
-        index = max(vertices[index].parent, -1)
-    return 0.0
+    """
+    whole = vertex.complex if vertex.edge == "/" else -1
+    while whole >= 0:
+        if placed[whole]:
+            return whole
+        whole = vertices[whole].complex if vertices[whole].edge == "/" else -1
+    return place[vertex.parent] if vertex.parent >= 0 else -1

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.importers.text_file import finite
 
+_MAX_COLUMNS = 10_000
+
 
 @dataclass(frozen=True)
 class TextTable:
@@ -127,5 +129,9 @@ def parse_table(lines: Sequence[str], source: str, comment: str = "#") -> TextTa
         raise FormatError("no header and rows", where=source, cure="give a header and rows")
     separator = separator_of(numbered[0][1])
     columns = split_row(numbered[0][1], separator)
+    if len(columns) > _MAX_COLUMNS:
+        raise FormatError(
+            f"a header of {len(columns)} columns", where=f"{source}:{numbered[0][0]}"
+        )
     rows = tuple((number, split_row(line, separator)) for number, line in numbered[1:])
     return TextTable(columns, rows, source)

@@ -25,6 +25,7 @@ _FIELDS = (
     ("extension", "CExt"),
 )  # fmt: skip
 """Fields of ``cylinder``, and their names as loose variables."""
+_MAX_VALUES = 20_000_000
 
 
 def looks_like_mat(head: str) -> bool:
@@ -128,4 +129,7 @@ def _models_of_hdf5(path: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
 def _arrays(group: Any) -> dict[str, Any]:
     """Fields of a cylinder group; MATLAB's columns are HDF5's rows."""
     wanted = {name for names in _FIELDS for name in names}
+    for name in wanted & set(group):
+        if group[name].size > _MAX_VALUES:
+            raise FormatError(f"{name} has {group[name].size} values", where=group.file.filename)
     return {name: np.transpose(group[name][()]).squeeze() for name in group if name in wanted}
