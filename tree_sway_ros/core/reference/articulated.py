@@ -16,7 +16,11 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
-from tree_sway_ros.core.reference.articulated_modes import end_displacements, joint_modes
+from tree_sway_ros.core.reference.articulated_modes import (
+    JointModes,
+    end_displacements,
+    joint_modes,
+)
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
 from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
 from tree_sway_ros.core.reference.refinement import refined
@@ -25,6 +29,10 @@ from tree_sway_ros.core.tree import Floats, Tree
 from tree_sway_ros.core.wind_load import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 
 RIGID_TWIST = 1e3
+"""Stiffness in twist over that in bending by which joints hardly twist."""
+
+FASTEST_DECAY = 15.0
+"""Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of 1/60 s."""
 
 
 class ArticulatedTree:
@@ -49,7 +57,7 @@ class ArticulatedTree:
     twist_ratio
         Stiffness of the joints in twist over that in bending, GJ/EI; by default they hardly twist.
     damped_modes
-        How many modes get the same damping ratio.
+        How many modes get the same damping ratio, fewer where they would decay faster than `FASTEST_DECAY`.
     rayleigh
         Coefficients of damping by mass in [1/s] and by stiffness in [s].
     wind_factor
@@ -167,6 +175,8 @@ class ArticulatedTree:
         """By stiffness so much that the last of these modes has the ratio, and the rest to each below it."""
         modes = joint_modes(self.bodies, self._gravity, count)
         circular = 2.0 * math.pi * modes.frequency
+        slow = max(1, int(np.sum(ratio * circular <= FASTEST_DECAY)))
+        modes, circular = JointModes(*(part[:slow] for part in modes)), circular[:slow]
         by_stiffness = 2.0 * ratio / float(circular[-1])
         by_mode = 2.0 * ratio * circular - by_stiffness * circular**2
         return 0.0, by_stiffness, by_mode, modes.momentum

@@ -125,16 +125,15 @@ class FrameModel:
         return factor
 
     def _weakest_branch(self, factor: linalg.SuperLU) -> str:
-        """Name the branch that turns most in the shape it falls over with."""
+        """Name the branch that bends most in the shape it falls over with."""
         shape = np.ones(self.stiffness.shape[0])
         for _ in range(30):
             shape = factor.solve(self.mass @ shape)
             shape /= np.abs(shape).max()
-        moved = np.vstack([np.zeros(3), shape.reshape(-1, 6)[:, :3]])
+        turned = np.vstack([np.zeros(3), shape.reshape(-1, 6)[:, 3:]])
         first, last = self.tree.branch_first[:-1], self.tree.branch_first[1:] - 1
-        sway = moved[self.end_node[last]] - moved[self.base_node[first]]
-        turned = np.linalg.norm(sway, axis=1) / self.tree.branch_length
-        return self.tree.branch_names[int(np.argmax(turned))]
+        bend = turned[self.end_node[last]] - turned[self.base_node[first]]
+        return self.tree.branch_names[int(np.argmax(np.linalg.norm(bend, axis=1)))]
 
 
 def frame_model(
