@@ -19,6 +19,7 @@ from tree_sway_ros.errors import TreeSwayError
 
 COMMANDS: dict[str, str] = {
     "demo": "a tree sways in wind, all nodes in one process over real DDS",
+    "listen": "count the poses that a solver in another process streams",
     "info": "what a tree is: size, masses, natural frequencies",
     "plot": "pictures of a tree, and of the wind and the motion of its tip",
     "grow": "make a tree of a species and a height",

@@ -26,7 +26,7 @@ from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_tree
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 
-_SETTLING = 60.0
+_SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -69,8 +69,8 @@ def _portrait(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
     speed = 10.0 if arguments.speed is None else arguments.speed
     simulator = _simulator(tree_file, arguments)
     wind = np.array([speed, 0.0, 0.0])
-    for _ in range(round(_SETTLING * 60.0)):
-        simulator.step(wind, 1.0 / 60.0)
+    for _ in range(round(_SETTLING / _SETTLING_STEP)):
+        simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
         tree_file.tree,
         simulator.place(),

@@ -15,6 +15,7 @@ import numpy as np
 
 from tree_sway_ros.core.tree import Floats, Tree
 from tree_sway_ros.ros.topics import SEGMENT_POSES, WIND_FILTERED, message_class, qos_profile
+from tree_sway_ros.view.projection import ends_of_poses
 
 _POSE = 7 * 8
 
@@ -29,7 +30,8 @@ class StreamRecord:
     arrival, stamp
         When each pose array arrived and what time it shows, in [s].
     tip
-        Displacement of the highest tip from rest in each pose array in [m], (3,).
+        Displacement of the highest tip from rest in each pose array in [m], (3,); empty if no tree is
+        followed.
     wind_stamp, wind
         When each wind sample was measured in [s], and the sample in [m/s], (3,).
 
@@ -48,7 +50,7 @@ class StreamRecord:
         return StreamRecord(
             [self.arrival[i] for i in poses],
             [self.stamp[i] for i in poses],
-            [self.tip[i] for i in poses],
+            [self.tip[i] for i in poses if self.tip],
             [self.wind_stamp[i] for i in winds],
             [self.wind[i] for i in winds],
         )
@@ -91,21 +93,20 @@ class StreamMonitor:
     context
         ROS context to live in.
     tree
-        The tree that sways, for its rest shape.
+        The tree that sways, for its rest shape; without it poses are counted and its tip is not
+        followed.
     namespace
         Of the tree's nodes.
 
     """
 
-    def __init__(self, context: Any, tree: Tree, namespace: str = "") -> None:
+    def __init__(self, context: Any, tree: Tree | None, namespace: str = "") -> None:
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
 
         self.record = StreamRecord()
-        self._tip = int(np.argmax(tree.end[:, 2]))
-        self._length = float(tree.length[self._tip])
-        self._rest = tree.end[self._tip]
-        self._body = tree.n_segments * _POSE
+        self._tree = tree
+        self._tip = 0 if tree is None else int(np.argmax(tree.end[:, 2]))
         self._node = rclpy.create_node("monitor", context=context, namespace=namespace)
         for topic, callback, raw in (
             (SEGMENT_POSES, self._receive_poses, True),
@@ -132,10 +133,11 @@ class StreamMonitor:
         # CDR: four bytes of header, the stamp, the frame's name; the poses are what it ends with.
         second, nanosecond = struct.unpack_from("<iI", data, 4)
         self.record.stamp.append(second + 1e-9 * nanosecond)
-        offset = len(data) - self._body + self._tip * _POSE
-        x, y, z, qx, qy, qz, qw = struct.unpack_from("<7d", data, offset)
-        along = (1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw))
-        self.record.tip.append(np.array([x, y, z]) + self._length * np.array(along) - self._rest)
+        if self._tree is not None:
+            offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
+            pose = np.array(struct.unpack_from("<7d", data, offset))
+            _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])
+            self.record.tip.append(end[0] - self._tree.end[self._tip])
 
     def _receive_wind(self, message: Any) -> None:
         stamp = message.header.stamp

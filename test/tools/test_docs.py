@@ -1,0 +1,47 @@
+"""The tables of the README are those of the code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.tools import cli
+from tree_sway_ros.tools.docs import markdown_tables, with_tables
+
+ROOT = Path(__file__).resolve().parents[2]
+MARK = "before\n<!-- table: {} -->\nSTALE\n<!-- end -->\nafter\n"
+
+
+def test_the_readme_is_up_to_date() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert with_tables(text) == text, "run: tree-sway docs"
+    for name in markdown_tables():
+        assert f"<!-- table: {name} -->" in text
+
+
+def test_a_table_is_replaced_and_the_rest_kept() -> None:
+    text = with_tables(MARK.format("solver"))
+    assert text.startswith("before\n<!-- table: solver -->\n| parameter |")
+    assert text.endswith("|\n<!-- end -->\nafter\n")
+    assert "STALE" not in text
+    assert with_tables(text) == text
+    for parameter in NODE_PARAMETERS["solver"]:
+        assert f"| `{parameter.name}` |" in text
+
+
+def test_an_unknown_table_is_named() -> None:
+    with pytest.raises(FormatError, match="no table is called 'sovler'; name one of: topics"):
+        with_tables(MARK.format("sovler"))
+
+
+def test_check_changes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "x.md"
+    path.write_text(MARK.format("wind"))
+    assert cli.main(["docs", str(path), "--check"]) == 2
+    assert "not up to date; run tree-sway docs" in capsys.readouterr().err
+    assert path.read_text() == MARK.format("wind")
+    assert cli.main(["docs", str(path)]) == 0
+    assert cli.main(["docs", str(path), "--check"]) == 0

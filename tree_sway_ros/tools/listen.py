@@ -1,0 +1,45 @@
+"""
+``tree-sway listen``: count what a solver in another process streams, by a raw subscription.
+
+`ros2 topic hz` turns every pose into a Python object and cannot keep up with a thousand of them.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from tree_sway_ros.ros.spin import init, require_rclpy
+from tree_sway_ros.tools.stream_monitor import StreamMonitor
+from tree_sway_ros.tools.stream_text import summary
+from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("--namespace", default="", help="of the tree's nodes")
+    parser.add_argument("--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C")
+    parser.add_argument(
+        "--rate", type=float, default=60.0, help="poses a second that should come [Hz] (%(default)s)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Listen until the time is over or Ctrl-C."""
+    seconds = checked_seconds(arguments.seconds)
+    rclpy = require_rclpy()
+    context = rclpy.context.Context()
+    init(rclpy, [], context=context, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    try:
+        with interrupted_once():
+            monitor = StreamMonitor(context, None, arguments.namespace)
+            try:
+                begin = watch(monitor, seconds, lambda: True)
+            finally:
+                monitor.close()
+    except KeyboardInterrupt:
+        return 0
+    finally:
+        context.try_shutdown()
+    print(summary(monitor.record.since(begin), arguments.rate))
+    return 0

@@ -1,0 +1,62 @@
+"""A stream in words: one line about now, several about all of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.tools.stream_monitor import StreamRecord
+
+_COMPASS = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
+
+
+def status_line(latest: StreamRecord, elapsed: float) -> str:
+    """One line about the last two seconds of a stream."""
+    wind = "wind none yet"
+    if latest.wind:
+        wind = f"wind {_speed(latest.wind[-1]):4.1f} m/s {_from(latest.wind[-1]):>7} at {latest.wind_rate:4.1f} Hz"
+    tip = f" tip {1e3 * float(np.linalg.norm(latest.tip[-1])):6.1f} mm |" if latest.tip else ""
+    late = f"{1e3 * latest.latency(0.5):.2f} ms (p95 {1e3 * latest.latency(0.95):.2f})"
+    return f"{elapsed:6.1f} s | {wind} |{tip} poses {latest.pose_rate:5.1f} Hz, latency {late}"
+
+
+def summary(record: StreamRecord, rate: float) -> str:
+    """Several lines about a whole stream; `rate` is the one it was meant to have in [Hz]."""
+    if not record.arrival:
+        return "no poses"
+    missing = record.missing(rate)
+    late = [1e3 * record.latency(share) for share in (0.5, 0.95, 1.0)]
+    lines = [
+        f"poses    {len(record.arrival)} at {record.pose_rate:.2f} Hz (wanted {rate:g}), "
+        f"{missing or 'none'} missing",
+        f"latency  p50 {late[0]:.2f}, p95 {late[1]:.2f}, max {late[2]:.2f} ms",
+    ]
+    if record.wind:
+        speed = [_speed(vector) for vector in record.wind]
+        lines.append(
+            f"wind     {len(speed)} at {record.wind_rate:.2f} Hz, mean {np.mean(speed):.2f}, "
+            f"max {np.max(speed):.2f} m/s, {_from(np.mean(record.wind, axis=0))}"
+        )
+    if record.tip:
+        tip = np.array(record.tip)
+        way = 1e3 * np.linalg.norm(tip, axis=1)
+        east, north, up = 1e3 * tip.mean(axis=0)
+        lines.append(
+            f"tip      {way.mean():.1f} mm from rest on average, {way.max():.1f} at most; "
+            f"mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up"
+        )
+    return "\n".join(lines)
+
+
+def _speed(vector: Floats) -> float:
+    return float(np.linalg.norm(vector))
+
+
+def _from(vector: Floats) -> str:
+    """Where the wind comes from, as people say it."""
+    if _speed(vector) < 0.05:
+        return "calm"
+    octant = round(math.atan2(-vector[1], -vector[0]) / (math.pi / 4.0)) % 8
+    return f"from {_COMPASS[octant]}"
