@@ -26,13 +26,11 @@ from tree_sway_ros.ros.wind_messages import WindSample, wind_to_message  # noqa:
 
 
 def block(message):
-    return np.array(
-        [
-            [p.position.x, p.position.y, p.position.z]
-            + [p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w]
-            for p in message.poses
-        ]
-    )
+    rows = []
+    for pose in message.poses:
+        p, q = pose.position, pose.orientation
+        rows.append((p.x, p.y, p.z, q.x, q.y, q.z, q.w))
+    return np.array(rows)
 
 
 def stamp(message):
@@ -123,7 +121,9 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
     nodes = compose(solver={"tree": tree_file})
 
     def change(name, value):
-        request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
+        request = SetParameters.Request(
+            parameters=[Parameter(name, value=value).to_parameter_msg()]
+        )
         return observer.call(SetParameters, "solver/set_parameters", request).results[0]
 
     assert not change("publish_every", 0).successful

@@ -1,0 +1,71 @@
+import importlib.util
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+
+from tree_sway_ros.ros.topics import TOPICS
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def launch_file():
+    """The launch file as a module; only where ROS's launch is installed."""
+    pytest.importorskip("launch_ros", reason="launch_ros is not installed")
+    path = ROOT / "launch" / "sway.launch.py"
+    spec = importlib.util.spec_from_file_location("sway_launch", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def start(launch_file, monkeypatch, **given):
+    from launch import LaunchContext
+
+    monkeypatch.setattr(launch_file, "get_package_share_directory", lambda _: str(ROOT))
+    context = LaunchContext()
+    context.launch_configurations.update({name: d for name, d, *_ in launch_file.ARGUMENTS} | given)
+    return {node.node_executable: node for node in launch_file.start_nodes(context)}
+
+
+@pytest.mark.parametrize(
+    ("source", "executables"),
+    [
+        ("simulated", {"anemometer", "wind", "solver"}),
+        ("player", {"player", "wind", "solver"}),
+        ("live", {"wind", "solver"}),
+    ],
+)
+def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executables):
+    assert set(start(launch_file, monkeypatch, source=source)) == executables
+
+
+def test_rviz_is_started_if_asked_for(launch_file, monkeypatch):
+    assert "rviz2" in start(launch_file, monkeypatch, rviz="true")
+
+
+def test_every_argument_is_declared(launch_file):
+    declared = {action.name for action in launch_file.generate_launch_description().entities[:-1]}
+    assert declared == {name for name, *_ in launch_file.ARGUMENTS}
+
+
+def test_rviz_shows_our_topics():
+    config = yaml.safe_load((ROOT / "config" / "tree_sway.rviz").read_text())
+    manager = config["Visualization Manager"]
+    shown = [d["Topic"] for d in manager["Displays"] if "Topic" in d]
+    by_name = {topic.name: topic for topic in TOPICS}
+    assert {topic["Value"] for topic in shown} == {"markers", "segment_poses", "wind/force_plane"}
+    for topic in shown:
+        assert by_name[topic["Value"]].reliable == (topic["Reliability Policy"] == "Reliable")
+    assert manager["Global Options"]["Fixed Frame"] == "map"
+
+
+def test_the_transport_profile_has_room():
+    root = ElementTree.parse(ROOT / "config" / "fastdds.xml").getroot()
+    space = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
+    assert int(root.find(f".//{space}segment_size").text) == 32 * 2**20
+    assert int(root.find(f".//{space}receiveBufferSize").text) == 4_194_304
+    transports = {item.text for item in root.iterfind(f".//{space}transport_id")}
+    assert transports == {"large_shared_memory", "large_sockets"}
