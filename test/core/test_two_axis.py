@@ -160,7 +160,18 @@ def test_no_load_keeps_rest():
 
 
 def test_guards_follow_the_step():
-    guard = two_axis.guards(np.array([1.0, 1.0, 1.0]), np.array([0.24, 0.26, 0.0]), 1.0)
-    assert guard[:, 0].tolist() == [1.0, 0.0, 1.0]
-    assert guard[:2, 1] == pytest.approx([0.72, 0.78])
-    assert np.isinf(guard[2, 1:]).all()
+    """The gyroscopic term goes at w h = .5; the load followed falls as 3 / (w h)^2, within .8 and 10."""
+    stiffness = np.array([0.04, 0.24, 0.26, 1.0, 100.0, 0.0])
+    guard = two_axis.guards(np.ones(6), stiffness, 1.0)
+    assert guard[:, 0].tolist() == [1.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+    assert guard[:5, 1] / stiffness[:5] == pytest.approx([10.0, 10.0, 10.0, 3.0, 0.8])
+    assert guard[:5, 2] == pytest.approx(1.5 * guard[:5, 1])
+    assert np.isinf(guard[5, 1:]).all()
+
+
+def test_beyond_the_guard_the_force_is_the_circles():
+    """At any angle a load across bends no more than itself."""
+    edge = np.sqrt(two_axis.T_MAX)
+    for theta in (2.5, 7.0, 1e6):
+        assert two_axis.true_force(theta, 0.0, 0.3, 1.0, 0.0) == pytest.approx(
+            two_axis.true_force(edge, 0.0, 0.3, 1.0, 0.0))

@@ -19,7 +19,9 @@ cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 **Guard.** For these terms (x, y) is held within sinc >= .3 (2.36 rad): beyond it they are the circle's.
 The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max k1, and the
 gyroscopic term is left out where w h >= .5, where a step sees no ellipse. A bounded moment on an exact,
-stable propagator is a bounded motion, for any wind and any step.
+stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w h)^2 between .8 and 10:
+up to there one corrector contracts, and a steady load bends the branch to the right side and angle;
+at 4 / (w h)^2 it no longer does.
 
 """
 
@@ -35,7 +37,8 @@ from tree_sway_ros.core.kernel import fused, like
 Floats = NDArray[np.float64]
 
 T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = .3
-LOAD_MAX = 3.0  # s_max: largest load over stiffness that is followed, |W| / k1 [rad]
+LOAD_MAX = 3.0  # load over stiffness that is followed at w h = 1, |W| / k1 [rad]
+LOAD_FINE, LOAD_COARSE = 10.0, 0.8  # bounds on it at fine and at coarse steps
 MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
@@ -211,7 +214,7 @@ def fill_guards(
     dt
         Time step in [s].
     load_max
-        Largest load over stiffness to follow in [rad]: `LOAD_MAX`.
+        Largest load over stiffness to follow at w h = 1 in [rad]: `LOAD_MAX`.
     out
         gyro_inertia in [kg m^2], load_limit and moment_limit in [N m], (n, 3). A branch without
         stiffness has no limits.
@@ -219,10 +222,13 @@ def fill_guards(
     """
     for row in range(len(inertia)):
         i, k = inertia[row], stiffness[row]
-        slow = k * dt * dt < GYRO_STEP * GYRO_STEP * i
-        out[row, 0] = i if slow else 0.0
-        out[row, 1] = load_max * k if k > 0.0 else math.inf
-        out[row, 2] = MOMENT_MARGIN * load_max * k if k > 0.0 else math.inf
+        square = k * dt * dt  # (w h)^2 I
+        out[row, 0] = i if square < GYRO_STEP * GYRO_STEP * i else 0.0
+        limit = math.inf
+        if k > 0.0:
+            limit = k * min(max(load_max * i / square, LOAD_COARSE), LOAD_FINE)
+        out[row, 1] = limit
+        out[row, 2] = MOMENT_MARGIN * limit
 
 
 def guards(

@@ -23,14 +23,17 @@ Array = NDArray[Any]
 
 
 @kernel
-def _acceleration(u: Array, v: Array, w: Array, inertia: float, damping: float, stiffness: float) -> Array:
+def _acceleration(
+    u: Array, v: Array, w: Array, inertia: float, damping: float, stiffness: float
+) -> Array:
     sine = np.sqrt(u[1] * u[1] + u[2] * u[2])
     theta = np.arctan2(sine, u[0])
     pull = w.copy()
     pull[0] += stiffness * (theta / sine if sine > 1e-12 else 1.0)
     radial = pull[0] * u[0] + pull[1] * u[1] + pull[2] * u[2]
     speed = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
-    return (pull - radial * u - damping * v) / inertia - speed * u
+    accel: Array = (pull - radial * u - damping * v) / inertia - speed * u
+    return accel
 
 
 @kernel

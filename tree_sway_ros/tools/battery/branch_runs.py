@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.integrators.ball_joint import swing
 from tree_sway_ros.core.kernel import kernel
-from tree_sway_ros.core.oscillators import propagator
+from tree_sway_ros.core.oscillators import propagator, single_precision
 from tree_sway_ros.core.two_axis import guards, step_branch
 
 Array = NDArray[Any]
@@ -29,7 +29,8 @@ class Branch:
     def run(self, loads: Array, state: Array | None = None, dtype: Any = np.float64) -> Array:
         """States after each frame, (steps + 1, 4), from s-loads W / k1, (steps, 3), means over frames."""
         start = np.zeros(4) if state is None else np.asarray(state)
-        return run_branch((loads * self.stiffness).astype(dtype), self.row.astype(dtype),
+        row = self.row if dtype == np.float64 else single_precision(self.row)
+        return run_branch((loads * self.stiffness).astype(dtype), row,
                           self.guard.astype(dtype), start.astype(dtype))
 
     def truth(self, wind: Any, steps: int, state: Array | None = None, substeps: int = 32) -> Array:

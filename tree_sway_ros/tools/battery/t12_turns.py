@@ -15,7 +15,7 @@ TITLE = "reversal and turns of the wind"
 STEPS = 300
 TURN_AT = 2.0
 # Goals: largest error over the length, at 10, 30 and 60 degrees of deflection after the turn.
-CASES = ((0.10, 10, 1.5e-3), (0.30, 30, 4e-3), (0.60, 60, 1.5e-2))
+CASES = ((0.10, 1.5e-3), (0.30, 4e-3), (0.60, 1.5e-2))
 
 
 def turning(size: float, degrees: float) -> Any:
@@ -41,7 +41,7 @@ def reversing(size: float) -> Any:
 def run(full: bool = False) -> list[Row]:
     """Compare with the ball joint; then the planar form that keeps its angle."""
     branch, rows = Branch(), []
-    for size, degrees, bound in CASES:
+    for size, bound in CASES:
         for name, wind in (("90 degree turn", turning(size, 90)), ("180 degree turn", turning(size, 180)),
                            ("reversal", reversing(size))):
             truth = branch.truth(wind, STEPS)

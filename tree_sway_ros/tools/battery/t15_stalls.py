@@ -18,7 +18,7 @@ def uneven_steps(frames: int) -> NDArray[np.float64]:
     """Steps in [s] that jitter by half, with a stall every 60."""
     dt = (1 + 0.5 * np.sin(1.7 * np.arange(1, frames + 1))) / 60
     dt[59::60] = STALL
-    return dt
+    return np.asarray(dt)
 
 
 def run(full: bool = False) -> list[Row]:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.integrators.minimal import rk4, semi_implicit_euler, verlet
 from tree_sway_ros.core.kernel import kernel
-from tree_sway_ros.core.oscillators import propagator
-from tree_sway_ros.core.two_axis import LOAD_MAX, MOMENT_MARGIN, guards, step_branch
+from tree_sway_ros.core.oscillators import propagator, single_precision
+from tree_sway_ros.core.two_axis import guards, step_branch
 from tree_sway_ros.tools.battery.row import Row, fails, holds
 
 TITLE = "adversarial runs"
@@ -19,13 +19,13 @@ BLOWN_UP = 1e3  # [rad]
 Array = NDArray[Any]
 
 
-def adversaries(n: int, rng: np.random.Generator, largest: float) -> tuple[Array, Array, Array, Array]:
-    """w h from .1 to 100, z from .001 to 1, load s up to the largest, random angle in space, (n,)."""
+def adversaries(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
+    """w h from .1 to 100, z from .001 to 1, a share of the largest load, random angle in space, (n,)."""
     ratio = 10 ** rng.uniform(-1, 2, n)
     damping = 10 ** rng.uniform(-3, 0, n)
     direction = rng.normal(size=(n, 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
-    return ratio, damping, largest * rng.uniform(0, 1, n), direction
+    return ratio, damping, rng.uniform(0, 1, n), direction
 
 
 def bound(damping: Array) -> Array:
@@ -66,24 +66,28 @@ def _attack(rows: Array, guard: Array, stiffness: Array, size: Array, direction:
 def attack(n: int, planar: bool, kind: Any, seed: int = 0) -> tuple[int, float]:
     """Return how many runs blew up and the largest peak over its bound."""
     rng = np.random.default_rng(seed)
-    ratio, damping, size, direction = adversaries(n, rng, LOAD_MAX)
+    ratio, damping, share, direction = adversaries(n, rng)
     if planar:
         direction[:, 1] = np.hypot(direction[:, 1], direction[:, 2])
         direction[:, 2] = 0
     stiffness = np.ones(n)
     inertia = 1 / ratio**2
     rows = propagator(inertia, 2 * damping / ratio, stiffness, 1.0)
+    coefficients: Array = rows if kind == np.float64 else single_precision(rows)
+    guard = guards(inertia, stiffness, 1.0)
+    size = share * guard[:, 1]
     peak = np.empty(n, kind)
-    _attack(*(a.astype(kind) for a in (rows, guards(inertia, stiffness, 1.0), stiffness, size, direction)),
-            int(planar), STEPS, peak)
-    limit = (size if planar else MOMENT_MARGIN * LOAD_MAX) * bound(damping)
-    return int(np.count_nonzero(~(peak < BLOWN_UP * LOAD_MAX))), float(np.max(peak / limit))
+    guard_, stiffness_ = guard.astype(kind), stiffness.astype(kind)
+    _attack(coefficients, guard_, stiffness_, size.astype(kind), direction.astype(kind), int(planar),
+            STEPS, peak)
+    limit = (size if planar else guard[:, 2]) * bound(damping)
+    return int(np.count_nonzero(~(peak < BLOWN_UP * guard[:, 1]))), float(np.max(peak / limit))
 
 
 def classic(step: Any, n: int, seed: int = 0) -> float:
     """Fraction of planar runs at s <= 1 in which a classic method blows up."""
     rng = np.random.default_rng(seed)
-    ratio, damping, size, direction = adversaries(n, rng, 1.0)
+    ratio, damping, size, direction = adversaries(n, rng)
     blown = 0
     for r, z, s, d in zip(ratio, damping, size, direction, strict=True):
         inertia = 1 / r**2

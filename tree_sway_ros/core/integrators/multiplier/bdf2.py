@@ -22,6 +22,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     q = (state[0] * 4.0 - state[4]) * (1.0 / 3.0) + v * h
     accel, lam = state[2].copy(), state[3, : 2 * n].copy()
     iterations = solve_index3(table, q, h * h, v, h, q, h * h, load[0], accel, lam)
+    if iterations < 0:  # a failed step leaves the state as it was
+        return iterations
     state[4] = state[0]
     state[5] = state[1]
     state[0] = q + accel * (h * h)

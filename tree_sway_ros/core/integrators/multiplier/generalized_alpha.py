@@ -37,6 +37,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     if options[4] == 0.0:  # such that the first guess of q is q + h v
         accel = (state[0] + state[1] * dt - q) / to_q
     iterations = solve_index3(table, q, to_q, v, to_v, q, to_q, load[0], accel, lam)
+    if iterations < 0:  # a failed step leaves the state as it was
+        return iterations
     state[4] = old + accel * gain
     state[0] = q + accel * to_q
     state[1] = v + accel * to_v

@@ -24,6 +24,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
         table, q + v * (0.5 * dt), 0.25 * dt * dt, v, 0.5 * dt, q + v * dt, 0.5 * dt * dt,
         load[0], accel, lam,
     )  # fmt: skip
+    if iterations < 0:  # a failed step leaves the state as it was
+        return iterations
     state[0] = q + v * dt + accel * (0.5 * dt * dt)
     state[1] = v + accel * dt
     state[2] = accel
