@@ -1,7 +1,7 @@
 """
 TreeQSM's MATLAB files: structs with a field ``cylinder``, or the loose variables of version 2.0.
 
-Up to version 7 of the file format through scipy. Version 7.3 is HDF5 and needs h5py. A file may hold
+Versions 5 to 7 of the file format are read here; version 7.3 is HDF5 and needs h5py. A file may hold
 several models, as variables or as an array of structs; each is a tree.
 
 """
@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError
 from tree_sway_ros.importers.cylinders import Cylinders
+from tree_sway_ros.importers.mat5 import MatArray, read_mat5
 from tree_sway_ros.importers.text_file import read_bytes
 from tree_sway_ros.importers.treeqsm_columns import treeqsm_cylinders
 
@@ -62,10 +62,7 @@ def _cylinders(name: str, fields: Mapping[str, Any], source: str) -> Cylinders:
         found = next((fields[key] for key in names if key in fields), None)
         if found is None:
             raise FormatError(f"{name} has no field '{names[0]}'", where=source)
-        try:
-            columns.append(np.atleast_1d(np.asarray(found, dtype=np.float64)))
-        except (TypeError, ValueError):
-            raise FormatError(f"{name}.{names[0]} is not numeric", where=source) from None
+        columns.append(np.atleast_1d(np.asarray(found, dtype=np.float64)))
     n = columns[0].size
     for i in (2, 3):  # a single cylinder was squeezed to one dimension
         columns[i] = columns[i].reshape(1, 3) if columns[i].shape == (3,) else columns[i]
@@ -77,23 +74,27 @@ def _cylinders(name: str, fields: Mapping[str, Any], source: str) -> Cylinders:
 
 
 def _models_of_mat(path: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    # A damaged file fails anywhere in scipy, zlib or numpy: whatever it is, it is the file's fault.
     try:
-        content = scipy.io.loadmat(path, squeeze_me=True, struct_as_record=False)
-    except Exception as error:
-        raise FormatError(
-            f"not a MATLAB file that can be read: {type(error).__name__}: {error}"[:200],
-            where=str(path),
-        ) from error
-    for name, value in content.items():
-        several = isinstance(value, np.ndarray) and value.dtype == object
-        for number, item in enumerate(value.ravel() if several else [value], start=1):
-            fields = getattr(item, "__dict__", {})
-            cylinder = getattr(fields.get("cylinder", item), "__dict__", {})
-            if "radius" in cylinder:
-                yield (f"{name}{number}" if several else name), cylinder
-    if "Rad" in content:
-        yield "QSM", content
+        content = read_mat5(read_bytes(path))
+        for name, variable in content.items():
+            several = max(variable.shape, default=1) > 1
+            for number, fields in enumerate(variable.structs(), start=1):
+                inside = fields.get("cylinder")
+                cylinder = fields if inside is None else next(inside.structs(), {})
+                if "radius" in cylinder:
+                    yield (f"{name}{number}" if several else name), _numbers(cylinder)
+        if "Rad" in content:
+            yield "QSM", _numbers(content)
+    except FormatError as error:
+        if error.where:
+            raise
+        what = f"not a MATLAB file that can be read: {error.what}"
+        raise FormatError(what, where=str(path), cure="save it anew") from None
+
+
+def _numbers(fields: Mapping[str, MatArray]) -> dict[str, Any]:
+    wanted = {name for names in _FIELDS for name in names}
+    return {name: array.numbers().squeeze() for name, array in fields.items() if name in wanted}
 
 
 def _models_of_hdf5(path: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
