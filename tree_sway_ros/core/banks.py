@@ -12,10 +12,12 @@ import numpy as np
 
 from tree_sway_ros.core.beam import volume_rule_stiffness
 from tree_sway_ros.core.branch_model import BranchModel, branch_models
+from tree_sway_ros.core.carried_inertia import carried_inertia
 from tree_sway_ros.core.kinematics import fill_branch_geometry, segment_records
 from tree_sway_ros.core.layout import BRANCH, WORK
+from tree_sway_ros.core.loads import even_wind_moments
 from tree_sway_ros.core.modal import ModalBank
-from tree_sway_ros.core.modes import natural_modes, refuse_buckling
+from tree_sway_ros.core.modes import Modes, most_driven, natural_modes, refuse_buckling
 from tree_sway_ros.core.reduction import Reduction, reduce_tree
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species
@@ -132,10 +134,8 @@ def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Ban
     if settings.rung == "frozen":
         oscillators, frequencies = Frozen(tree.n_branches, reduction.n_coordinates), np.zeros(0)
     elif coupled:
-        count = settings.n_modes if settings.rung == "modes" else None
-        modes = natural_modes(tree, reduction, count)
-        ratios = np.full(len(modes.circular), damping)
-        oscillators, frequencies = ModalBank(branches, reduction, modes, ratios), modes.frequencies
+        modes = _modes(tree, reduction, branches, settings)
+        oscillators, frequencies = ModalBank(branches, reduction, modes, damping), modes.frequencies
     else:
         refuse_buckling(tree, reduction)
         branches["source"] = twig_sources(tree, settings.twig_tolerance)
@@ -145,6 +145,19 @@ def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Ban
     solved = int((branches["source"] == np.arange(tree.n_branches)).sum())
     mass = float(sum(model.beam.integral(model.mass) for model in models))
     return Bank(oscillators, branches, segments, frequencies, solved, mass)
+
+
+def _modes(
+    tree: Tree, reduction: Reduction, branches: Any, settings: SimulatorSettings
+) -> Modes:
+    """All modes, or those of the slowest that the wind drives most."""
+    if settings.rung == "coupled":
+        return natural_modes(tree, reduction)
+    n = reduction.n_coordinates
+    if settings.n_modes > n:
+        natural_modes(tree, reduction, settings.n_modes)
+    slowest = natural_modes(tree, reduction, min(4 * settings.n_modes, n))
+    return most_driven(slowest, even_wind_moments(branches, n), settings.n_modes)
 
 
 def _enriched(tree: Tree, enrich: str) -> frozenset[int]:
@@ -172,7 +185,7 @@ def _uncoupled(
 ) -> UncoupledBank:
     """Each branch's own oscillator: the mean of its two axes."""
     carries = settings.rung == "subtree"
-    inertia = np.asarray(reduction.mass.diagonal()).reshape(-1, 2).mean(axis=1)
+    inertia = carried_inertia(tree, reduction).reshape(-1, 2).mean(axis=1)
     stiffness = np.asarray(reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
     if not carries:
         inertia = inertia * np.array([model.inertia_share for model in models])

@@ -171,20 +171,28 @@ def _follow(
     dw: float, dx: float, dy: float, dz: float, px: float, py: float, pz: float, out: Floats,
 ) -> None:  # fmt: skip
     """Place the segments of a branch that bends far, has a second shape or twists."""
-    i, axis, paired = branch.coordinate, branch.axis, 2 * branch.n_pairs
+    i, axis, pairs = branch.coordinate, branch.axis, branch.n_pairs
+    twists = branch.n_coordinates - 2 * pairs
     t = x[i] * x[i] + x[i + 1] * x[i + 1]
     blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
     stretch = 1.0 + t * (branch.skew + blend * (branch.tip_skew - branch.skew))
+    last = branch.n_coordinates - 1
     for j in range(branch.first, branch.end):
         segment = segments[j]
-        first = stretch * (segment.slope[0] + blend * (segment.tip_slope - segment.slope[0]))
-        rx = ry = rz = 0.0
-        for c in range(branch.n_coordinates):
-            shape = c // 2 if c < paired else c - branch.n_pairs
-            angle = (first if shape == 0 else segment.slope[shape]) * x[i + c]
-            rx += angle * axis[c, 0]
-            ry += angle * axis[c, 1]
-            rz += angle * axis[c, 2]
+        slope = stretch * (segment.slope[0] + blend * (segment.tip_slope - segment.slope[0]))
+        ux, uy, spin = slope * x[i], slope * x[i + 1], 0.0
+        for p in range(1, pairs):
+            ux += segment.slope[p] * x[i + 2 * p]
+            uy += segment.slope[p] * x[i + 2 * p + 1]
+        for p in range(twists):
+            spin += segment.slope[pairs + p] * x[i + 2 * pairs + p]
+        rx = ux * axis[0, 0] + uy * axis[1, 0]
+        ry = ux * axis[0, 1] + uy * axis[1, 1]
+        rz = ux * axis[0, 2] + uy * axis[1, 2]
+        if twists > 0:
+            rx += spin * axis[last, 0]
+            ry += spin * axis[last, 1]
+            rz += spin * axis[last, 2]
         qw, qx, qy, qz = quaternion(rx, ry, rz)
         qw, qx, qy, qz = product(dw, dx, dy, dz, qw, qx, qy, qz)
         px, py, pz = _put(segment, qw, qx, qy, qz, px, py, pz, out, j)

@@ -10,7 +10,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.layout import WORK
 from tree_sway_ros.core.rotation import turned
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.wind_load import drag
@@ -149,3 +152,29 @@ def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: F
             moment[i + c] += total
         along = chord[0, 0] * wrench[0] + chord[0, 1] * wrench[1] + chord[0, 2] * wrench[2]
         pull[branch.parent] += branch.axial_lever * along
+
+
+def even_wind_moments(branches: Any, n_coordinates: int) -> Floats:
+    """
+    Moments of an even wind of 1 m/s and 1 kg/m^3, along x and along y, on the tree at rest.
+
+    Parameters
+    ----------
+    branches
+        Records of `BRANCH`, (b,).
+    n_coordinates
+        N.
+
+    Returns
+    -------
+    Floats
+        In [N m], (N, 2).
+
+    """
+    moments, pull, rest = np.zeros((2, n_coordinates)), np.zeros(len(branches)), np.zeros(n_coordinates)
+    for moment, (wx, wy) in zip(moments, np.eye(2), strict=True):
+        work = np.zeros(len(branches), dtype=WORK)
+        blow(branches, work, rest, rest, wx, wy, 0.0, 1.0)
+        gather(branches, work)
+        generalised(branches, work, True, moment, pull)
+    return moments.T

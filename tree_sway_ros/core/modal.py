@@ -38,22 +38,22 @@ class ModalBank:
     modes
         Its slowest modes, or all.
     damping_ratio
-        Of each mode in [-], (m,).
+        Of every mode in [-].
 
     """
 
     carries = True
 
-    def __init__(self, branches: Any, reduction: Reduction, modes: Modes, damping_ratio: Floats) -> None:
+    def __init__(self, branches: Any, reduction: Reduction, modes: Modes, damping_ratio: float) -> None:
         """Make room for the coefficients and the state."""
         n, m = modes.shapes.shape
         self.branches = branches
         self.shapes = modes.shapes
-        self._stiffness = modes.circular**2
-        self._damping = 2.0 * damping_ratio * modes.circular
+        self.stiffness = modes.circular**2
+        self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
         self._flexibility = 1.0 / diagonal if m < n else np.zeros(n)
-        held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self._stiffness
+        held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
         self._held = np.ascontiguousarray(held)
         self._limit = LOAD_MAX * diagonal
         self._participation = _participation(branches, modes.shapes)
@@ -65,9 +65,9 @@ class ModalBank:
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
-        one = np.ones(len(self._stiffness))
-        fill_propagator(one, self._damping, self._stiffness, dt, self._whole)
-        fill_propagator(one, self._damping, self._stiffness, 0.5 * dt, self._half)
+        one = np.ones(len(self.stiffness))
+        fill_propagator(one, self.damping, self.stiffness, dt, self._whole)
+        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
         self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:

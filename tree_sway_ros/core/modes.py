@@ -104,6 +104,33 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
+def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
+    """
+    Keep the modes that loads drive most.
+
+    A mode's share in the bending energy under a static load q is ``(phi . q)^2 / w^2``; it is weighed by 1 / w, for turbulence has
+    less for the quick ones. Of modes that loads do not reach, as branches that swing against each other, nothing is lost.
+
+    Parameters
+    ----------
+    modes
+        To choose from.
+    loads
+        Moments on the key rotations, (N, any).
+    count
+        How many to keep.
+
+    Returns
+    -------
+    Modes
+        The chosen ones, the slowest first.
+
+    """
+    driven = (np.square(modes.shapes.T @ loads) / modes.circular[:, None] ** 3).max(axis=1)
+    kept = np.sort(np.argsort(-driven, kind="stable")[:count])
+    return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
+
+
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     """
     Find by how much the weight could grow before the tree buckles.
