@@ -16,7 +16,7 @@ from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import status_line
 
 _SETTLING = 0.5
-_LIVE_PERIOD, _LOG_PERIOD = 0.2, 5.0
+_LIVE_PERIOD, _LOG_PERIOD = 0.2, 2.0
 _WINDOW = 2.0
 
 

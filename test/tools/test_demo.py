@@ -1,0 +1,117 @@
+"""The demo as a user starts it: a process of its own, over real DDS, to its end."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytestmark = pytest.mark.ros
+
+DEADLINE = 180.0  # the first start compiles
+ROOT = Path(__file__).resolve().parents[2]
+SONIC = ROOT / ".." / "shared" / "data" / "wind" / "sonic_20hz_1245.toa5.dat"
+
+
+@pytest.fixture
+def environment() -> dict[str, str]:
+    """A ROS domain for one test alone, on this machine alone."""
+    domain = 101 + os.getpid() % 100
+    return {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+
+
+Started = subprocess.Popen[str]
+
+
+def start(environment: dict[str, str], *arguments: str) -> Started:
+    """Start a command; standard output is no terminal there."""
+    command = [sys.executable, "-m", "tree_sway_ros.tools.cli", *arguments]
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True, cwd=ROOT)
+
+
+def lines_until(process: Started, sign: str) -> Iterator[str]:
+    """Lines of a process up to one that holds a sign; the process is killed at the deadline."""
+    assert process.stdout is not None
+    timer = threading.Timer(DEADLINE, process.kill)
+    timer.start()
+    for line in process.stdout:
+        yield line
+        if sign in line:
+            break
+    timer.cancel()
+
+
+def number(pattern: str, text: str) -> float:
+    """The number that a pattern finds in a text."""
+    found = re.search(pattern, text)
+    assert found, text
+    return float(found[1])
+
+
+def test_it_runs_for_the_seconds_it_was_given(environment: dict[str, str]) -> None:
+    process = start(environment, "demo", "--tree", "goldcrest", "--seconds", "3")
+    out, err = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0, err
+    assert out.startswith("goldcrest: ")
+    assert "| poses " in out
+    assert "\r" not in out
+    assert number(r"poses +(\d+) at", out) > 90
+    assert number(r"mean (\+\d+\.\d) east", out) > 0.0  # a westerly bends it to the east
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not SONIC.exists(), reason=f"needs the record {SONIC}")
+def test_a_second_process_receives_every_pose_of_a_recorded_wind(environment: dict[str, str]) -> None:
+    demo = start(environment, "demo", "--wind", str(SONIC), "--seconds", "30")
+    assert any("| poses " in line for line in lines_until(demo, "| poses "))
+    listener = start(environment, "listen", "--seconds", "10")
+    heard, err = listener.communicate(timeout=DEADLINE)
+    assert listener.returncode == 0, err
+    said, err = demo.communicate(timeout=DEADLINE)
+    assert demo.returncode == 0, err
+    for text in (heard, said):
+        assert number(r"poses +\d+ at ([\d.]+) Hz", text) == pytest.approx(60.0, rel=0.01)
+    assert "none missing" in heard
+    assert number(r"tip +([\d.]+) mm from rest on average", said) > 0.5
+
+
+@pytest.mark.parametrize("signals", [[signal.SIGINT], [signal.SIGINT] * 5, [signal.SIGTERM]])
+def test_ctrl_c_ends_it_with_a_summary(
+    environment: dict[str, str], signals: list[signal.Signals]
+) -> None:
+    process = start(environment, "demo", "--tree", "goldcrest")
+    assert any("| poses " in line for line in lines_until(process, "| poses "))
+    for one in signals:
+        process.send_signal(one)
+    out, err = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0, err
+    assert re.search(r"^poses +\d+ at", out, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "variables", "expected"),
+    [
+        (["--tree", "elm"], {}, "no tree 'elm'; give a file, or one of"),
+        (["--wind", "/no/such.csv"], {}, "/no/such.csv: no such file"),
+        (["--rate", "0"], {}, "parameter 'rate': 0 is out of range; give 1 .. 1000"),
+        ([], {"ROS_DOMAIN_ID": "900"}, "ROS_DOMAIN_ID=900"),
+    ],
+)
+def test_what_cannot_start_says_why(
+    environment: dict[str, str], arguments: list[str], variables: dict[str, str], expected: str
+) -> None:
+    process = start({**environment, **variables}, "demo", *arguments, "--seconds", "1")
+    _, err = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 2
+    (line,) = [line for line in err.splitlines() if not line.startswith("[INFO]")]
+    assert line.startswith("tree-sway demo: ")
+    assert expected in line
