@@ -73,6 +73,7 @@ def test_mtg_in_other_units():
         ("forest.treefile.txt", "0.02,2,2", "0.02,7,2", TreeError, ":4: node 4: parent_id is 7"),
         ("forest.treefile.txt", "0.02,2,2", "0.02,4,2", TreeError, ":4: node 4: cyclic"),
         ("fork.mtg", "FORM-A", "FORM-B", FormatError, "the code is 'FORM-B', not FORM-A"),
+        ("fork.mtg", "CODE:", "CODE", FormatError, "no known tree format|the code is ''"),
         ("fork.mtg", "ENTITY-CODE", "ENTITY", FormatError, "no line ENTITY-CODE"),
         ("fork.mtg", "SYMBOL", "SYMB", FormatError, "no CLASSES"),
         ("fork.mtg", "^<U2", "^<X2", FormatError, ":32: no class 'X'"),

@@ -97,7 +97,7 @@ def parse_mtg(lines: list[str], source: str) -> list[MtgVertex]:
 
 def _scales(lines: list[str], source: str) -> dict[str, int]:
     """Scale of each class, from the section CLASSES."""
-    code = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("CODE")), "")
+    code = next((line.partition(":")[2].strip() for line in lines if line.startswith("CODE")), "")
     if not code.startswith("FORM-A"):
         raise FormatError(f"the code is '{code[:20]}', not FORM-A", where=source)
     begin = next((i for i, line in enumerate(lines) if line.startswith("SYMBOL")), len(lines))
