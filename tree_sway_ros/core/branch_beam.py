@@ -12,6 +12,7 @@ curvature; psi slope, the rotation of the branch at s per unit of key rotation [
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -123,20 +124,23 @@ class BranchBeam:
         Parameters
         ----------
         values
-            At the points, (m, 5).
+            At the points, (m, 5, ...).
 
         Returns
         -------
         tuple
-            The integral up to each point (m, 5), each node (m + 1,) and each child (c,).
+            The integral up to each point (m, 5, ...), each node (m + 1, ...) and each child (c, ...).
 
         """
-        whole = (self.weight * values).sum(axis=1)
-        nodes = np.concatenate([[0.0], np.cumsum(whole)])
-        points = nodes[:-1, None] + self.length[:, None] * (values @ _TO_POINTS.T)
+        over_segments = np.einsum("sg,sg...->s...", self.weight, values)
+        nodes = np.zeros((len(values) + 1, *values.shape[2:]))
+        np.cumsum(over_segments, axis=0, out=nodes[1:])
+        points = nodes[:-1, None] + np.einsum("s,pg,sg...->sp...", self.length, _TO_POINTS, values)
         segment = self.children.segment
-        within = np.einsum("ci,ci->c", self._child_rows, values[segment])
-        return points, nodes, nodes[segment] + self.length[segment] * within
+        within = np.einsum(
+            "c,cg,cg...->c...", self.length[segment], self._child_rows, values[segment]
+        )
+        return points, nodes, nodes[segment] + within
 
     def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
@@ -233,8 +237,17 @@ class SlopeShape:
             At the points (m, 5, 3), nodes (m + 1, 3) and children (c, 3), in [m/rad].
 
         """
-        beam = self.beam
-        direction = np.cross(rotation, beam.tangent)
-        moved = [beam.from_base(self.slope * direction[:, k, None]) for k in range(3)]
-        points, nodes, children = (np.stack(parts, axis=-1) for parts in zip(*moved, strict=True))
-        return points, nodes, children
+        about = cross_matrix(rotation).T
+        points, nodes, children = self._reach
+        return points @ about, nodes @ about, children @ about
+
+    @cached_property
+    def _reach(self) -> tuple[Floats, Floats, Floats]:
+        """Integral of the slope along the branch: its cross product with a rotation is the displacement."""
+        return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
+
+
+def cross_matrix(v: Floats) -> Floats:
+    """Matrix whose product with a vector is the cross product of v with it, (3, 3)."""
+    x, y, z = v
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tree_sway_ros.core.branch_beam import BranchBeam, SlopeShape
+from tree_sway_ros.core.branch_beam import BranchBeam, SlopeShape, cross_matrix
 from tree_sway_ros.core.tree import Floats, Ints
 
 N_SHAPES = 3
@@ -111,7 +111,7 @@ def across(chord: Floats) -> tuple[Floats, Floats]:
     reference = np.array([1.0, 0.0, 0.0]) if abs(chord[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
     e1 = reference - (reference @ chord) * chord
     e1 /= np.linalg.norm(e1)
-    return e1, np.cross(chord, e1)
+    return e1, cross_matrix(chord) @ e1
 
 
 def ways_to_move(

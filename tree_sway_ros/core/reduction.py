@@ -25,9 +25,11 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from tree_sway_ros.core.branch_beam import cross_matrix
 from tree_sway_ros.core.branch_model import BranchModel
 from tree_sway_ros.core.branch_shapes import MAX_COORDINATES
 from tree_sway_ros.core.tree import Floats, Ints, Tree
+
 
 @dataclass(frozen=True)
 class Reduction:
@@ -160,9 +162,12 @@ def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     fields, twists = [], []
     for way in model.coordinates:
         points, _, children = way.shape.displacement(way.axis)
-        turn = way.shape.child_slope[:, None] * way.axis
+        slope = way.shape.child_slope[:, None]
+        about = cross_matrix(way.axis).T
         fields.append(points)
-        twists.append(np.hstack([children - np.cross(turn, model.beam.child_point), turn]))
+        twists.append(
+            np.hstack([children - slope * (model.beam.child_point @ about), slope * way.axis])
+        )
     return np.stack(fields), np.stack(twists)
 
 
@@ -171,7 +176,7 @@ def _spatial_inertia(model: BranchModel) -> Floats:
     point = model.beam.point
     dm = model.mass * model.beam.weight
     mass = dm.sum()
-    cross = _cross_matrix(np.einsum("sg,sgk->k", dm, point))
+    cross = cross_matrix(np.einsum("sg,sgk->k", dm, point))
     second = np.einsum("sg,sgi,sgj->ij", dm, point, point)
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = mass * np.eye(3)
@@ -179,10 +184,6 @@ def _spatial_inertia(model: BranchModel) -> Floats:
     inertia[3:, :3] = cross
     inertia[3:, 3:] = np.trace(second) * np.eye(3) - second
     return inertia
-
-
-def _cross_matrix(v: Floats) -> Floats:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
