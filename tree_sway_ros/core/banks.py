@@ -1,16 +1,17 @@
 """
-From a tree to the oscillators that move it: one function a rung of the ladder.
+From a tree to the oscillators that move it, for every rung of the ladder.
 
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from functools import cached_property
+from typing import Any, Protocol, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tree_sway_ros.core.beam import volume_rule_stiffness
 from tree_sway_ros.core.branch_model import BranchModel, branch_models
 from tree_sway_ros.core.carried_inertia import carried_inertia
 from tree_sway_ros.core.kinematics import fill_branch_geometry, segment_records
@@ -19,6 +20,7 @@ from tree_sway_ros.core.loads import even_wind_moments
 from tree_sway_ros.core.modal import ModalBank
 from tree_sway_ros.core.modes import Modes, most_driven, natural_modes, refuse_buckling
 from tree_sway_ros.core.reduction import Reduction, reduce_tree
+from tree_sway_ros.core.response import Responding
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.tree import Floats, Tree
@@ -27,7 +29,7 @@ from tree_sway_ros.core.uncoupled import UncoupledBank
 from tree_sway_ros.core.wind_load import fill_branch_loads
 
 
-class Oscillators(Protocol):
+class Oscillators(Responding, Protocol):
     """What every rung gives: key rotations that a wind moves."""
 
     work: Any
@@ -48,9 +50,12 @@ class Oscillators(Protocol):
 class Frozen:
     """Rung 0: a tree that stands still, for one too far away to be seen moving."""
 
-    def __init__(self, n_branches: int, n_coordinates: int) -> None:
+    carries = True
+
+    def __init__(self, branches: Any, n_coordinates: int) -> None:
         """Rest is all there is."""
-        self.work = np.zeros(n_branches, dtype=WORK)
+        self.branches = branches
+        self.work = np.zeros(len(branches), dtype=WORK)
         self._x = np.zeros(n_coordinates)
 
     def set_step(self, dt: float) -> None:
@@ -59,6 +64,10 @@ class Frozen:
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Stand still."""
         return 0
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Zeros, (N, k, f)."""
+        return np.zeros((*moments.shape, len(circular)), dtype=np.complex128)
 
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
@@ -98,66 +107,144 @@ class Bank:
 
 def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Bank:
     """
-    Calibrate a tree for its rung.
-
-    Raises
-    ------
-    TreeError
-        A tree that buckles under its own weight, or a branch without mass.
-    ParameterError
-        More modes than there are.
+    Calibrate a tree for the rung of its settings; see `CalibratedTree.bank`.
 
     """
-    middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
-    speed = settings.profile.over_anemometer(middle)
-    coupled = settings.rung in ("modes", "coupled")
-    carries = settings.rung != "branch"
-    models = branch_models(
-        tree,
-        species.density,
-        carries=carries,
-        enriched=_enriched(tree, settings.enrich) if coupled else frozenset(),
-        speed_profile=speed,
-        leaf_mass=settings.leaf_mass,
-        leaf_area=settings.leaf_area,
-    )
-    shear = species.shear_ratio * species.modulus
-    reduction = reduce_tree(tree, models, species.modulus, shear, settings.gravity, carries=carries)
-    branches = np.zeros(tree.n_branches, dtype=BRANCH)
-    fill_branch_geometry(tree, models, branches)
-    fill_branch_loads(tree, models, reduction, speed, branches)
-    segments = segment_records(tree, models)
-    damping = settings.damping_ratio
-    if damping is None:
-        damping = species.damping_in_leaf if settings.in_leaf else species.damping_bare
-    oscillators: Oscillators
-    if settings.rung == "frozen":
-        oscillators, frequencies = Frozen(tree.n_branches, reduction.n_coordinates), np.zeros(0)
-    elif coupled:
-        modes = _modes(tree, reduction, branches, settings)
-        oscillators, frequencies = ModalBank(branches, reduction, modes, damping), modes.frequencies
-    else:
-        refuse_buckling(tree, reduction)
-        branches["source"] = twig_sources(tree, settings.twig_tolerance)
-        _share_frames(branches)
-        oscillators = _uncoupled(tree, models, reduction, branches, damping, settings)
-        frequencies = np.sort(np.sqrt(oscillators.stiffness / oscillators.inertia)) / (2.0 * np.pi)
-    solved = int((branches["source"] == np.arange(tree.n_branches)).sum())
-    mass = float(sum(model.beam.integral(model.mass) for model in models))
-    return Bank(oscillators, branches, segments, frequencies, solved, mass)
+    return CalibratedTree(tree, species, settings).bank(settings.rung, settings.n_modes)
 
 
-def _modes(
-    tree: Tree, reduction: Reduction, branches: Any, settings: SimulatorSettings
-) -> Modes:
-    """All modes, or those of the slowest that the wind drives most."""
-    if settings.rung == "coupled":
-        return natural_modes(tree, reduction)
-    n = reduction.n_coordinates
-    if settings.n_modes > n:
-        natural_modes(tree, reduction, settings.n_modes)
-    slowest = natural_modes(tree, reduction, min(4 * settings.n_modes, n))
-    return most_driven(slowest, even_wind_moments(branches, n), settings.n_modes)
+@dataclass(frozen=True)
+class _Layer:
+    """A tree reduced in one of the three ways that rungs differ in."""
+
+    models: list[BranchModel]
+    reduction: Reduction
+    branches: Any
+    segments: Any
+
+
+class CalibratedTree:
+    """
+    A tree calibrated once, for all rungs.
+
+    Parameters
+    ----------
+    tree, species, settings
+        As for `SwaySimulator`; the settings' rung does not matter.
+
+    """
+
+    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+        """Wait to be asked."""
+        self.tree, self.species, self.settings = tree, species, settings
+        self._slowest: Modes | None = None
+
+    @property
+    def damping_ratio(self) -> float:
+        """Of every oscillator in [-]."""
+        settings, species = self.settings, self.species
+        if settings.damping_ratio is not None:
+            return settings.damping_ratio
+        return species.damping_in_leaf if settings.in_leaf else species.damping_bare
+
+    def bank(self, rung: str, n_modes: int = 12) -> Bank:
+        """
+        Build the oscillators of a rung.
+
+        Parameters
+        ----------
+        rung
+            One of `RUNGS`.
+        n_modes
+            How many modes the rung ``modes`` steps.
+
+        Raises
+        ------
+        TreeError
+            A tree that buckles under its own weight, or a branch without mass.
+        ParameterError
+            More modes than there are.
+
+        """
+        layer = self._coupled if rung in ("modes", "coupled") else self._carried
+        layer = self._alone if rung == "branch" else layer
+        branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
+        if rung == "frozen":
+            oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
+        elif layer is self._coupled:
+            modes = self._modes(rung, n_modes)
+            oscillators = ModalBank(branches, layer.reduction, modes, self.damping_ratio)
+            frequencies = modes.frequencies
+        else:
+            refuse_buckling(self.tree, layer.reduction)
+            branches["source"] = twig_sources(self.tree, self.settings.twig_tolerance)
+            _share_frames(branches)
+            bank = self._uncoupled(layer, branches, carries=rung == "subtree")
+            frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
+            oscillators = bank
+        solved = int((branches["source"] == np.arange(len(branches))).sum())
+        mass = float(sum(model.beam.integral(model.mass) for model in layer.models))
+        return Bank(oscillators, branches, layer.segments, frequencies, solved, mass)
+
+    @cached_property
+    def _alone(self) -> _Layer:
+        return self._layer(carries=False, enriched=frozenset())
+
+    @cached_property
+    def _carried(self) -> _Layer:
+        return self._layer(carries=True, enriched=frozenset())
+
+    @cached_property
+    def _coupled(self) -> _Layer:
+        return self._layer(carries=True, enriched=_enriched(self.tree, self.settings.enrich))
+
+    def _layer(self, *, carries: bool, enriched: frozenset[int]) -> _Layer:
+        tree, species, settings = self.tree, self.species, self.settings
+        speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
+        models = branch_models(
+            tree,
+            species.density,
+            carries=carries,
+            enriched=enriched,
+            speed_profile=speed,
+            leaf_mass=settings.leaf_mass,
+            leaf_area=settings.leaf_area,
+        )
+        shear = species.shear_ratio * species.modulus
+        reduction = reduce_tree(
+            tree, models, species.modulus, shear, settings.gravity, carries=carries
+        )
+        branches = np.zeros(tree.n_branches, dtype=BRANCH)
+        fill_branch_geometry(tree, models, branches)
+        fill_branch_loads(tree, models, reduction, speed, branches)
+        return _Layer(models, reduction, branches, segment_records(tree, models))
+
+    def _modes(self, rung: str, n_modes: int) -> Modes:
+        """All modes, or those of the slowest that the wind drives most."""
+        reduction = self._coupled.reduction
+        n = reduction.n_coordinates
+        wanted = n if rung == "coupled" else min(4 * n_modes, n) if n_modes <= n else n_modes
+        if self._slowest is None or len(self._slowest.circular) < wanted:
+            self._slowest = natural_modes(self.tree, reduction, wanted)
+        if rung == "coupled":
+            return self._slowest
+        loads = even_wind_moments(self._coupled.branches, n)
+        return most_driven(self._slowest.slowest(wanted), loads, n_modes)
+
+    def _uncoupled(self, layer: _Layer, branches: Any, *, carries: bool) -> UncoupledBank:
+        """Each branch's own oscillator: the mean of its two axes."""
+        tree, settings = self.tree, self.settings
+        inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)
+        stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
+        if not carries:
+            inertia = inertia * np.array([model.inertia_share for model in layer.models])
+        damping = 2.0 * self.damping_ratio * np.sqrt(stiffness * inertia)
+        if settings.stiffness == "volume_rule":
+            volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
+            parent = volume[np.maximum(tree.branch_parent, 0)]
+            rule = np.sqrt(volume * parent)
+            stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
+        return UncoupledBank(branches, inertia, damping, stiffness, carries)
 
 
 def _enriched(tree: Tree, enrich: str) -> frozenset[int]:
@@ -173,28 +260,3 @@ def _share_frames(branches: Any) -> None:
     for b in np.flatnonzero(branches["source"] != np.arange(len(branches))):
         branches["axis"][b] = branches["axis"][branches["source"][b]]
         branches["frame"][b] = branches["frame"][branches["source"][b]]
-
-
-def _uncoupled(
-    tree: Tree,
-    models: list[BranchModel],
-    reduction: Reduction,
-    branches: Any,
-    damping_ratio: float,
-    settings: SimulatorSettings,
-) -> UncoupledBank:
-    """Each branch's own oscillator: the mean of its two axes."""
-    carries = settings.rung == "subtree"
-    inertia = carried_inertia(tree, reduction).reshape(-1, 2).mean(axis=1)
-    stiffness = np.asarray(reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
-    if not carries:
-        inertia = inertia * np.array([model.inertia_share for model in models])
-    damping = 2.0 * damping_ratio * np.sqrt(stiffness * inertia)
-    if settings.stiffness == "volume_rule":
-        volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
-        parent = volume[np.maximum(tree.branch_parent, 0)]
-        rule = np.array(
-            [volume_rule_stiffness(v, p, 1.0) for v, p in zip(volume, parent, strict=True)]
-        )
-        stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-    return UncoupledBank(branches, inertia, damping, stiffness, carries)

@@ -70,6 +70,8 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
         record["source"] = branch
         for i, way in enumerate(model.coordinates):
             record["axis"][i] = way.axis
+            record["reach"][i] = way.shape.displacement(way.axis)[1][-1]
+        record["tip"] = tree.end[here.stop - 1] - tree.start[0]
         record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
         length = model.beam.length
         record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)

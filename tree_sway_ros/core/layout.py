@@ -29,6 +29,8 @@ BRANCH = np.dtype(
         ("twist", "f8", (MAX_COORDINATES, 6)),  # motion of its base per unit of parent's coordinates
         ("push", "f8", (MAX_COORDINATES, 3)),  # displacement under the wind's mean push
         ("flow", "f8", (MAX_COORDINATES, 3)),  # displacement at which its drag damps
+        ("reach", "f8", (MAX_COORDINATES, 3)),  # displacement of its tip
+        ("tip", "f8", (3,)),  # tip at rest
         ("turn", "f8", (MAX_COORDINATES, 3)),  # rotation of what the wind sees
         ("lever", "f8"),  # of its own load about its base [m]
         ("axial_lever", "f8"),  # of what it carries on its parent's rotation [m]
@@ -61,6 +63,7 @@ WORK = np.dtype(
         ("velocity", "f8", (6,)),  # of the base (v, w), about the root, in rest geometry
         ("rotation", "f8", (3,)),  # of the base, from rest
         ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
+        ("slip", "f8", (3,)),  # what that force took off the relative wind, over the compliance [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
     ]

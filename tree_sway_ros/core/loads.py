@@ -59,7 +59,7 @@ def blow(
     Parameters
     ----------
     branches, work
-        Records of `BRANCH` and `WORK`, (b,); the force of the latter is read as that of the last step, and written.
+        Records of `BRANCH` and `WORK`, (b,); the slip of the latter is read as that of the last step; force and slip are written.
     x, v
         Key rotations and rates half a step on, under the last step's forces, (N,).
     wx, wy, wz
@@ -74,7 +74,7 @@ def blow(
             for k in range(3):
                 here.force[k] = work[branch.source].force[k]
             continue
-        centre, velocity, force = branch.centre, here.velocity, here.force
+        centre, velocity, force, slip = branch.centre, here.velocity, here.force, here.slip
         mx = velocity[0] + velocity[4] * centre[2] - velocity[5] * centre[1]
         my = velocity[1] + velocity[5] * centre[0] - velocity[3] * centre[2]
         mz = velocity[2] + velocity[3] * centre[1] - velocity[4] * centre[0]
@@ -87,12 +87,12 @@ def blow(
             tx += branch.turn[c, 0] * angle
             ty += branch.turn[c, 1] * angle
             tz += branch.turn[c, 2] * angle
-        beta = branch.compliance
-        ux = branch.speed * wx - mx + beta * force[0]
-        uy = branch.speed * wy - my + beta * force[1]
-        uz = branch.speed * wz - mz + beta * force[2]
+        ux, uy, uz = branch.speed * wx - mx, branch.speed * wy - my, branch.speed * wz - mz
         ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
-        fx, fy, fz = drag(branch, per_speed_squared, ux, uy, uz)
+        beta = branch.compliance
+        ux, uy, uz = ux + beta * slip[0], uy + beta * slip[1], uz + beta * slip[2]
+        fx, fy, fz, f = drag(branch, per_speed_squared, ux, uy, uz)
+        slip[0], slip[1], slip[2] = f * ux, f * uy, f * uz
         force[0], force[1], force[2] = turned(tx, ty, tz, fx, fy, fz)
 
 
@@ -154,7 +154,7 @@ def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: F
         pull[branch.parent] += branch.axial_lever * along
 
 
-def even_wind_moments(branches: Any, n_coordinates: int) -> Floats:
+def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True) -> Floats:
     """
     Moments of an even wind of 1 m/s and 1 kg/m^3, along x and along y, on the tree at rest.
 
@@ -164,6 +164,8 @@ def even_wind_moments(branches: Any, n_coordinates: int) -> Floats:
         Records of `BRANCH`, (b,).
     n_coordinates
         N.
+    carries
+        Whether what a branch carries pushes on it.
 
     Returns
     -------
@@ -176,5 +178,5 @@ def even_wind_moments(branches: Any, n_coordinates: int) -> Floats:
         work = np.zeros(len(branches), dtype=WORK)
         blow(branches, work, rest, rest, wx, wy, 0.0, 1.0)
         gather(branches, work)
-        generalised(branches, work, True, moment, pull)
+        generalised(branches, work, carries, moment, pull)
     return moments.T

@@ -14,6 +14,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
@@ -44,7 +45,9 @@ class ModalBank:
 
     carries = True
 
-    def __init__(self, branches: Any, reduction: Reduction, modes: Modes, damping_ratio: float) -> None:
+    def __init__(
+        self, branches: Any, reduction: Reduction, modes: Modes, damping_ratio: float
+    ) -> None:
         """Make room for the coefficients and the state."""
         n, m = modes.shapes.shape
         self.branches = branches
@@ -94,6 +97,15 @@ class ModalBank:
                 wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
+        impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
+        eta = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
+        eta -= (self._held.T @ moments)[:, :, None]
+        rest = self._flexibility[:, None, None] * moments[:, :, None]
+        swinging: NDArray[np.complex128] = np.tensordot(self.shapes, eta, axes=(1, 0)) + rest
+        return swinging
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""

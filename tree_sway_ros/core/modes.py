@@ -46,6 +46,10 @@ class Modes:
         frequencies: Floats = self.circular / (2.0 * np.pi)
         return frequencies
 
+    def slowest(self, count: int) -> Modes:
+        """Leave out all but the slowest."""
+        return Modes(self.circular[:count], np.ascontiguousarray(self.shapes[:, :count]))
+
 
 def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) -> Modes:
     """

@@ -14,13 +14,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
 from tree_sway_ros.core.loads import blow, gather, generalised, ride
 from tree_sway_ros.core.oscillators import fill_propagator
 from tree_sway_ros.core.tree import Floats
-from tree_sway_ros.core.two_axis import LOAD_MAX, fill_guards, step_branch
+from tree_sway_ros.core.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
 
 
 class UncoupledBank:
@@ -84,6 +85,16 @@ class UncoupledBank:
             )
         )  # fmt: skip
 
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
+        impedance = (
+            self.stiffness[:, None]
+            - self.inertia[:, None] * circular**2
+            + 1j * self.damping[:, None] * circular
+        )
+        flexibility: NDArray[np.complex128] = np.repeat(1.0 / impedance, 2, axis=0)
+        return moments[:, :, None] * flexibility[:, None, :]
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
         return self.x
@@ -92,6 +103,7 @@ class UncoupledBank:
         """Go back to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
+        self._pull[:] = 0.0
 
 
 @fused
@@ -101,10 +113,11 @@ def _advance(
 ) -> int:  # fmt: skip
     x, v, moment, middle_x, middle_v = state[0], state[1], state[2], state[3], state[4]
     for b in range(len(branches)):
-        h = half[b]
-        for i in range(2 * b, 2 * b + 2):
-            middle_x[i] = h[0] * x[i] + h[1] * v[i] + (h[2] + h[3]) * moment[i]
-            middle_v[i] = h[4] * x[i] + h[5] * v[i] + (h[6] + h[7]) * moment[i]
+        h, i = half[b], 2 * b
+        m = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+        for k in range(2):
+            middle_x[i + k] = h[0] * x[i + k] + h[1] * v[i + k] + (h[2] + h[3]) * m[k]
+            middle_v[i + k] = h[4] * x[i + k] + h[5] * v[i + k] + (h[6] + h[7]) * m[k]
     if carries:
         ride(branches, work, middle_x, middle_v)
     blow(branches, work, middle_x, middle_v, wx, wy, wz, per_speed_squared)
