@@ -18,7 +18,12 @@ from tree_sway_ros.core.reference.example_trees import (
     tapered_stem,
 )
 from tree_sway_ros.core.reference.frame import frame_model
-from tree_sway_ros.core.reference.measure import record_tips, tip_error, tips_of_poses
+from tree_sway_ros.core.reference.measure import (
+    frame_means,
+    record_tips,
+    tip_error,
+    tips_of_poses,
+)
 from tree_sway_ros.core.reference.refinement import place_on_parent, refined
 from tree_sway_ros.core.tree_building import tree_from_segments
 from tree_sway_ros.errors import TreeError
@@ -228,3 +233,20 @@ def test_measure_scores_a_still_tree_one_and_the_truth_nought():
     rest = np.broadcast_to(tree.end[tree.branch_first[1:] - 1], truth.shape)
     assert tip_error(tree, rest, truth) == pytest.approx(1.0)
     assert tip_error(tree, truth, truth) == 0.0
+
+
+def test_frame_means_are_exact_for_straight_lines_between_samples():
+    time = np.array([5.0, 5.05, 5.1, 5.25])
+    velocity = np.array([[0.0, 1, 0], [1.0, 1, 0], [0.0, 1, 0], [3.0, 1, 0]])
+    means = frame_means(time, velocity, 0.1)
+    assert means == pytest.approx(np.array([[0.5, 1, 0], [1.0, 1, 0]]))
+    fine = frame_means(time, velocity, 0.05)
+    assert fine[:, 0] == pytest.approx([0.5, 0.5, 0.5, 1.5, 2.5])
+    assert frame_means(time, velocity, 1 / 60).mean(axis=0) == pytest.approx([1.1, 1, 0])
+
+
+def test_forked_trees_have_three_children_a_branch():
+    for generations, branches in ((1, 1), (3, 13), (4, 40)):
+        tree = forked_tree(*RATIOS[0], generations=generations)
+        assert tree.n_branches == branches
+        assert tree.n_segments == 6 * branches

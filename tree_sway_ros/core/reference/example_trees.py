@@ -26,9 +26,11 @@ EXAMPLE_MODULUS, EXAMPLE_DENSITY = 8.0e9, 900.0
 _GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))
 
 
-def forked_tree(length_ratio: float, diameter_ratio: float, *, segments: int = 6) -> Tree:
+def forked_tree(
+    length_ratio: float, diameter_ratio: float, *, segments: int = 6, generations: int = 4
+) -> Tree:
     """
-    Make a tree of 1 + 3 + 9 + 27 branches in 3D.
+    Make a tree of 1 + 3 + 9 + 27 branches in 3D, or of another number of generations.
 
     Every branch but the last bears three, at 1/2, 2/3 and 5/6 of its length, and tapers to two fifths.
 
@@ -38,6 +40,8 @@ def forked_tree(length_ratio: float, diameter_ratio: float, *, segments: int = 6
         Of a child to its parent.
     segments
         Segments a branch, a multiple of 6.
+    generations
+        How many there are, the stem's being the first.
 
     Returns
     -------
@@ -48,7 +52,7 @@ def forked_tree(length_ratio: float, diameter_ratio: float, *, segments: int = 6
     thirds = (1 / 2, 2 / 3, 5 / 6)
     orders = [
         _Order(6.0 * length_ratio**k, 0.12 * diameter_ratio**k, 0.048 * diameter_ratio**k, thirds)
-        for k in range(4)
+        for k in range(generations)
     ]
     return _grown(orders, segments, 50.0, f"forked {length_ratio:g} {diameter_ratio:g}")
 
