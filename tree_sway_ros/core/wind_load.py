@@ -61,26 +61,29 @@ def fill_branch_loads(
         along = np.einsum("sg,si,sj->ij", share, beam.tangent, beam.tangent)
         across = np.eye(3) - along
         record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+        square = 0.0
         for i, way in enumerate(model.coordinates):
             field = way.shape.displacement(way.axis)[0]
-            push = np.einsum("sg,sgk->k", share, field)
-            square = float((share[..., None] * field**2).sum())
-            record["push"][i] = push
+            record["push"][i] = np.einsum("sg,sgk->k", share, field)
             record["turn"][i] = float((share * way.shape.slope).sum()) * way.axis
-            ratio = square / float(push @ push) if i < 2 and push @ push > 0.0 else 1.0
-            record["flow"][i] = ratio * push
-        record["lever"] = 0.5 * sum(float(np.linalg.norm(record["push"][i])) for i in range(2))
+            square += float((share[..., None] * field**2).sum()) if i < 2 else 0.0
+        record["flow"] = record["push"]
+        # Both axes of the first shape as one, so that it does not matter how they are laid.
+        push = float(np.square(record["push"][:2]).sum())
+        record["flow"][:2] *= square / push if push > 0.0 else 1.0
+        record["lever"] = math.sqrt(0.5 * push)
     _fill_axial_levers(tree, records)
 
 
 def _fill_axial_levers(tree: Tree, records: Any) -> None:
-    """Displacement, on a unit of the parent's rotation, of the centre of load of each subtree."""
+    """How far up the parent's chord each subtree's centre of load swings: its way across on a unit of rotation."""
     area = records["area"].copy()
     moment = records["centre"] * area[:, None]
     for b in range(tree.n_branches - 1, 0, -1):
-        twist = records[b]["twist"][0]
+        twist, across = records[b]["twist"][:2], records[tree.branch_parent[b]]["frame"][1:]
         centre = moment[b] / area[b] if area[b] > 0.0 else records[b]["centre"]
-        records[b]["axial_lever"] = np.linalg.norm(twist[:3] + np.cross(twist[3:], centre))
+        way = twist[:, :3] + np.cross(twist[:, 3:], centre)
+        records[b]["axial_lever"] = 0.5 * float((way * across).sum())
         area[tree.branch_parent[b]] += area[b]
         moment[tree.branch_parent[b]] += moment[b]
 
@@ -106,7 +109,7 @@ def pressure(speed: float, coefficient: float, exponent: float) -> float:
 @fused
 def drag(
     branch: Any, per_speed_squared: float, ux: float, uy: float, uz: float
-) -> tuple[float, float, float]:
+) -> tuple[float, float, float, float]:
     """
     Force on a branch.
 
@@ -122,7 +125,7 @@ def drag(
     Returns
     -------
     tuple
-        Force in the same frame in [N].
+        Force in the same frame in [N], and force per air velocity in [N s/m].
 
     """
     p = branch.projector
@@ -133,4 +136,4 @@ def drag(
     free = math.sqrt(max(ux * nx + uy * ny + uz * nz, 0.0))
     relative_over_free = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * branch.compliance * c * free))
     f = c * free * relative_over_free * relative_over_free
-    return f * nx, f * ny, f * nz
+    return f * nx, f * ny, f * nz, f

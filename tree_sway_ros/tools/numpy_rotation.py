@@ -8,6 +8,7 @@ Quaternions are w x y z, (n, 4); vectors are (n, 3).
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.two_axis import T_MAX
@@ -54,7 +55,7 @@ def cayley_turned(rotations: Floats, vectors: Floats) -> Floats:
     return np.asarray(turned / (1.0 + square))
 
 
-def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Floats) -> Floats:
+def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: ArrayLike) -> Floats:
     """
     Moment of a force on the two axes of each branch, with the gyroscopic term, held at a limit.
 
@@ -91,5 +92,5 @@ def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Flo
     along = 2.0 * (e * v).sum(axis=1) * turning
     moment = moment + per_square[:, None] * ((sphere * spin)[:, None] * e + along[:, None] * side)
     size = np.linalg.norm(moment, axis=1)
-    scale = np.divide(limit, size, out=np.ones_like(size), where=size > limit)
+    scale = np.minimum(1.0, np.asarray(limit) / np.maximum(size, 1e-300))
     return np.asarray(moment * scale[:, None])

@@ -67,7 +67,8 @@ class NumpyTwin:
         self._dt = 0.0
         b = tree.n_branches
         self.x, self.v, self._moment = np.zeros((3, b, 2))
-        self._force = np.zeros((b, 3))
+        self._force, self._slip = np.zeros((2, b, 3))
+        self._pull = np.zeros(b)
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -106,12 +107,14 @@ class NumpyTwin:
             float(np.linalg.norm(wind)), species.drag_coefficient, species.drag_exponent
         )
         c = self._half[:, :, None]
-        middle_x = c[:, 0] * self.x + c[:, 1] * self.v + (c[:, 2] + c[:, 3]) * self._moment
-        middle_v = c[:, 4] * self.x + c[:, 5] * self.v + (c[:, 6] + c[:, 7]) * self._moment
+        load = np.hstack([self._pull[:, None], self._moment])
+        moment = two_axis_moment(self.x, 0.0 * self.v, load, 0.0 * self._pull, np.inf)
+        middle_x = c[:, 0] * self.x + c[:, 1] * self.v + (c[:, 2] + c[:, 3]) * moment
+        middle_v = c[:, 4] * self.x + c[:, 5] * self.v + (c[:, 6] + c[:, 7]) * moment
         base = self._ride(middle_x, middle_v) if bank.carries else np.zeros((len(self.x), 9))
         self._blow(base, middle_x, middle_v, wind, per_speed_squared)
-        pull = self._generalise(base[:, 6:], bank.carries)
-        return LOAD_HELD if self._advance(pull) else 0
+        self._pull = self._generalise(base[:, 6:], bank.carries)
+        return LOAD_HELD if self._advance(self._pull) else 0
 
     def place(self, out: Floats | None = None, rotations: Floats | None = None) -> Floats:
         """
@@ -198,14 +201,15 @@ class NumpyTwin:
         motion = base[:, :3] + np.cross(base[:, 3:6], branch["centre"])
         motion += np.einsum("bc,bck->bk", v, branch["flow"][:, :2])
         turn = base[:, 6:] + np.einsum("bc,bck->bk", x, branch["turn"][:, :2])
-        free = branch["speed"][:, None] * wind - motion + beta[:, None] * self._force
-        free = cayley_turned(-turn, free)
+        free = cayley_turned(-turn, branch["speed"][:, None] * wind - motion)
+        free += beta[:, None] * self._slip
         xx, yy, zz, xy, xz, yz = branch["projector"].T
         matrix = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
         across = np.einsum("bij,bj->bi", matrix, free)
         speed = np.sqrt(np.maximum(np.einsum("bi,bi->b", free, across), 0.0))
         c = per_speed_squared * branch["area"]
         share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * beta * c * speed))
+        self._slip = (c * speed * share**2)[:, None] * free
         force = cayley_turned(turn, (c * speed * share**2)[:, None] * across)
         self._force = force[branch["source"]]
 
