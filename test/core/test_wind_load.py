@@ -12,10 +12,16 @@ from tree_sway_ros.core.banks import build_bank
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulator import SwaySimulator
 from tree_sway_ros.core.species import species_named
-from tree_sway_ros.core.wind_load import AIR_DENSITY, drag, pressure
+from tree_sway_ros.core.wind_load import AIR_DENSITY, pressure
+from tree_sway_ros.core.wind_load import drag as drag_and_slip
 from tree_sway_ros.core.wind_profile import WindProfile
 
 DENSITY_AND_DRAG = 0.5 * 1.225 * 1.2
+
+
+def drag(record, per_speed_squared, *wind):
+    """Force alone."""
+    return drag_and_slip(record, per_speed_squared, *wind)[:3]
 
 
 def record_of(tree, dt=None, **changes):
