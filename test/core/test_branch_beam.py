@@ -151,3 +151,16 @@ def test_a_unit_shape_has_a_largest_slope_of_one(stem):
     every = one.unit_shape(np.sin(5.0 * one.place))
     largest = max(np.abs(every.slope).max(), np.abs(every.node_slope).max())
     assert largest == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("fraction", [0.02, 0.1, 0.5, 0.83, 1.0])
+def test_a_child_within_a_segment_bends_the_rest_as_if_it_were_cut_there(stem, fraction):
+    one = branch(stem(length=3.0, cuts=3), Attachments(np.array([1]), np.array([fraction])))
+    place = 1.0 + fraction
+    still = np.zeros_like(one.place)
+    by_force = one.unit_shape(one.bending_moment(still, np.ones(1), np.zeros(1)))
+    # A force at c turns the tip by c^2 / 2 EI and moves it by c^2 (3 L - c) / 6 EI.
+    assert by_force.node_deflection[-1] / by_force.node_slope[-1] == pytest.approx(3.0 - place / 3.0)
+    by_moment = one.unit_shape(one.bending_moment(still, np.zeros(1), np.ones(1)))
+    # A moment at c turns it by c / EI and moves it by c (L - c / 2) / EI.
+    assert by_moment.node_deflection[-1] / by_moment.node_slope[-1] == pytest.approx(3.0 - place / 2.0)

@@ -27,14 +27,13 @@ _ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
 _POINTS = (_ROOTS + 1.0) / 2.0
 _WEIGHTS = _ROOT_WEIGHTS / 2.0
 _OTHERS = [(node, np.delete(_POINTS, i)) for i, node in enumerate(_POINTS)]
-_PRIMITIVES = np.stack(
-    [(Polynomial.fromroots(rest) / np.prod(node - rest)).integ().coef for node, rest in _OTHERS]
-)
+_LAGRANGE = [Polynomial.fromroots(rest) / np.prod(node - rest) for node, rest in _OTHERS]
+_PRIMITIVES = {m: np.stack([basis.integ(m).coef for basis in _LAGRANGE]) for m in (1, 2)}
 
 
-def _integration_rows(places: Floats) -> Floats:
-    """Weights w of ``integral from 0 to xi of f = w . f(points)`` for each place xi in 0 .. 1."""
-    rows: Floats = places[:, None] ** np.arange(N_POINTS + 1) @ _PRIMITIVES.T
+def _integration_rows(places: Floats, times: int = 1) -> Floats:
+    """Weights w of the integral of f from 0 to each place in 0 .. 1, taken once or twice, ``w . f(points)``."""
+    rows: Floats = places[:, None] ** np.arange(N_POINTS + times) @ _PRIMITIVES[times].T
     return rows
 
 
@@ -164,9 +163,26 @@ class BranchBeam:
         points, nodes, _ = self.from_base(shear)
         bending: Floats = nodes[-1] - points
         if len(force) > 0:
-            lever = np.maximum(self.child_place - self.place[..., None], 0.0)
-            bending += lever @ force + (lever > 0.0) @ moment
+            lever, within = self.child_lever
+            bending += lever @ force + within @ moment
         return bending
+
+    @cached_property
+    def child_lever(self) -> tuple[Floats, Floats]:
+        """
+        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (m, 5, c).
+
+        In the segment that a child sits on, the one has a kink and the other a step. There both are projected on the
+        polynomials that the points carry, so that a segment bends as if it were cut at the child.
+
+        """
+        seat, each = self.children.segment, np.arange(len(self.children.segment))
+        lever = np.maximum(self.child_place - self.place[..., None], 0.0)
+        within = (lever > 0.0).astype(np.float64)
+        twice = _integration_rows(self.children.fraction, times=2)
+        lever[seat, :, each] = self.length[seat, None] * twice / _WEIGHTS
+        within[seat, :, each] = self._child_rows / _WEIGHTS
+        return lever, within
 
     def slope_shape(self, bending: Floats) -> SlopeShape:
         """

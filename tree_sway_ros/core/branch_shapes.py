@@ -149,7 +149,7 @@ def ways_to_move(
         spin = carried.spin(beam.child_point, beam.chord)
         turn = np.ones(len(spin))
         while len(twists) < N_TWISTS and len(spin):
-            torque = (beam.child_place > beam.place[..., None]) @ (spin * turn)
+            torque = beam.child_lever[1] @ (spin * turn)
             if not _extend(twists, beam, torque / beam.second_moment):
                 break
             turn = twists[-1].child_slope

@@ -200,7 +200,7 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     beyond = nodes[-1] - own
     masses = bodies[:, 0, 0]
     if len(masses):
-        beyond = beyond + (beam.child_place > beam.place[..., None]) @ masses
+        beyond = beyond + beam.child_lever[1] @ masses
     slopes = [way.shape.slope for way in model.coordinates]
     child_slopes = [way.shape.child_slope for way in model.coordinates]
     axes = [way.axis for way in model.coordinates]
