@@ -36,6 +36,18 @@ def fused(function: _F) -> _F:
     return cast(_F, njit(cache=True, error_model="numpy", nogil=True, fastmath=flags)(function))
 
 
+def inlined(function: _F) -> _F:
+    """
+    Compile like `fused` and paste the body into each caller, so that a loop of calls becomes one of vectors.
+
+    For short functions of numbers in the innermost loop; callers compile longer.
+
+    """
+    flags = {"contract", "reassoc", "nsz"}
+    return cast(_F, njit(cache=True, error_model="numpy", nogil=True, fastmath=flags,
+                         inline="always")(function))
+
+
 def like(value: float, model: Any) -> Any:
     """
     Return a constant in the precision of a model number, so that a kernel serves float32 and float64.

@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.kernel import fused, like
+from tree_sway_ros.core.kernel import fused, inlined, like
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
-@fused
+@inlined
 def _held(x: float, y: float) -> tuple[float, float, float]:
     """Return x, y and t, pulled back to the guard's circle where they lie beyond it."""
     t = x * x + y * y
@@ -54,7 +54,7 @@ def _held(x: float, y: float) -> tuple[float, float, float]:
     return x, y, t
 
 
-@fused
+@inlined
 def _series(t: float) -> tuple[float, float, float, float]:
     """Return s, c of the module's text and their tails s', c': s = -1/6 + t s', c = -1/2 + t c'."""
     s = like(1.5032424712277569e-10, t)
@@ -70,7 +70,7 @@ def _series(t: float) -> tuple[float, float, float, float]:
     return s * t - like(1.0 / 6.0, t), c * t - like(0.5, t), s, c
 
 
-@fused
+@inlined
 def true_force(
     x: float, y: float, wb: float, w1: float, w2: float
 ) -> tuple[float, float]:
@@ -99,7 +99,7 @@ def true_force(
     return w1 * inverse + x * along, w2 * inverse + y * along
 
 
-@fused
+@inlined
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
     Acceleration that the sphere itself asks for: great circles at constant speed.
@@ -128,7 +128,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     return radial * x - turn * vy, radial * y + turn * vx
 
 
-@fused
+@inlined
 def limit_load(
     wb: float, w1: float, w2: float, limit: float
 ) -> tuple[float, float, float, int]:
@@ -148,7 +148,7 @@ def limit_load(
     return wb * scale, w1 * scale, w2 * scale, 1
 
 
-@fused
+@inlined
 def moment(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     gyro_inertia: float, limit: float,
@@ -163,7 +163,7 @@ def moment(
     return mx * scale, my * scale
 
 
-@fused
+@inlined
 def step_branch(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     c0: float, c1: float, c2: float, c3: float, c4: float, c5: float, c6: float, c7: float,

@@ -73,7 +73,7 @@ def winds(n: int) -> dict[str, Wind]:
         return 25 * np.stack([np.cos(angle), np.sin(angle)], -1)
 
     def spread(wind: Wind) -> Wind:
-        return lambda t: np.repeat(wind(t)[:, None, :] / n, n, axis=1)
+        return lambda t: np.asarray(np.repeat(wind(t)[:, None, :] / n, n, axis=1))
 
     return {"smooth": spread(smooth), "gusty": spread(gusty), "turning": spread(turning)}
 
