@@ -17,6 +17,7 @@ class FakeRclpy(types.ModuleType):
         self.on_spin = lambda: None
         executors = types.ModuleType("rclpy.executors")
         executors.ExternalShutdownException = type("ExternalShutdownException", (Exception,), {})
+        executors.SingleThreadedExecutor = lambda: self
         self.shutdown_error = executors.ExternalShutdownException
         monkeypatch.setitem(sys.modules, "rclpy", self)
         monkeypatch.setitem(sys.modules, "rclpy.executors", executors)
@@ -28,7 +29,10 @@ class FakeRclpy(types.ModuleType):
     def ok(self):
         return self.is_ok
 
-    def spin_once(self, node, timeout_sec):
+    def add_node(self, node):
+        self.calls.append("add")
+
+    def spin_once(self, timeout_sec):
         self.calls.append("spin")
         self.on_spin()
 
@@ -71,7 +75,7 @@ def raises(error):
 def test_it_ends_when_the_node_is_done(rclpy, node):
     rclpy.on_spin = lambda: setattr(node, "is_done", True)
     assert spin.run("fake_nodes", "Node") == 0
-    assert rclpy.calls == ["init", "spin", "ignore", "shutdown"]
+    assert rclpy.calls == ["init", "add", "spin", "ignore", "shutdown"]
     assert node.closed == 1
 
 

@@ -115,14 +115,17 @@ def create(make: Any, **options: Any) -> Any:
 
 
 def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) -> None:
-    from rclpy.executors import ExternalShutdownException
+    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
     node = None
     init(rclpy, args)
     try:
+        # Made before anything can tell us to end: rclpy's own, made later, would say so with a trace.
+        executor = SingleThreadedExecutor()
         node = create(getattr(importlib.import_module(module), node_class))
+        executor.add_node(node)
         while rclpy.ok() and node.failure is None and not node.is_done:
-            rclpy.spin_once(node, timeout_sec=_CHECK_PERIOD)
+            executor.spin_once(timeout_sec=_CHECK_PERIOD)
         if node.failure is not None:
             raise node.failure
     except (KeyboardInterrupt, ExternalShutdownException):
