@@ -223,7 +223,8 @@ class CalibratedTree:
         """All modes, or those of the slowest that the wind drives most."""
         reduction = self._coupled.reduction
         n = reduction.n_coordinates
-        wanted = n if rung == "coupled" else min(4 * n_modes, n) if n_modes <= n else n_modes
+        candidates = n_modes if n_modes > n else min(n, n_modes + min(3 * n_modes, 24))
+        wanted = n if rung == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:
             self._slowest = natural_modes(self.tree, reduction, wanted)
         if rung == "coupled":

@@ -37,7 +37,7 @@ LADDER: tuple[tuple[str, int], ...] = (
 )  # fmt: skip
 """Rungs with their number of modes, in the order of what they cost."""
 
-MOST_COUPLED, MOST_MODES = 400, 48
+MOST_COUPLED, MOST_MODES = 400, 32
 """A tree of more branches than this is not solved in all its modes, but in this many."""
 
 _FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 160)])

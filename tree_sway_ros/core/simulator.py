@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.banks import Bank, build_bank
+from tree_sway_ros.core.banks import Bank, CalibratedTree
 from tree_sway_ros.core.kinematics import place
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species, species_named
@@ -57,6 +57,8 @@ class SwaySimulator:
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
         How it is modelled.
+    calibrated
+        The same tree, species and settings calibrated before, to share the work among rungs.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, rung="branch")``.
 
@@ -83,6 +85,8 @@ class SwaySimulator:
         tree: Tree,
         species: Species | None = None,
         settings: SimulatorSettings | None = None,
+        *,
+        calibrated: CalibratedTree | None = None,
         **changes: Any,
     ) -> None:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
@@ -90,7 +94,9 @@ class SwaySimulator:
         self.species = species if species is not None else species_named(tree.species)
         self.settings = replace(settings or SimulatorSettings(), **changes)
         self.counts = Counts()
-        self._bank: Bank = build_bank(tree, self.species, self.settings)
+        if calibrated is None:
+            calibrated = CalibratedTree(tree, self.species, self.settings)
+        self._bank: Bank = calibrated.bank(self.settings.rung, self.settings.n_modes)
         self._dt = 0.0
         self._wind = np.zeros(3)
         self._poses = np.zeros((tree.n_segments, 7))
@@ -113,6 +119,11 @@ class SwaySimulator:
     def n_copied(self) -> int:
         """Branches that copy the motion of another."""
         return self.tree.n_branches - self._bank.n_solved
+
+    @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+        return self._wind
 
     @property
     def mass(self) -> float:

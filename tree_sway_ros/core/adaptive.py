@@ -1,0 +1,180 @@
+"""
+A tree that uses no more model than its scene needs, and changes models unseen.
+
+The error of every rung in the wind of the last minute is known beforehand (`fidelity`); the cheapest that stays within the
+tolerance is used. When wind or camera ask for another, the new one first sways along unseen until it has
+forgotten that it started at rest, then the picture goes over to it within a second: every pose is a mix of two that agree but for
+the tolerance. A rung is left upwards as soon as it must be, downwards only when a lesser one would do with a third to
+spare, so that a wind on the border does not flicker.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.fidelity import Estimate, FidelityLadder, choose
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.settings import SimulatorSettings
+from tree_sway_ros.core.simulator import Counts, SwaySimulator
+from tree_sway_ros.core.species import Species, species_named
+from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.wind_climate import ClimateTracker, WindClimate
+from tree_sway_ros.errors import ParameterError
+
+RUN_IN = 10.0
+"""How long a new model sways unseen in [s]."""
+
+CROSS_FADE = 1.0
+"""How long the picture takes to go over in [s]."""
+
+REVIEW = 2.0
+"""How often the choice is looked at again in [s]."""
+
+_SPARE = 2.0 / 3.0
+
+
+class AdaptiveSimulator:
+    """
+    A tree on the least rung that its scene needs; otherwise as `SwaySimulator`.
+
+    Parameters
+    ----------
+    tree, species, settings
+        As for `SwaySimulator`; the rung of the settings does not matter.
+    tolerance
+        Largest error of the tips in [m], root mean square over time and tips.
+    expected
+        The wind to start for; a fresh breeze of 8 m/s if None.
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        species: Species | None = None,
+        settings: SimulatorSettings | None = None,
+        *,
+        tolerance: float = 0.005,
+        expected: WindClimate | None = None,
+    ) -> None:
+        """Judge all rungs once, and start on the one that the expected wind asks for."""
+        self.tree = tree
+        self.species = species if species is not None else species_named(tree.species)
+        self.settings = settings or SimulatorSettings()
+        self.ladder = FidelityLadder(tree, self.species, self.settings)
+        self.tolerance = tolerance
+        self._tracker = ClimateTracker()
+        self._built: dict[tuple[str, int], SwaySimulator] = {}
+        self.choice = self._choose(expected or WindClimate.steady(8.0, 0.2))
+        self._shown = self._simulator(self.choice)
+        self._next: SwaySimulator | None = None
+        self._next_age = self._since_review = 0.0
+        self._poses = np.zeros((tree.n_segments, 7))
+        self._mixed = np.zeros((tree.n_segments, 7))
+
+    @property
+    def rung(self) -> str:
+        """Model in use."""
+        return self._shown.rung
+
+    @property
+    def counts(self) -> Counts:
+        """Steps, refused winds and held loads of the model in use."""
+        return self._shown.counts
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Way of the highest tip from rest in [m], (3,), as last placed by the model in use."""
+        return self._shown.tip_displacement
+
+    @property
+    def shown(self) -> SwaySimulator:
+        """Simulator whose poses are seen, or fade."""
+        return self._shown
+
+    @property
+    def is_changing(self) -> bool:
+        """Whether another model is swaying along to take over."""
+        return self._next is not None
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """Advance one step, as `SwaySimulator.step`; now and then look at the choice again."""
+        status = self._shown.step(wind_mean, dt)
+        self._tracker.add(self._shown.wind, dt)
+        if self._next is not None:
+            self._next.step(wind_mean, dt)
+            self._next_age += dt
+            if self._next_age >= RUN_IN + CROSS_FADE:
+                self._shown, self._next = self._next, None
+        self._since_review += dt
+        if self._since_review >= REVIEW:
+            self._since_review = 0.0
+            self.review()
+        return status
+
+    def review(self) -> Estimate:
+        """Look at the choice again: call it when the tolerance has changed. Returns what is chosen."""
+        if self._next is not None:
+            return self.choice
+        wanted = self._choose(self._tracker.climate, current=self.choice)
+        if wanted.name != self.choice.name:
+            self._next, self._next_age = self._simulator(wanted), 0.0
+            self._next.reset()
+        self.choice = wanted
+        return wanted
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """Place every segment, as `SwaySimulator.place`."""
+        poses = self._shown.place(self._poses if out is None else out)
+        share = (self._next_age - RUN_IN) / CROSS_FADE
+        if self._next is not None and share > 0.0:
+            _mix(poses, self._next.place(self._mixed), share * share * (3.0 - 2.0 * share))
+        return poses
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        self._shown.reset()
+        self._next = None
+
+    def _choose(self, climate: WindClimate, current: Estimate | None = None) -> Estimate:
+        estimates = self.ladder.estimates(climate)
+        try:
+            wanted = choose(estimates, tolerance=self.tolerance)
+            if current is not None and wanted.cost < current.cost:
+                careful = choose(estimates, tolerance=_SPARE * self.tolerance)
+                same = next(e for e in estimates if e.name == current.name)
+                wanted = careful if careful.cost < same.cost else same
+        except ParameterError:
+            wanted = choose(estimates)
+        return wanted
+
+    def _simulator(self, wanted: Estimate) -> SwaySimulator:
+        key = wanted.rung, wanted.n_modes
+        if key not in self._built:
+            model = replace(self.settings, rung=wanted.rung, n_modes=max(wanted.n_modes, 1))
+            self._built[key] = SwaySimulator(
+                self.tree, self.species, model, calibrated=self.ladder.calibrated
+            )
+        return self._built[key]
+
+
+@fused
+def _mix(poses: Floats, others: Floats, share: float) -> None:
+    """Go over from poses to others by a share of the way, in place."""
+    for j in range(len(poses)):
+        towards = 0.0
+        for k in range(3, 7):
+            towards += poses[j, k] * others[j, k]
+        sign = 1.0 if towards >= 0.0 else -1.0
+        square = 0.0
+        for k in range(7):
+            other = others[j, k] if k < 3 else sign * others[j, k]
+            poses[j, k] += share * (other - poses[j, k])
+            if k >= 3:
+                square += poses[j, k] * poses[j, k]
+        for k in range(3, 7):
+            poses[j, k] /= np.sqrt(square)
