@@ -26,7 +26,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 VENV = Path(os.environ.get("TREE_SWAY_VENV") or ROOT / ".venv").absolute()
 CONSTRAINTS = ROOT / ".ci" / "constraints-ros-jazzy.txt"
-EXTRAS = "ros,bag,plot,gltf,h5,test,lint"
+EXTRAS = "ros,bag,plot,gltf,h5,mujoco,test,lint"
 PYTHONS = ((3, 10), (3, 13))
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (

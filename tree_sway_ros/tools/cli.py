@@ -25,9 +25,14 @@ COMMANDS: dict[str, str] = {
     "grow": "make a tree of a species and a height",
     "convert": "write a tree in another format",
     "bench": "time the solver",
+    "battery": "the cases where methods of integration fail, and what ours does there",
+    "chart": "speed against accuracy: of methods, of models, against size",
+    "compare": "our simulator against MuJoCo, in one run",
     "docs": "write the tables of topics and parameters into the README",
 }
 
+#: Commands whose module has another name than theirs.
+_MODULES = {"battery": "battery_command"}
 _FAILURE = 2
 _INTERRUPTED = 130
 
@@ -84,7 +89,7 @@ def _fail(command: str, text: str) -> int:
 
 
 def _module(command: str) -> Any:
-    return importlib.import_module(f"tree_sway_ros.tools.{command}")
+    return importlib.import_module(f"tree_sway_ros.tools.{_MODULES.get(command, command)}")
 
 
 def _parser(chosen: str) -> argparse.ArgumentParser:
