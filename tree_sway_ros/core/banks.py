@@ -47,6 +47,10 @@ class Oscillators(Responding, Protocol):
         """Go back to rest."""
 
 
+USUAL_MODES = 12
+"""Modes that are stepped where no number is asked for."""
+
+
 class Frozen:
     """Rung 0: a tree that stands still, for one too far away to be seen moving."""
 
@@ -147,7 +151,7 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping_in_leaf if settings.in_leaf else species.damping_bare
 
-    def bank(self, rung: str, n_modes: int = 12) -> Bank:
+    def bank(self, rung: str, n_modes: int | None = None) -> Bank:
         """
         Build the oscillators of a rung.
 
@@ -156,7 +160,7 @@ class CalibratedTree:
         rung
             One of `RUNGS`.
         n_modes
-            How many modes the rung ``modes`` steps.
+            How many modes the rung ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if None.
 
         Raises
         ------
@@ -219,10 +223,11 @@ class CalibratedTree:
         fill_branch_loads(tree, models, reduction, speed, branches)
         return _Layer(models, reduction, branches, segment_records(tree, models))
 
-    def _modes(self, rung: str, n_modes: int) -> Modes:
+    def _modes(self, rung: str, count: int | None) -> Modes:
         """All modes, or those of the slowest that the wind drives most."""
         reduction = self._coupled.reduction
         n = reduction.n_coordinates
+        n_modes = min(USUAL_MODES, n) if count is None else count
         candidates = n_modes if n_modes > n else min(n, n_modes + min(3 * n_modes, 24))
         wanted = n if rung == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:

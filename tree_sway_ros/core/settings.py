@@ -29,7 +29,7 @@ class SimulatorSettings:
     rung
         Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``modes`` or ``coupled``.
     n_modes
-        How many modes the rung ``modes`` steps.
+        How many modes the rung ``modes`` steps; 12, or all if there are fewer, if None.
     stiffness
         ``beam``, or ``volume_rule`` (the paper's, rungs ``branch`` and ``subtree``).
     volume_stiffness, volume_damping
@@ -55,7 +55,7 @@ class SimulatorSettings:
     """
 
     rung: str = "subtree"
-    n_modes: int = 12
+    n_modes: int | None = None
     stiffness: str = "beam"
     volume_stiffness: float = 2.0e5
     volume_damping: float = 2.0e3
@@ -82,7 +82,7 @@ class SimulatorSettings:
             )
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
             raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
-        if self.n_modes < 1:
+        if self.n_modes is not None and self.n_modes < 1:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
         for name in ("volume_stiffness", "volume_damping", "max_wind"):
             value = getattr(self, name)
