@@ -46,7 +46,7 @@ class Stepper:
         self._wind = make_wind()
         self._period = period
         self._samples: deque[tuple[int, Any]] = deque(maxlen=_QUEUE)
-        self._requests: deque[Callable[[], None]] = deque()
+        self._requests: deque[Callable[[], None]] = deque(maxlen=_QUEUE)
         self._origin = 0
         self._felt = 0.0
         self._cost = 0.0
