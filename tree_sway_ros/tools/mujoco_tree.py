@@ -189,8 +189,10 @@ class MujocoTree:
         return data.xpos[self._body], turn[self._body], velocity[self._body], spin[self._body]
 
     def _matrices(self, mujoco: Any) -> tuple[Floats, Floats]:
+        # Row by row: the call for the whole matrix differs between versions.
         mass = np.zeros((self.model.nv, self.model.nv))
-        mujoco.mj_fullM(self.model, self.data, mass)
+        for row, unit in zip(mass, np.eye(self.model.nv), strict=True):
+            mujoco.mj_mulM(self.model, self.data, row, unit)
         return mass, np.array(self.model.jnt_stiffness)
 
     def _set_damping(self, ratio: float, count: int) -> tuple[Floats, Floats]:
