@@ -37,7 +37,7 @@ def mujoco_module() -> Any:
 
     """
     try:
-        import mujoco  # type: ignore[import-untyped]
+        import mujoco
     except ModuleNotFoundError as error:
         raise MissingDependencyError("MuJoCo is not installed", cure="pip install mujoco") from error
     return mujoco
