@@ -70,6 +70,8 @@ class AdaptiveSimulator:
         self._tracker = ClimateTracker()
         self._built: dict[tuple[str, int], SwaySimulator] = {}
         self.choice = self._choose(expected or WindClimate.steady(8.0, 0.2))
+        for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
+            self._simulator(estimate)  # now, for a change must not hold up the stream
         self._shown = self._simulator(self.choice)
         self._next: SwaySimulator | None = None
         self._next_age = self._since_review = 0.0
@@ -80,6 +82,16 @@ class AdaptiveSimulator:
     def rung(self) -> str:
         """Model in use."""
         return self._shown.rung
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that the model in use solves."""
+        return self._shown.n_solved
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another in the model in use."""
+        return self._shown.n_copied
 
     @property
     def counts(self) -> Counts:
@@ -159,6 +171,9 @@ class AdaptiveSimulator:
             self._built[key] = SwaySimulator(
                 self.tree, self.species, model, calibrated=self.ladder.calibrated
             )
+            self._built[key].step((0.0, 0.0, 0.0), 1.0 / 60.0)
+            self._built[key].reset()
+            self._built[key].counts.steps = 0
         return self._built[key]
 
 

@@ -207,6 +207,22 @@ def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> 
     return pixels * distance / focal_length
 
 
+def distance_to(tree: Tree, position: Floats) -> float:
+    """
+    Distance from a camera to the nearest branch tip or to the root in [m], at least 1 cm.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    position
+        Of the camera in the tree's frame in [m], (3,).
+
+    """
+    seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
+    return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)
+
+
 def step_cost(bank: Bank, tree: Tree, n_coordinates: int) -> float:
     """Cost of one step and one placing in [us], from counts and the measured prices of `tree-sway bench step`."""
     place = 2.0 + 0.016 * tree.n_segments

@@ -38,6 +38,14 @@ class Simulator(Protocol):
         """What was refused or held."""
 
     @property
+    def n_solved(self) -> int:
+        """Branches that are solved."""
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another."""
+
+    @property
     def tip_displacement(self) -> Floats:
         """Way of the highest tip from rest in [m], (3,)."""
 

@@ -6,7 +6,8 @@ from typing import Any
 
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway_ros.core.simulator import SwaySimulator
+from tree_sway_ros.core.fidelity import distance_to, tolerance_in_metres
+from tree_sway_ros.core.simulators import make_simulator
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.wind_averaging import WindAverage
 from tree_sway_ros.core.wind_gate import WindGate
@@ -17,7 +18,7 @@ from tree_sway_ros.ros.pacer import Pacer, Tick
 from tree_sway_ros.ros.pose_stream import PoseStream
 from tree_sway_ros.ros.stepping import Stepper
 from tree_sway_ros.ros.sway_report import SwayReport
-from tree_sway_ros.ros.topics import WIND_FILTERED
+from tree_sway_ros.ros.topics import CAMERA, WIND_FILTERED
 from tree_sway_ros.ros.wind_messages import wind_from_message
 
 
@@ -37,14 +38,14 @@ class SolverNode(TreeSwayNode):
         source = open_tree(self.values["tree"])
         species = self.values["species"]
         self.tree = source.tree
-        self.simulator = SwaySimulator(
+        self.simulator: Any = make_simulator(
             source.tree,
             species_named(species) if species else source.species,
-            rung=self.values["fidelity"],
-            n_modes=self.values["modes"],
-            **self.values("stiffness", "in_leaf"),
+            n_modes=self.values["modes"] or None,
+            **self.values("fidelity", "tolerance", "stiffness", "in_leaf"),
             damping_ratio=self.values["damping_ratio"] or None,
         )
+        self._camera: Any = None
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
         self._stepper.warm_up()
@@ -53,6 +54,7 @@ class SolverNode(TreeSwayNode):
         self._sway_report = SwayReport()
         self.stream = PoseStream(self, source.tree)
         self.subscription(WIND_FILTERED, self._receive)
+        self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
         self.report_with(source.tree.name, self._statuses)
@@ -71,6 +73,24 @@ class SolverNode(TreeSwayNode):
         verdict = self._gate.offer(sample.stamp * 1e-9, vector, arrival * 1e-9)
         if verdict.accepted:
             self._stepper.add_wind(round(verdict.time * 1e9), vector)
+
+    def _see(self, message: Any) -> None:
+        at = message.pose.position
+        self._camera = (at.x, at.y, at.z)
+        self.on_change({})
+
+    def on_change(self, values: dict[str, Any]) -> None:
+        """Take a new tolerance before the next step."""
+        if self.values["fidelity"] == "auto":
+            self._stepper.request(self._set_tolerance)
+
+    def _set_tolerance(self) -> None:
+        tolerance = self.values["tolerance"]
+        if self._camera is not None:
+            pixels, focal_length = self.values["tolerance_pixels"], self.values["focal_length"]
+            distance = distance_to(self.tree, self._camera)
+            tolerance = tolerance_in_metres(pixels, distance, focal_length)
+        self.simulator.tolerance = tolerance
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:

@@ -8,7 +8,8 @@ Defaults stand here and nowhere else: the files in ``config/`` hold overrides on
 from __future__ import annotations
 
 from tree_sway_ros.core.gust_event import EVENT_KINDS
-from tree_sway_ros.core.settings import RUNGS, STIFFNESS_RULES, SimulatorSettings
+from tree_sway_ros.core.settings import STIFFNESS_RULES, SimulatorSettings
+from tree_sway_ros.core.simulators import FIDELITIES
 from tree_sway_ros.core.turbulence import TURBULENCE_MODELS
 from tree_sway_ros.core.wind_averaging import INTERPOLATIONS
 from tree_sway_ros.ros.parameters import Parameter, Table
@@ -151,12 +152,33 @@ SOLVER: Table = (
     ),
     Parameter(
         "fidelity",
-        _MODEL.rung,
-        "Model of the sway, from the least to the most.",
-        choices=RUNGS,
-        source="`branch` is the paper's",
+        "modes",
+        "Model of the sway, from the least to the most; `auto` takes the least within the tolerance.",
+        choices=FIDELITIES,
+        source="`branch` is the paper's, `segments` its predecessors'",
     ),
-    Parameter("modes", _MODEL.n_modes, "How many modes `modes` solves.", "", 1, 10_000),
+    Parameter(
+        "modes", 0, "How many modes `modes` solves; 0 for 12, or all if fewer.", "", 0, 10_000
+    ),
+    Parameter(
+        "tolerance",
+        0.005,
+        "Largest error of the tips that `auto` allows, while no `camera` is heard.",
+        "m",
+        1e-6,
+        10.0,
+        live=True,
+    ),
+    Parameter(
+        "tolerance_pixels",
+        0.5,
+        "Largest error of the tips that `auto` allows on the picture of a `camera`.",
+        "px",
+        0.01,
+        100.0,
+        live=True,
+    ),
+    Parameter("focal_length", 1000.0, "Of that camera.", "px", 1.0, 100_000.0, live=True),
     Parameter(
         "stiffness",
         _MODEL.stiffness,

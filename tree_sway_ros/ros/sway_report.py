@@ -78,4 +78,11 @@ def _model(simulator: Any) -> Status:
         "branches copied": simulator.n_copied,
         **asdict(simulator.counts),
     }
+    choice = getattr(simulator, "choice", None)
+    if choice is not None:
+        values["chosen"] = choice.name
+        values["estimated error [m]"] = choice.error
+        values["tolerance [m]"] = simulator.tolerance
+        if choice.error > simulator.tolerance:
+            return Status("model", WARN, f"no model is within the tolerance; {choice.name}", values)
     return Status("model", OK, simulator.rung, values)

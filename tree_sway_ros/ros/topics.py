@@ -91,6 +91,12 @@ DIAGNOSTICS = Topic(
     "Rates, age and refusals of the wind, jitter, overruns, the model in use.",
     depth=10,
 )
+CAMERA = Topic(
+    "camera",
+    "geometry_msgs/msg/PoseStamped",
+    "Where the tree is seen from, in the tree's frame: `auto` keeps its error below `tolerance_pixels`.",
+    reliable=False,
+)
 CLOCK = Topic(
     "/clock",
     "rosgraph_msgs/msg/Clock",
@@ -108,6 +114,7 @@ TOPICS = (
     SEGMENT_POSES,
     MARKERS,
     TREE_DESCRIPTION,
+    CAMERA,
     DIAGNOSTICS,
     CLOCK,
     TF,

@@ -1,0 +1,46 @@
+"""No more model than the scene needs: the solver listens where it is seen from."""
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytestmark = pytest.mark.ros
+
+from geometry_msgs.msg import PoseStamped  # noqa: E402
+
+from tree_sway_ros.ros.diagnostics import WARN  # noqa: E402
+from tree_sway_ros.ros.topics import CAMERA, SEGMENT_POSES  # noqa: E402
+
+
+def told(status):
+    return {value.key: value.value for value in status.values}
+
+
+def test_a_camera_that_comes_nearer_gets_a_better_model(compose, observer, statuses, tree_file):
+    compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 5.0})
+    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
+    assert told(statuses("solver: model"))["fidelity"] == "frozen"
+    near = PoseStamped()
+    near.pose.position.x = 1.0
+    camera = observer.publisher(CAMERA)
+    camera.publish(near)
+    expected = 0.5 * (1.0 / 1000.0)
+
+    def tolerance():
+        return float(told(statuses("solver: model"))["tolerance [m]"])
+
+    observer.until(lambda: tolerance() < 0.01, "the tolerance of the camera")
+    assert tolerance() == pytest.approx(expected, rel=0.2)
+
+
+def test_every_segment_solved_streams_as_the_reduced_tree_does(compose, observer, tree_file):
+    compose(solver={"tree": tree_file, "fidelity": "segments"})
+    frames = observer.listen(SEGMENT_POSES)
+    observer.until(lambda: len(frames) > 30, "frames")
+    assert len(frames[-1].poses) == 7
+
+
+def test_a_tolerance_nobody_can_meet_is_told(compose, observer, statuses, tree_file):
+    compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 1e-6})
+    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
+    assert statuses("solver: model").level[0] == WARN
+    assert "no model is within the tolerance" in statuses("solver: model").message
