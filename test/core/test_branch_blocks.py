@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from tree_sway_ros.core.branch_blocks import LANES, BranchBlocks
 from tree_sway_ros.core.oscillators import propagator
 from tree_sway_ros.core.two_axis import guards, step_bank

@@ -47,6 +47,8 @@ class BranchBlocks:
         self._data = np.zeros((blocks, ROWS, LANES), dtype)
         self._put(_COEFFICIENT, rows.T)
         self._put(slice(15, 18), guard.T)
+        self._limit = np.square(guard[:, 1])
+        self._held = 0
 
     @property
     def state(self) -> Array:
@@ -55,6 +57,7 @@ class BranchBlocks:
 
     @state.setter
     def state(self, value: ArrayLike) -> None:
+        """Set all four rows."""
         self._put(slice(0, 4), np.asarray(value))
 
     @property
@@ -64,11 +67,16 @@ class BranchBlocks:
 
     @load.setter
     def load(self, value: ArrayLike) -> None:
-        self._put(_LOAD, np.asarray(value))
+        """Set all three rows, and count those beyond their limit."""
+        load = np.asarray(value)
+        self._put(_LOAD, load)
+        square = np.square(load.astype(float)).sum(0)
+        self._held = int(np.count_nonzero(~(square <= self._limit)))
 
     def step(self) -> int:
         """Step every branch under its load; return how many loads were held at their limit."""
-        return int(_step(self._data.ravel(), len(self._data)))
+        _step(self._data.ravel(), len(self._data))
+        return self._held
 
     def _put(self, rows: slice, values: Array) -> None:
         padded = np.zeros((len(values), len(self._data) * LANES), self._data.dtype)
@@ -80,14 +88,13 @@ class BranchBlocks:
 
 
 @fused
-def _step(d: Array, blocks: int) -> int:
+def _step(d: Array, blocks: int) -> None:
     """Step the lanes of each block; d is the flat array."""
-    held = 0
     for block in range(blocks):
         first = block * ROWS * LANES
         for lane in range(LANES):
             k = first + lane
-            x, y, vx, vy, over = step_branch(
+            x, y, vx, vy, _ = step_branch(
                 d[k], d[k + LANES], d[k + 2 * LANES], d[k + 3 * LANES],
                 d[k + 4 * LANES], d[k + 5 * LANES], d[k + 6 * LANES],
                 d[k + 7 * LANES], d[k + 8 * LANES], d[k + 9 * LANES], d[k + 10 * LANES],
@@ -95,5 +102,3 @@ def _step(d: Array, blocks: int) -> int:
                 d[k + 15 * LANES], d[k + 16 * LANES], d[k + 17 * LANES],
             )  # fmt: skip
             d[k], d[k + LANES], d[k + 2 * LANES], d[k + 3 * LANES] = x, y, vx, vy
-            held += over
-    return held

@@ -99,7 +99,7 @@ def _draw(points: list[Point], cost: str, label: str, file: Path) -> None:
                for k, name in enumerate(names)]
     figure.legend(handles=handles, loc="lower center", ncol=4, fontsize=12, frameon=False,
                   handletextpad=0.2, columnspacing=1.4, bbox_to_anchor=(0.5, 0.045))
-    figure.text(0.5, 0.018, "orange: the paper's multiplier form    blue: angles only    green: exact for "
+    figure.text(0.5, 0.02, "orange: the paper's multiplier form    blue: angles only    green: exact for "
                 "the linear part    red: the default    x: blew up", ha="center", fontsize=13)
     figure.savefig(file, dpi=100)
     plt.close(figure)

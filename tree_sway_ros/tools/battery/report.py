@@ -17,7 +17,7 @@ CASES = {
     "T5": "t05_predictor", "T6": "t06_tiny_steps", "T7": "t07_mass_ratio", "T8": "t08_degenerate",
     "T9": "t09_strong_wind", "T10": "t10_buckling", "T11": "t11_parallel", "T12": "t12_turns",
     "T13": "t13_past_right_angle", "T14": "t14_redundant_pin", "T15": "t15_stalls",
-    "T16": "t16_exactness", "T17": "t17_bad_samples", "T18": "t18_adversary",
+    "T16": "t16_exactness", "T17": "t17_bad_samples", "T18": "t18_adversary", "goals": "goals",
 }  # fmt: skip
 
 
@@ -28,7 +28,7 @@ def load_case(name: str) -> ModuleType:
     Raises
     ------
     ParameterError
-        A name that is not T1 to T18.
+        A name that is not T1 to T18 or goals.
 
     """
     if name not in CASES:

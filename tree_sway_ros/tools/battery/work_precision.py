@@ -66,11 +66,12 @@ def winds(n: int) -> dict[str, Wind]:
         return np.stack([3 * np.sin(1.9 * t), 14 + 8 * np.sin(1.45 * t) + 6 * np.sin(4.4 * t)], -1)
 
     def gusty(t: Array) -> Array:
-        return np.array([0.0, 12.0]) + np.array([4.0, 10.0]) * knots[(t * GUSTS).astype(int)]
+        # a turbulence intensity of .2 is one of .4 of the load
+        return np.asarray([0.0, 12.0] + np.array([2.0, 4.8]) * knots[(t * GUSTS).astype(int)])
 
     def turning(t: Array) -> Array:
         angle = 0.5 * np.pi * np.tanh(4 * np.sin(2 * np.pi * t / 4))
-        return 25 * np.stack([np.cos(angle), np.sin(angle)], -1)
+        return np.stack([25 * np.cos(angle), 25 * np.sin(angle)], -1)
 
     def spread(wind: Wind) -> Wind:
         return lambda t: np.asarray(np.repeat(wind(t)[:, None, :] / n, n, axis=1))
