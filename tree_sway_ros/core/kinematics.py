@@ -32,6 +32,7 @@ from tree_sway_ros.core.tree import Floats, Tree
 
 _BLEND_FROM = np.deg2rad(30.0) ** 2
 _BLEND_TO = np.deg2rad(45.0) ** 2
+_STRETCH_TO = np.deg2rad(90.0) ** 2
 
 
 def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
@@ -99,8 +100,9 @@ def _tip_load_slope(model: BranchModel) -> Floats:
     u = model.beam.node / model.beam.node[-1]
     first: SlopeShape = model.coordinates[0].shape
     primitive = 1.5 * (u * u - u**3 / 3.0)
-    slope: Floats = np.diff(primitive) / np.diff(u)
-    return slope * (first.segment_slope @ model.beam.length) / model.beam.node[-1]
+    mean = float(first.segment_slope @ model.beam.length) / float(model.beam.node[-1])
+    slope: Floats = mean * np.diff(primitive) / np.diff(u)
+    return slope
 
 
 @fused
@@ -177,7 +179,7 @@ def _follow(
     twists = branch.n_coordinates - 2 * pairs
     t = x[i] * x[i] + x[i + 1] * x[i + 1]
     blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
-    stretch = 1.0 + t * (branch.skew + blend * (branch.tip_skew - branch.skew))
+    stretch = 1.0 + min(t, _STRETCH_TO) * (branch.skew + blend * (branch.tip_skew - branch.skew))
     last = branch.n_coordinates - 1
     for j in range(branch.first, branch.end):
         segment = segments[j]
@@ -229,7 +231,7 @@ def _seat(
     parent = branches[branch.parent]
     i, k = parent.coordinate, parent.n_coordinates
     twist = branch.twist
-    stretch = 1.0 + (x[i] * x[i] + x[i + 1] * x[i + 1]) * parent.skew
+    stretch = 1.0 + min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
     rx = ry = rz = 0.0
     for c in range(k):
         angle = x[i + c] * stretch if c < 2 else x[i + c]

@@ -30,7 +30,7 @@ from tree_sway_ros.tools.numpy_rotation import (
     two_axis_moment,
 )
 
-_BLEND_FROM, _BLEND_TO = np.deg2rad([30.0, 45.0]) ** 2
+_BLEND_FROM, _BLEND_TO, _STRETCH_TO = np.deg2rad([30.0, 45.0, 90.0]) ** 2
 
 
 class NumpyTwin:
@@ -137,14 +137,14 @@ class NumpyTwin:
         angles = self._angles(self.x.ravel() if rotations is None else rotations)
         t = np.square(angles[:, :2]).sum(axis=1)
         blend = np.clip((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0, 1.0)
-        stretch = 1.0 + t * (branch["skew"] + blend * (branch["tip_skew"] - branch["skew"]))
+        stretch = 1.0 + np.minimum(t, _STRETCH_TO) * (branch["skew"] + blend * (branch["tip_skew"] - branch["skew"]))
         slope = np.take_along_axis(segment["slope"], self._shape[owner], axis=1)
         bent = slope[:, 0] + blend[owner] * (segment["tip_slope"] - slope[:, 0])
         slope[:, :2] = (stretch[owner] * bent)[:, None]
         bend = quaternions_of(np.einsum("jc,jc,jck->jk", slope, angles[owner], branch["axis"][owner]))
 
         seat_angles = angles.copy()
-        seat_angles[:, :2] *= (1.0 + t * branch["skew"])[:, None]
+        seat_angles[:, :2] *= (1.0 + np.minimum(t, _STRETCH_TO) * branch["skew"])[:, None]
         base = np.zeros((len(t), 4))
         base[0, 0] = 1.0
         for level in self._levels:
