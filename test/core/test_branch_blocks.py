@@ -33,7 +33,7 @@ def test_blocks_step_as_the_bank_does(n, kind, slack):
 
 
 def test_the_lanes_without_a_branch_stay_at_rest():
-    state, load, rows, guard = bank(3)
+    _, load, rows, guard = bank(3)
     blocks = BranchBlocks(rows, guard)
     blocks.load = load * np.nan
     assert blocks.step() == 3
