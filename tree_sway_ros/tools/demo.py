@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway_ros.core.settings import RUNGS
 from tree_sway_ros.core.tree import Tree
 from tree_sway_ros.importers.tree_source import open_tree
 from tree_sway_ros.ros.composition import Composition
+from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters import Value
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary
@@ -32,7 +32,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C")
     parser.add_argument("--rate", type=float, default=60.0, help="poses a second [Hz] (%(default)s)")
-    parser.add_argument("--fidelity", choices=RUNGS, default="subtree", help="model of the sway (%(default)s)")
+    fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
+    parser.add_argument(
+        "--fidelity",
+        choices=fidelity.choices,
+        default=fidelity.default,
+        help="model of the sway (%(default)s)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
