@@ -129,7 +129,7 @@ def test_records_have_room_for_all_that_a_step_needs(fork):
     assert bank.branches.dtype == BRANCH
     assert bank.segments.dtype == SEGMENT
     assert bank.oscillators.work.dtype == WORK
-    assert (bank.branches["n_coordinates"] <= bank.branches["axis"].shape[1]).all()
+    assert (bank.branches["n_coordinates"] <= bank.branches["push"].shape[1]).all()
     first = bank.branches["coordinate"]
     assert np.array_equal(first[1:], np.cumsum(bank.branches["n_coordinates"])[:-1])
 

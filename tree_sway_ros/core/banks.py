@@ -264,5 +264,4 @@ def _enriched(tree: Tree, enrich: str) -> frozenset[int]:
 def _share_frames(branches: Any) -> None:
     """Let a twig that copies turn about the axes of its source, so that it moves the same way."""
     for b in np.flatnonzero(branches["source"] != np.arange(len(branches))):
-        branches["axis"][b] = branches["axis"][branches["source"][b]]
         branches["frame"][b] = branches["frame"][branches["source"][b]]

@@ -19,14 +19,16 @@ import numpy as np
 
 from tree_sway_ros.core.branch_beam import SlopeShape
 from tree_sway_ros.core.branch_model import BranchModel
+from tree_sway_ros.core.branch_shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import SEGMENT
 from tree_sway_ros.core.rotation import (
-    half_angle,
+    SMALL_HALF_ANGLE,
     product,
     quaternion,
     quaternions_from_x,
     rotated,
+    small_half_angle,
 )
 from tree_sway_ros.core.tree import Floats, Tree
 
@@ -51,7 +53,7 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     for branch, model in enumerate(models):
         here = tree.segments_of(branch)
         records["gap"][here.start : here.stop - 1] = tree.start[here][1:] - tree.end[here][:-1]
-        for column, shape in enumerate(_distinct_shapes(model)):
+        for column, shape in _distinct_shapes(model):
             records["slope"][here, column] = shape.segment_slope
         records["tip_slope"][here] = _tip_load_slope(model)
     records["has_gap"] = np.abs(records["gap"]).max(axis=1) > 1e-12
@@ -70,8 +72,9 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
         record["n_pairs"] = sum(not way.is_twist for way in model.coordinates) // 2
         record["source"] = branch
         for i, way in enumerate(model.coordinates):
-            record["axis"][i] = way.axis
             record["reach"][i] = way.shape.displacement(way.axis)[1][-1]
+        record["steepest"] = np.square(model.coordinates[0].shape.segment_slope).max() * 1.2
+        record["is_straight"] = _is_straight(tree, here)
         record["tip"] = tree.end[here.stop - 1] - tree.start[0]
         record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
         length = model.beam.length
@@ -83,10 +86,18 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
             record["offset"] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
 
 
-def _distinct_shapes(model: BranchModel) -> list[SlopeShape]:
-    """Shapes of a branch, each once: pairs share theirs."""
+def _distinct_shapes(model: BranchModel) -> list[tuple[int, SlopeShape]]:
+    """Shapes of a branch with the column of each: pairs share theirs, twists come after all shapes."""
     pairs = [way.shape for way in model.coordinates if not way.is_twist][::2]
-    return pairs + [way.shape for way in model.coordinates if way.is_twist]
+    twists = [way.shape for way in model.coordinates if way.is_twist]
+    return [*enumerate(pairs), *enumerate(twists, start=N_SHAPES)]
+
+
+def _is_straight(tree: Tree, here: slice) -> bool:
+    """Whether all segments of a branch lie on one line, end to end."""
+    tangent = (tree.end[here] - tree.start[here]) / tree.length[here, None]
+    gap = tree.start[here][1:] - tree.end[here][:-1]
+    return bool((abs(tangent - tangent[0]) < 1e-12).all() and (abs(gap) < 1e-12).all())
 
 
 def _skew(slope: Floats, length: Floats) -> float:
@@ -133,7 +144,7 @@ def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, ou
         base[0], base[1], base[2], base[3] = dw, dx, dy, dz
         i, k = branch.coordinate, branch.n_coordinates
         t = x[i] * x[i] + x[i + 1] * x[i + 1]
-        if k == 2 and t <= _BLEND_FROM:
+        if k == 2 and t <= _BLEND_FROM and t * branch.steepest <= 4.0 * SMALL_HALF_ANGLE:
             _follow_in_plane(branch, segments, x[i], x[i + 1], dw, dx, dy, dz, px, py, pz, out)
         else:
             _follow(branch, segments, x, dw, dx, dy, dz, px, py, pz, out)
@@ -145,28 +156,41 @@ def _follow_in_plane(
     dw: float, dx: float, dy: float, dz: float, px: float, py: float, pz: float, out: Floats,
 ) -> None:  # fmt: skip
     """
-    Place the segments of a branch that bends about one axis.
+    Place the segments of a branch that bends about one axis, and not far.
 
     With h half the branch's rotation vector and D the base, a segment of slope psi is turned by
-    ``cos(psi |h|) D + psi sinc(psi |h|) (D h)``: the second product is the same for all segments.
+    ``cos(psi |h|) D + psi sinc(psi |h|) (D h)``: the second product is the same for all segments, and where the branch is
+    straight, so is the orientation at rest that follows.
 
     """
-    axis = branch.axis
+    frame = branch.frame
     half = 0.5 * (1.0 + (x * x + y * y) * branch.skew)
     x, y = half * x, half * y
-    hx = x * axis[0, 0] + y * axis[1, 0]
-    hy = x * axis[0, 1] + y * axis[1, 1]
-    hz = x * axis[0, 2] + y * axis[1, 2]
+    hx = x * frame[2, 0] - y * frame[1, 0]
+    hy = x * frame[2, 1] - y * frame[1, 1]
+    hz = x * frame[2, 2] - y * frame[1, 2]
     square = hx * hx + hy * hy + hz * hz
     ew, ex, ey, ez = product(dw, dx, dy, dz, 0.0, hx, hy, hz)
+    if branch.is_straight:
+        r = segments[branch.first].rest
+        dw, dx, dy, dz = product(dw, dx, dy, dz, r[0], r[1], r[2], r[3])
+        ew, ex, ey, ez = product(ew, ex, ey, ez, r[0], r[1], r[2], r[3])
+        for j in range(branch.first, branch.end):
+            slope = segments[j].slope[0]
+            c, s = small_half_angle(slope * slope * square)
+            s *= slope
+            px, py, pz = _put(
+                c * dw + s * ew, c * dx + s * ex, c * dy + s * ey, c * dz + s * ez,
+                segments[j].length, px, py, pz, out, j,
+            )  # fmt: skip
+        return
     for j in range(branch.first, branch.end):
-        slope = segments[j].slope[0]
-        c, s = half_angle(slope * slope * square)
+        segment = segments[j]
+        slope = segment.slope[0]
+        c, s = small_half_angle(slope * slope * square)
         s *= slope
-        px, py, pz = _put(
-            segments[j], c * dw + s * ew, c * dx + s * ex, c * dy + s * ey, c * dz + s * ez,
-            px, py, pz, out, j,
-        )  # fmt: skip
+        qw, qx, qy, qz = c * dw + s * ew, c * dx + s * ex, c * dy + s * ey, c * dz + s * ez
+        px, py, pz = _turn(segment, qw, qx, qy, qz, px, py, pz, out, j)
 
 
 @fused
@@ -174,53 +198,67 @@ def _follow(
     branch: Any, segments: Any, x: Floats,
     dw: float, dx: float, dy: float, dz: float, px: float, py: float, pz: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Place the segments of a branch that bends far, has a second shape or twists."""
-    i, axis, pairs = branch.coordinate, branch.axis, branch.n_pairs
+    """Place the segments of a branch that bends far, has further shapes or twists."""
+    i, frame, pairs = branch.coordinate, branch.frame, branch.n_pairs
     twists = branch.n_coordinates - 2 * pairs
-    t = x[i] * x[i] + x[i + 1] * x[i + 1]
+    x0, y0, x1, y1, x2, y2 = x[i], x[i + 1], 0.0, 0.0, 0.0, 0.0
+    if pairs > 1:
+        x1, y1 = x[i + 2], x[i + 3]
+    if pairs > 2:
+        x2, y2 = x[i + 4], x[i + 5]
+    i += 2 * pairs
+    t0 = x[i] if twists > 0 else 0.0
+    t1 = x[i + 1] if twists > 1 else 0.0
+    t2 = x[i + 2] if twists > 2 else 0.0
+    t = x0 * x0 + y0 * y0
     blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
     stretch = 1.0 + min(t, _STRETCH_TO) * (branch.skew + blend * (branch.tip_skew - branch.skew))
-    last = branch.n_coordinates - 1
     for j in range(branch.first, branch.end):
         segment = segments[j]
-        slope = stretch * (segment.slope[0] + blend * (segment.tip_slope - segment.slope[0]))
-        ux, uy, spin = slope * x[i], slope * x[i + 1], 0.0
-        for p in range(1, pairs):
-            ux += segment.slope[p] * x[i + 2 * p]
-            uy += segment.slope[p] * x[i + 2 * p + 1]
-        for p in range(twists):
-            spin += segment.slope[pairs + p] * x[i + 2 * pairs + p]
-        rx = ux * axis[0, 0] + uy * axis[1, 0]
-        ry = ux * axis[0, 1] + uy * axis[1, 1]
-        rz = ux * axis[0, 2] + uy * axis[1, 2]
-        if twists > 0:
-            rx += spin * axis[last, 0]
-            ry += spin * axis[last, 1]
-            rz += spin * axis[last, 2]
-        qw, qx, qy, qz = quaternion(rx, ry, rz)
+        slope = segment.slope
+        first = stretch * (slope[0] + blend * (segment.tip_slope - slope[0]))
+        ux = first * x0 + slope[1] * x1 + slope[2] * x2
+        uy = first * y0 + slope[1] * y1 + slope[2] * y2
+        spin = slope[N_SHAPES] * t0 + slope[N_SHAPES + 1] * t1 + slope[N_SHAPES + 2] * t2
+        qw, qx, qy, qz = quaternion(
+            ux * frame[2, 0] - uy * frame[1, 0] + spin * frame[0, 0],
+            ux * frame[2, 1] - uy * frame[1, 1] + spin * frame[0, 1],
+            ux * frame[2, 2] - uy * frame[1, 2] + spin * frame[0, 2],
+        )
         qw, qx, qy, qz = product(dw, dx, dy, dz, qw, qx, qy, qz)
-        px, py, pz = _put(segment, qw, qx, qy, qz, px, py, pz, out, j)
+        px, py, pz = _turn(segment, qw, qx, qy, qz, px, py, pz, out, j)
 
 
 @fused
-def _put(
+def _turn(
     segment: Any, qw: float, qx: float, qy: float, qz: float, px: float, py: float, pz: float,
     out: Floats, j: int,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Write the pose of a segment turned by q from rest; return where the next one starts."""
     rest = segment.rest
     ow, ox, oy, oz = product(qw, qx, qy, qz, rest[0], rest[1], rest[2], rest[3])
-    out[j, 0], out[j, 1], out[j, 2] = px, py, pz
-    out[j, 3], out[j, 4], out[j, 5], out[j, 6] = ox, oy, oz, ow
-    length = segment.length
-    px += length * (1.0 - 2.0 * (oy * oy + oz * oz))
-    py += length * (2.0 * (ox * oy + oz * ow))
-    pz += length * (2.0 * (ox * oz - oy * ow))
+    px, py, pz = _put(ow, ox, oy, oz, segment.length, px, py, pz, out, j)
     if segment.has_gap:
         gap = segment.gap
         gx, gy, gz = rotated(qw, qx, qy, qz, gap[0], gap[1], gap[2])
         px, py, pz = px + gx, py + gy, pz + gz
     return px, py, pz
+
+
+@fused
+def _put(
+    ow: float, ox: float, oy: float, oz: float, length: float, px: float, py: float, pz: float,
+    out: Floats, j: int,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Write a pose; return where its segment ends."""
+    out[j, 0], out[j, 1], out[j, 2] = px, py, pz
+    out[j, 3], out[j, 4], out[j, 5], out[j, 6] = ox, oy, oz, ow
+    twice = 2.0 * length
+    return (
+        px + length - twice * (oy * oy + oz * oz),
+        py + twice * (ox * oy + oz * ow),
+        pz + twice * (ox * oz - oy * ow),
+    )
 
 
 @fused

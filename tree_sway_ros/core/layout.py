@@ -24,8 +24,7 @@ BRANCH = np.dtype(
         ("n_coordinates", "i8"),  # pairs x, y, then twists
         ("n_pairs", "i8"),
         ("source", "i8"),  # branch whose motion it copies, itself if solved
-        ("frame", "f8", (3, 3)),  # b, e1, e2 as rows
-        ("axis", "f8", (MAX_COORDINATES, 3)),  # rotation vector of each coordinate
+        ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
         ("twist", "f8", (MAX_COORDINATES, 6)),  # motion of its base per unit of parent's coordinates
         ("push", "f8", (MAX_COORDINATES, 3)),  # displacement under the wind's mean push
         ("flow", "f8", (MAX_COORDINATES, 3)),  # displacement at which its drag damps
@@ -39,6 +38,8 @@ BRANCH = np.dtype(
         ("compliance", "f8"),  # velocity half a step after a unit of force [s/kg]
         ("centre", "f8", (3,)),  # centre of the wind load
         ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
+        ("is_straight", "i8"),  # whether all its segments lie on one line
+        ("steepest", "f8"),  # square of its largest slope, stretched
         ("skew", "f8"),  # third cumulant of its slope shape, over 6
         ("tip_skew", "f8"),  # the same of the tip-load shape
         ("offset", "f8", (3,)),  # base, from its seat's start, in the seat's frame

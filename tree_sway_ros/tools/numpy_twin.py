@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.banks import build_bank
+from tree_sway_ros.core.branch_shapes import N_SHAPES
 from tree_sway_ros.core.oscillators import propagator
 from tree_sway_ros.core.simulator import LOAD_HELD, SwaySimulator
 from tree_sway_ros.core.tree import Floats
@@ -59,11 +60,14 @@ class NumpyTwin:
         self._levels = [np.flatnonzero(order == k) for k in range(1, int(order.max()) + 1)]
         self._origin = tree.start[0]
         # Coordinates are pairs that share a shape, then twists; those that are not there come last and stand still.
-        column, pairs = np.arange(branches["axis"].shape[1]), branches["n_pairs"][:, None]
+        column, pairs = np.arange(branches["push"].shape[1]), branches["n_pairs"][:, None]
         self._is_there = column < branches["n_coordinates"][:, None]
-        shape = np.where(column < 2 * pairs, column // 2, column - pairs)
+        shape = np.where(column < 2 * pairs, column // 2, N_SHAPES + column - 2 * pairs)
         self._shape = np.where(self._is_there, shape, 0)
         self._column = np.where(self._is_there, branches["coordinate"][:, None] + column, 0)
+        chord, e1, e2 = (branches["frame"][:, None, k] for k in range(3))
+        bends = np.where((column % 2 == 0)[:, None], e2, -e1)
+        self._axis = np.where((column < 2 * pairs)[..., None], bends, chord)
         self._dt = 0.0
         b = tree.n_branches
         self.x, self.v, self._moment = np.zeros((3, b, 2))
@@ -141,7 +145,7 @@ class NumpyTwin:
         slope = np.take_along_axis(segment["slope"], self._shape[owner], axis=1)
         bent = slope[:, 0] + blend[owner] * (segment["tip_slope"] - slope[:, 0])
         slope[:, :2] = (stretch[owner] * bent)[:, None]
-        bend = quaternions_of(np.einsum("jc,jc,jck->jk", slope, angles[owner], branch["axis"][owner]))
+        bend = quaternions_of(np.einsum("jc,jc,jck->jk", slope, angles[owner], self._axis[owner]))
 
         seat_angles = angles.copy()
         seat_angles[:, :2] *= (1.0 + np.minimum(t, _STRETCH_TO) * branch["skew"])[:, None]
