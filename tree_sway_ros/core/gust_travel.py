@@ -42,7 +42,7 @@ class GustHistory:
         Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been measured, so one upwind
         of the anemometer feels the wind at once and is told of in `n_ahead`.
     convection_ratio
-        Speed at which gusts travel over the mean wind speed in [-].
+        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind everywhere.
     averaging_time
         Time constant of the mean wind in [s].
     memory
@@ -72,7 +72,7 @@ class GustHistory:
         if not np.isfinite(points).all():
             raise ParameterError("a place that is not finite", where="places", cure="give metres")
         self._along = points[:, :2] - np.array(three_numbers("anemometer", anemometer))[:2]
-        self._ratio = within("convection_ratio", convection_ratio, 0.1, 10.0)
+        self._ratio = within("convection_ratio", convection_ratio, 0.1, math.inf)
         self._averaging = within("averaging_time", averaging_time, 0.0, 3600.0, "s", above=True)
         self._memory = within("memory", memory, 0.0, 600.0, "s")
         self._run = np.zeros((int(within("capacity", capacity, 2, 1e6)), 4))

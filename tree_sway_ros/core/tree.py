@@ -101,7 +101,7 @@ class Tree:
     def branch_order(self) -> Ints:
         """Branching order: 0 for the stem, one more than its parent's for the others, (b,)."""
         order = np.zeros(self.n_branches, dtype=np.int64)
-        for branch in range(1, self.n_branches):
+        for branch in np.flatnonzero(self.branch_parent >= 0):
             order[branch] = order[self.branch_parent[branch]] + 1
         return _read_only(order)
 
