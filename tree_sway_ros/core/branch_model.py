@@ -17,7 +17,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.branch_beam import Attachments, BranchBeam, SlopeShape
-from tree_sway_ros.core.branch_shapes import Carried, Coordinate, ways_to_move
+from tree_sway_ros.core.branch_shapes import (
+    FEWER,
+    N_SHAPES,
+    N_TWISTS,
+    Carried,
+    Coordinate,
+    ways_to_move,
+)
 from tree_sway_ros.core.tree import Floats, Ints, Tree
 
 
@@ -126,7 +133,7 @@ def branch_models(
         if speed_profile is not None:
             drag_area *= (speed_profile[here] ** 2)[:, None]
         carried = sums[children if carries else children[:0]]
-        ways = ways_to_move(beam, drag_area, mass, carried, branch in enriched)
+        ways = ways_to_move(beam, drag_area, mass, carried, *_richness(tree, branch, enriched))
         models.append(BranchModel(beam, drag_area, mass, ways, children))
         point, dm = beam.point, beam.weight * mass
         area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
@@ -138,6 +145,13 @@ def branch_models(
         weight_second[branch] = np.einsum("sg,sgi,sgj->ij", dm, point, point)
         weight_second[branch] += weight_second[children].sum(axis=0)
     return models[::-1]
+
+
+def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
+    """Shapes and twists of a branch."""
+    if branch not in enriched:
+        return 1, 0
+    return (N_SHAPES, N_TWISTS) if tree.branch_parent[branch] < 0 else (FEWER, FEWER)
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

@@ -19,10 +19,13 @@ from tree_sway_ros.core.branch_beam import BranchBeam, SlopeShape, cross_matrix
 from tree_sway_ros.core.tree import Floats, Ints
 
 N_SHAPES = 3
-"""Bending shapes of an enriched branch, each about two axes."""
+"""Bending shapes of an enriched stem, each about two axes."""
 
 N_TWISTS = 3
-"""Twists of an enriched branch."""
+"""Twists of an enriched stem."""
+
+FEWER = 2
+"""Shapes, and twists, of any other enriched branch: a third gains .5 % of the motion and costs a half more."""
 
 MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
 
@@ -115,7 +118,12 @@ def across(chord: Floats) -> tuple[Floats, Floats]:
 
 
 def ways_to_move(
-    beam: BranchBeam, drag_area: Floats, mass: Floats, carried: Carried, enrich: bool
+    beam: BranchBeam,
+    drag_area: Floats,
+    mass: Floats,
+    carried: Carried,
+    n_shapes: int = 1,
+    n_twists: int = 0,
 ) -> tuple[Coordinate, ...]:
     """
     Find the coordinates of a branch.
@@ -128,8 +136,8 @@ def ways_to_move(
         Per length at its points in [m] and [kg/m], (m, 5).
     carried
         What its children hand down; none for a branch that is taken alone.
-    enrich
-        Whether it gets more than its static shape.
+    n_shapes, n_twists
+        Shapes it bends in, each about two axes, and twists; fewer where there are no more.
 
     Returns
     -------
@@ -140,15 +148,16 @@ def ways_to_move(
     e1, e2 = across(beam.chord)
     shapes = [_static_shape(beam, drag_area, carried)]
     twists: list[SlopeShape] = []
-    if enrich:
+    if n_shapes > 1:
         inertia = 0.5 * (carried.spin(beam.child_point, e1) + carried.spin(beam.child_point, e2))
-        while len(shapes) < N_SHAPES:
+        while len(shapes) < n_shapes:
             bending = _inertia_moment(beam, mass, carried, inertia, shapes[-1])
             if not _extend(shapes, beam, bending / beam.second_moment):
                 break
+    if n_twists > 0:
         spin = carried.spin(beam.child_point, beam.chord)
         turn = np.ones(len(spin))
-        while len(twists) < N_TWISTS and len(spin):
+        while len(twists) < n_twists and len(spin):
             torque = beam.child_lever[1] @ (spin * turn)
             if not _extend(twists, beam, torque / beam.second_moment):
                 break

@@ -77,6 +77,8 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
         record["is_straight"] = _is_straight(tree, here)
         record["tip"] = tree.end[here.stop - 1] - tree.start[0]
         record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
+        for column, shape in _distinct_shapes(model):
+            records["seat_slope"][model.children, column] = shape.child_slope
         length = model.beam.length
         record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
         record["tip_skew"] = _skew(_tip_load_slope(model), length)
@@ -267,16 +269,19 @@ def _seat(
 ) -> tuple[float, float, float, float, float, float, float]:
     """Orientation and place of a branch's base on its placed parent."""
     parent = branches[branch.parent]
-    i, k = parent.coordinate, parent.n_coordinates
-    twist = branch.twist
+    i, pairs, slope, frame = parent.coordinate, parent.n_pairs, branch.seat_slope, parent.frame
     stretch = 1.0 + min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
-    rx = ry = rz = 0.0
-    for c in range(k):
-        angle = x[i + c] * stretch if c < 2 else x[i + c]
-        rx += angle * twist[c, 3]
-        ry += angle * twist[c, 4]
-        rz += angle * twist[c, 5]
-    qw, qx, qy, qz = quaternion(rx, ry, rz)
+    ux, uy, spin = slope[0] * stretch * x[i], slope[0] * stretch * x[i + 1], 0.0
+    for p in range(1, pairs):
+        ux += slope[p] * x[i + 2 * p]
+        uy += slope[p] * x[i + 2 * p + 1]
+    for p in range(parent.n_coordinates - 2 * pairs):
+        spin += slope[N_SHAPES + p] * x[i + 2 * pairs + p]
+    qw, qx, qy, qz = quaternion(
+        ux * frame[2, 0] - uy * frame[1, 0] + spin * frame[0, 0],
+        ux * frame[2, 1] - uy * frame[1, 1] + spin * frame[0, 1],
+        ux * frame[2, 2] - uy * frame[1, 2] + spin * frame[0, 2],
+    )
     base = work[branch.parent].base
     dw, dx, dy, dz = product(base[0], base[1], base[2], base[3], qw, qx, qy, qz)
     s = branch.seat

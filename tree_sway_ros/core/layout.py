@@ -42,6 +42,7 @@ BRANCH = np.dtype(
         ("steepest", "f8"),  # square of its largest slope, stretched
         ("skew", "f8"),  # third cumulant of its slope shape, over 6
         ("tip_skew", "f8"),  # the same of the tip-load shape
+        ("seat_slope", "f8", (N_SHAPES + N_TWISTS,)),  # of the parent's shapes and twists at its base
         ("offset", "f8", (3,)),  # base, from its seat's start, in the seat's frame
     ]
 )

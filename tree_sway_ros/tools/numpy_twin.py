@@ -153,7 +153,8 @@ class NumpyTwin:
         base[0, 0] = 1.0
         for level in self._levels:
             parent = branch["parent"][level]
-            turn = np.einsum("bc,bck->bk", seat_angles[parent], branch["twist"][level, :, 3:])
+            slope = np.take_along_axis(branch["seat_slope"][level], self._shape[parent], axis=1)
+            turn = np.einsum("bc,bck->bk", slope * seat_angles[parent], self._axis[parent])
             base[level] = quaternion_product(base[parent], quaternions_of(turn))
         turned = quaternion_product(base[owner], bend)
         pose = quaternion_product(turned, segment["rest"])
