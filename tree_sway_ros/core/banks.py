@@ -177,7 +177,9 @@ class CalibratedTree:
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif layer is self._coupled:
             modes = self._modes(rung, n_modes)
-            oscillators = ModalBank(branches, layer.reduction, modes, self.damping_ratio)
+            oscillators = ModalBank(
+                branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
+            )
             frequencies = modes.frequencies
         else:
             refuse_buckling(self.tree, layer.reduction)
@@ -250,7 +252,7 @@ class CalibratedTree:
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-        return UncoupledBank(branches, inertia, damping, stiffness, carries)
+        return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
 
 
 def _enriched(tree: Tree, enrich: str) -> frozenset[int]:

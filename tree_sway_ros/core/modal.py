@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tree_sway_ros.core.integrators.registry import DEFAULT, fill_steps
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
 from tree_sway_ros.core.loads import blow, gather, generalised, ride
@@ -40,18 +41,25 @@ class ModalBank:
         Its slowest modes, or all.
     damping_ratio
         Of every mode in [-].
+    integrator
+        Method of the oscillators, one of `REAL_TIME`.
 
     """
 
     carries = True
 
     def __init__(
-        self, branches: Any, reduction: Reduction, modes: Modes, damping_ratio: float
+        self,
+        branches: Any,
+        reduction: Reduction,
+        modes: Modes,
+        damping_ratio: float,
+        integrator: str = DEFAULT,
     ) -> None:
         """Make room for the coefficients and the state."""
         n, m = modes.shapes.shape
         self.branches = branches
-        self.shapes = modes.shapes
+        self.shapes, self.integrator = modes.shapes, integrator
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
@@ -69,7 +77,7 @@ class ModalBank:
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         one = np.ones(len(self.stiffness))
-        fill_propagator(one, self.damping, self.stiffness, dt, self._whole)
+        fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self._whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
         self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
 

@@ -113,9 +113,11 @@ def reduce_tree(
         momentum[own, :3] = np.einsum("sg,isgk->ik", dm, fields)
         momentum[own, 3:] = np.einsum("sg,isgk->ik", dm, np.cross(model.beam.point, fields))
         own_weight = gravity * _own_geometric(model, body[model.children])
-        for number, child in enumerate(model.children if carries else ()):
+        for number, child in enumerate(model.children):
             rides = twists[:, number]
             twist[child, : len(rides)] = rides
+            if not carries:
+                continue
             carried = rides @ body[child]
             own_mass += carried @ rides.T
             momentum[own] += carried

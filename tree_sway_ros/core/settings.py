@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from tree_sway_ros.core.integrators.registry import DEFAULT, REAL_TIME
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.wind_profile import WindProfile
 from tree_sway_ros.errors import ParameterError
@@ -42,6 +43,9 @@ class SimulatorSettings:
         In [m/s^2]; 0 leaves weight out.
     profile
         Wind over height.
+    integrator
+        Method that steps the oscillators, one of `integrators.registry.REAL_TIME`; one whose step would be unstable
+        is refused at the first step.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
@@ -63,6 +67,7 @@ class SimulatorSettings:
     in_leaf: bool = False
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
+    integrator: str = DEFAULT
     twig_tolerance: float = 0.05
     enrich: str = "carriers"
     leaf_mass: Floats | None = None
@@ -73,6 +78,7 @@ class SimulatorSettings:
         """Refuse what is out of range."""
         _one_of("rung", self.rung, RUNGS)
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
+        _one_of("integrator", self.integrator, REAL_TIME)
         _one_of("enrich", self.enrich, ("none", "stem", "carriers", "all"))
         if self.stiffness == "volume_rule" and self.rung in ("modes", "coupled"):
             raise ParameterError(

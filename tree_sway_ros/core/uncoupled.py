@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tree_sway_ros.core.integrators.registry import DEFAULT, fill_steps
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
 from tree_sway_ros.core.loads import blow, gather, generalised, ride
@@ -36,17 +37,25 @@ class UncoupledBank:
         In [kg m^2], [N m s/rad] and [N m/rad], (b,).
     carries
         Whether branches carry their children (rung 2) or are alone (rung 1).
+    integrator
+        Method of the oscillators, one of `REAL_TIME`.
 
     """
 
     def __init__(
-        self, branches: Any, inertia: Floats, damping: Floats, stiffness: Floats, carries: bool
+        self,
+        branches: Any,
+        inertia: Floats,
+        damping: Floats,
+        stiffness: Floats,
+        carries: bool,
+        integrator: str = DEFAULT,
     ) -> None:
         """Make room for the coefficients and the state."""
         n = len(branches)
         self.branches = branches
         self.inertia, self.damping, self.stiffness = inertia, damping, stiffness
-        self.carries = carries
+        self.carries, self.integrator = carries, integrator
         self.work = np.zeros(n, dtype=WORK)
         self.state = np.zeros((5, 2 * n))
         self.x, self.v, self.moment, _, _ = self.state
@@ -55,7 +64,7 @@ class UncoupledBank:
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
-        fill_propagator(self.inertia, self.damping, self.stiffness, dt, self._whole)
+        fill_steps(self.integrator, self.inertia, self.damping, self.stiffness, dt, self._whole)
         fill_propagator(self.inertia, self.damping, self.stiffness, 0.5 * dt, self._half)
         fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, self._guard)
         flow = np.square(self.branches["flow"][:, :2]).sum(axis=(1, 2)) / 2.0

@@ -42,7 +42,7 @@ class SolverNode(TreeSwayNode):
             source.tree,
             species_named(species) if species else source.species,
             n_modes=self.values["modes"] or None,
-            **self.values("fidelity", "tolerance", "stiffness", "in_leaf"),
+            **self.values("fidelity", "tolerance", "stiffness", "integrator", "in_leaf"),
             damping_ratio=self.values["damping_ratio"] or None,
         )
         self._camera: Any = None

@@ -8,6 +8,7 @@ Defaults stand here and nowhere else: the files in ``config/`` hold overrides on
 from __future__ import annotations
 
 from tree_sway_ros.core.gust_event import EVENT_KINDS
+from tree_sway_ros.core.integrators.registry import REAL_TIME
 from tree_sway_ros.core.settings import STIFFNESS_RULES, SimulatorSettings
 from tree_sway_ros.core.simulators import FIDELITIES
 from tree_sway_ros.core.turbulence import TURBULENCE_MODELS
@@ -185,6 +186,13 @@ SOLVER: Table = (
         "Stiffness of a branch from its beam, or from its volume.",
         choices=STIFFNESS_RULES,
         source="`volume_rule` is the paper's",
+    ),
+    Parameter(
+        "integrator",
+        _MODEL.integrator,
+        "Method that steps the oscillators; refused where its step would be unstable.",
+        choices=REAL_TIME,
+        source="doc/choosing_a_method.md",
     ),
     Parameter("in_leaf", _MODEL.in_leaf, "Damped as in leaf."),
     Parameter("damping_ratio", 0.0, "Of every branch; 0 for the species' own.", "", 0.0, 1.0),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.core.integrators.method import Method
 from tree_sway_ros.core.integrators.minimal.bdf2 import Bdf2
@@ -31,6 +31,7 @@ from tree_sway_ros.core.integrators.multiplier.rk4 import MultiplierRungeKutta4
 from tree_sway_ros.core.integrators.multiplier.semi_implicit_euler import (
     MultiplierSemiImplicitEuler,
 )
+from tree_sway_ros.core.oscillators import fill_propagator
 from tree_sway_ros.errors import ParameterError
 
 DEFAULT = "exact_foh"
@@ -155,3 +156,34 @@ def integrator_named(
         f"{limit:.3g} at damping ratio {ratio:.3g}", where="integrator",
         cure=f"take {DEFAULT}, or a step below {limit / w:.2g} s" if w > 0 else f"take {DEFAULT}",
     )
+
+
+def fill_steps(
+    name: str, inertia: NDArray[np.float64], damping: NDArray[np.float64],
+    stiffness: NDArray[np.float64], dt: float, out: NDArray[np.float64],
+) -> None:  # fmt: skip
+    """
+    Fill the coefficients of a method's step for a bank of oscillators; no allocation for the default.
+
+    Parameters
+    ----------
+    name
+        One of `REAL_TIME`.
+    inertia, damping, stiffness
+        I [kg m^2], k2 [N m s], k1 [N m], (n,).
+    dt
+        Time step in [s].
+    out
+        Coefficients, (n, 8), written.
+
+    Raises
+    ------
+    ParameterError
+        As `integrator_named`.
+
+    """
+    if name == DEFAULT:
+        fill_propagator(inertia, damping, stiffness, dt, out)
+    else:
+        method = integrator_named(name, inertia, damping, stiffness, dt)
+        out[:] = method.propagator(inertia, damping, stiffness, dt)
