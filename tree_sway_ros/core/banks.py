@@ -230,14 +230,15 @@ class CalibratedTree:
         reduction = self._coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
-        candidates = n_modes if n_modes > n else min(n, n_modes + min(3 * n_modes, 24))
+        is_driven = rung == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
+        candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
         wanted = n if rung == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:
-            self._slowest = natural_modes(self.tree, reduction, wanted)
-        if rung == "coupled":
-            return self._slowest
-        loads = even_wind_moments(self._coupled.branches, n)
-        return most_driven(self._slowest.slowest(wanted), loads, n_modes)
+            self._slowest = natural_modes(self.tree, reduction, None if wanted == n else wanted)
+        modes = self._slowest.slowest(wanted)
+        if not is_driven:
+            return modes
+        return most_driven(modes, even_wind_moments(self._coupled.branches, n), n_modes)
 
     def _uncoupled(self, layer: _Layer, branches: Any, *, carries: bool) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""

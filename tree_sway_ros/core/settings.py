@@ -31,6 +31,8 @@ class SimulatorSettings:
         Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``modes`` or ``coupled``.
     n_modes
         How many modes the rung ``modes`` steps; 12, or all if there are fewer, if None.
+    mode_choice
+        Which modes these are: the most ``driven`` by wind among the slow ones, or the ``slowest``.
     stiffness
         ``beam``, or ``volume_rule`` (the paper's, rungs ``branch`` and ``subtree``).
     volume_stiffness, volume_damping
@@ -60,6 +62,7 @@ class SimulatorSettings:
 
     rung: str = "subtree"
     n_modes: int | None = None
+    mode_choice: str = "driven"
     stiffness: str = "beam"
     volume_stiffness: float = 2.0e5
     volume_damping: float = 2.0e3
@@ -77,6 +80,7 @@ class SimulatorSettings:
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
         _one_of("rung", self.rung, RUNGS)
+        _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)
         _one_of("enrich", self.enrich, ("none", "stem", "carriers", "all"))

@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
         # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
         n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
+        mode_choice="slowest",
         **leaf_settings(tree_file.tree, arguments),
     )
     facts = tree_facts(tree_file, settings, arguments.count)
