@@ -212,7 +212,9 @@ SOLVER: Table = (
         live=True,
     ),
     Parameter("timeout", 2.0, "The last wind is held for so long.", "s", 0.1, 60.0),
-    Parameter("decay", 3.0, "Time constant of the force after that.", "s", 0.1, 60.0),
+    Parameter(
+        "decay", 6.0, "Time constant of the wind after that; the force halves it.", "s", 0.1, 60.0
+    ),
     _FRAME,
     Parameter("marker_rate", 20.0, "Markers a second; 0 for none.", "Hz", 0.0, 20.0),
     Parameter("marker_classes", 6, "Line widths of the markers.", "", 1, 32),
