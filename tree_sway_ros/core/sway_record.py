@@ -96,16 +96,23 @@ def estimate_sway(
             f"band {band[0]:g} to {band[1]:g} Hz", cure="give two rising frequencies above 0"
         )
     even, dt, gap = _even(*_checked(time, motion))
-    if kind != "ambient":
-        try:
-            decay = _release(even, dt, gap, band)
-        except FormatError:
-            if kind == "release":
-                raise
-        else:
-            if kind == "release" or _is_release(decay):
-                return _estimate(decay, "release")
-    return _estimate(_ambient(even, dt, gap, band), "ambient")
+    if kind == "ambient":
+        return _estimate(_ambient(even, dt, gap, band), "ambient")
+    refusal = "the motion does not die away from one swing"
+    try:
+        decay = _release(even, dt, gap, band)
+        if kind == "release" or _is_release(decay):
+            return _estimate(decay, "release")
+    except FormatError as error:
+        if kind == "release":
+            raise
+        refusal = error.what
+    try:
+        return _estimate(_ambient(even, dt, gap, band), "ambient")
+    except FormatError as error:
+        raise FormatError(
+            f"neither a release ({refusal}) nor ambient ({error.what})", cure=error.cure
+        ) from None
 
 
 def _estimate(found: FreeDecay | AmbientSway, kind: str) -> SwayEstimate:

@@ -24,6 +24,7 @@ COMMANDS: dict[str, str] = {
     "plot": "pictures of a tree, and of the wind and the motion of its tip",
     "grow": "make a tree of a species and a height",
     "convert": "write a tree in another format",
+    "calibrate": "fit modulus and damping to one measured sway",
     "bench": "time the solver",
     "battery": "the cases where methods of integration fail, and what ours does there",
     "chart": "speed against accuracy: of methods, of models, against size",

@@ -1,0 +1,130 @@
+"""``tree-sway calibrate``: fit a tree's modulus and damping to one measured sway."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from tree_sway_ros.core.calibration import Calibration, calibrate
+from tree_sway_ros.core.settings import SimulatorSettings
+from tree_sway_ros.core.species import Species, species_keys, species_named
+from tree_sway_ros.core.sway_record import KINDS, SwayEstimate, estimate_sway
+from tree_sway_ros.core.valid_range import within
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.importers.sway_csv import read_csv_sway
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaf_settings
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
+from tree_sway_ros.tools.tree_output import write_tree_file
+
+_YAML = (".yaml", ".yml")
+_FAR = 2.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_tree_arguments(parser)
+    add_leaves_argument(parser)
+    parser.add_argument("--frequency", type=float, metavar="HZ", help="measured slowest sway [Hz]")
+    parser.add_argument(
+        "--damping", type=float, metavar="Z", help="measured damping ratio [-]; wins over the record's"
+    )
+    parser.add_argument(
+        "--record", metavar="FILE", help="CSV of the sway instead: time and x, y or tilt_x or ax ..."
+    )
+    parser.add_argument("--kind", choices=KINDS, help="of the record; found from it if left out")
+    parser.add_argument(
+        "--band",
+        type=float,
+        nargs=2,
+        metavar=("LOW", "HIGH"),
+        help="where in the record's spectrum to look for the sway [Hz]",
+    )
+    parser.add_argument(
+        "-o", "--output", required=True, metavar="FILE", help="tree with the fitted wood to write: .yaml"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Fit the tree and write it."""
+    _check(arguments)
+    tree_file = opened_tree(arguments)
+    frequency, damping, error = arguments.frequency, arguments.damping, 0.0
+    if arguments.record is not None:
+        found = _measured(arguments)
+        frequency, error = found.frequency, found.frequency_error / found.frequency
+        damping = found.damping_ratio if damping is None else damping
+    settings = SimulatorSettings(rung="modes", **leaf_settings(tree_file.tree, arguments))
+    fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
+    for line in _summary(tree_file.species, fitted, error, in_leaf=settings.in_leaf):
+        print(line)
+    write_tree_file(arguments.output, tree_file.tree, fitted.species)
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse what cannot work before anything slow is done."""
+    if (arguments.frequency is None) == (arguments.record is None):
+        given = "both" if arguments.record is not None else "neither"
+        raise ParameterError(f"{given} of --frequency and --record", cure="give one of the two")
+    for name in ("kind", "band"):
+        if arguments.record is None and getattr(arguments, name) is not None:
+            raise ParameterError("no record", where=f"--{name}", cure="give --record too")
+    if arguments.frequency is not None:
+        within("--frequency", arguments.frequency, 0.0, 1e3, "Hz", above=True)
+    if arguments.damping is not None:
+        within("--damping", arguments.damping, 0.0, 1.0)
+    if Path(arguments.output).suffix.lower() not in _YAML:
+        raise ParameterError(
+            f"'{arguments.output}' cannot carry wood", where="--output", cure="write a .yaml file"
+        )
+
+
+def _measured(arguments: argparse.Namespace) -> SwayEstimate:
+    """What the record says, also printed."""
+    record = read_csv_sway(Path(arguments.record))
+    band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
+    try:
+        found = estimate_sway(record.time, record.motion, arguments.kind, band)
+    except FormatError as error:
+        where = f"{record.source}: {error.where}" if error.where else record.source
+        raise FormatError(error.what, where=where, cure=error.cure) from None
+    print(
+        f"{record.source}: {record.quantity} in {', '.join(record.columns)}, "
+        f"{found.kind} ({found.cycles:.0f} cycles)"
+    )
+    print(
+        f"  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, "
+        f"damping {found.damping_ratio:.3g} +- {found.damping_error:.2g}"
+    )
+    return found
+
+
+def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
+    """What changed, for people; `error` is the relative standard error of the frequency."""
+    after, table = fitted.species, species_named(before.key)
+    moduli = [species_named(key).modulus / 1e9 for key in species_keys()]
+    was = "could not stand" if fitted.frequency_before is None else f"{fitted.frequency_before:.4g} Hz"
+    spread = f" +- {100.0 * fitted.sensitivity * error:.1f} %" if error else ""
+    lines = [
+        f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",
+        f"  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, "
+        f"{after.modulus / table.modulus:.3g} times the table's for {table.title}"
+        f"{' (an estimate)' if table.is_estimate else ''}; all species there: "
+        f"{min(moduli):.3g} to {max(moduli):.3g} GPa",
+    ]
+    if not min(moduli) / _FAR < after.modulus / 1e9 < max(moduli) * _FAR:
+        lines.append(
+            "  note       no green wood has such a modulus: check density, diameters and leaves, and "
+            "whether this was the slowest sway"
+        )
+    season = "damping_in_leaf" if in_leaf else "damping_bare"
+    old, new = getattr(before, season), getattr(after, season)
+    if new == old:
+        lines.append(f"  damping    {old:.3g} {'in leaf' if in_leaf else 'bare'}, as it was")
+    else:
+        lines += [
+            f"  damping    {old:.3g} -> {new:.3g} {'in leaf' if in_leaf else 'bare'}",
+            "  note       a measured damping holds that of the air; the solver adds the air's drag to it, "
+            "so it damps a little more than the tree in strong wind",
+        ]
+    return lines
