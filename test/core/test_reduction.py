@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.branch_model import branch_models
-from tree_sway_ros.core.kinematics import fill_branch_geometry, place, segment_records
+from tree_sway_ros.core.kinematics import place
 from tree_sway_ros.core.layout import BRANCH, WORK
+from tree_sway_ros.core.placing_records import fill_branch_geometry, segment_records
 from tree_sway_ros.core.reduction import reduce_tree
 
 MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0

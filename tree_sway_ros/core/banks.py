@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.branch_model import BranchModel, branch_models
 from tree_sway_ros.core.carried_inertia import carried_inertia
-from tree_sway_ros.core.kinematics import fill_branch_geometry, segment_records
 from tree_sway_ros.core.layout import BRANCH, WORK
 from tree_sway_ros.core.loads import even_wind_moments
 from tree_sway_ros.core.modal import ModalBank
 from tree_sway_ros.core.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.placing_records import fill_branch_geometry, segment_records
 from tree_sway_ros.core.reduction import Reduction, reduce_tree
 from tree_sway_ros.core.response import Responding
 from tree_sway_ros.core.settings import SimulatorSettings

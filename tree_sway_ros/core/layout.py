@@ -1,8 +1,12 @@
 """
-Memory of the hot path: one record a branch, one record a segment, one record of work a branch.
+Memory of the hot path: one record a branch, one record of work a branch, one record of sixteen segments.
 
 A step visits every branch once and needs all that is known of it, so what belongs to a branch lies together; a
 kernel takes a record array as one argument, where each plain array costs a call about .2 us.
+
+Segments follow their branch and not each other, so those at the same place in sixteen branches are computed at once: a
+record holds sixteen lanes, one a branch, and distances within it are constants that let the compiler use vectors. The
+records of sixteen branches, from base to tip, make a block.
 
 Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations in [rad].
 
@@ -38,8 +42,9 @@ BRANCH = np.dtype(
         ("compliance", "f8"),  # velocity half a step after a unit of force [s/kg]
         ("centre", "f8", (3,)),  # centre of the wind load
         ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
-        ("is_straight", "i8"),  # whether all its segments lie on one line
-        ("steepest", "f8"),  # square of its largest slope, stretched
+        ("block", "i8"),  # record of its first segment
+        ("lane", "i8"),  # of all its segments
+        ("steepest", "f8", (N_SHAPES + N_TWISTS,)),  # square of the largest slope of each shape and twist
         ("skew", "f8"),  # third cumulant of its slope shape, over 6
         ("tip_skew", "f8"),  # the same of the tip-load shape
         ("seat_slope", "f8", (N_SHAPES + N_TWISTS,)),  # of the parent's shapes and twists at its base
@@ -48,17 +53,24 @@ BRANCH = np.dtype(
 )
 """All that a step needs to know of a branch."""
 
+LANES = 16
 SEGMENT = np.dtype(
     [
-        ("slope", "f8", (N_SHAPES + N_TWISTS,)),  # of each shape, then of each twist
-        ("tip_slope", "f8"),  # of the shape under a load at the tip
-        ("length", "f8"),
-        ("has_gap", "i8"),  # whether the next segment starts elsewhere than this one ends
-        ("gap", "f8", (3,)),  # from its end to the next one's start, at rest
-        ("rest", "f8", (4,)),  # orientation at rest, w x y z
+        ("head", "i8"),  # first record of its block
+        ("in_plane", "i8"),  # whether no branch of its block has more than one shape
+        ("slope", "f8", (N_SHAPES + N_TWISTS, LANES)),  # of each shape, then of each twist
+        ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
+        ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
+        ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
+        ("pose", "f8", (4, LANES)),  # orientation when placed, w x y z
+        ("ahead", "f8", (3, LANES)),  # its chord when placed
+        # Of the branch, in the first record of a block:
+        ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
+        ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
+        ("way", "f8", (N_SHAPES + N_TWISTS, 3, LANES)),  # half the rotation vector a unit of each slope
     ]
 )
-"""All that placing needs to know of a segment."""
+"""All that placing needs to know of one segment of each of sixteen branches, and what it finds."""
 
 WORK = np.dtype(
     [
@@ -68,6 +80,7 @@ WORK = np.dtype(
         ("slip", "f8", (3,)),  # what that force took off the relative wind, over the compliance [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
+        ("half_angle", "f8"),  # bound on the square of half of what its segments turn by when placed [rad^2]
     ]
 )
 """What a step computes on the way, kept from one step to the next."""

@@ -11,15 +11,29 @@ import math
 
 import numpy as np
 
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.tree import Floats
 
-_SERIES_LIMIT = 2.25
-SMALL_HALF_ANGLE = 0.15
-"""Square of half an angle in [rad^2] up to which `small_half_angle` holds: 44 degrees."""
+SERIES_LIMIT = 2.25
+"""Square of half an angle in [rad^2] up to which `half_angle_series` holds: 1.5 rad."""
 
-_COS = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(9))
-_SINC = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(9))
+_C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = ((-1.0) ** k / math.factorial(2 * k) for k in range(9))
+_S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = ((-1.0) ** k / math.factorial(2 * k + 1) for k in range(9))
+
+
+@inlined
+def half_angle_series(t: float) -> tuple[float, float]:
+    """Return what `half_angle` does, by series alone, for t up to `SERIES_LIMIT`."""
+    cosine = _C8 * t + _C7
+    sinc = _S8 * t + _S7
+    cosine, sinc = cosine * t + _C6, sinc * t + _S6
+    cosine, sinc = cosine * t + _C5, sinc * t + _S5
+    cosine, sinc = cosine * t + _C4, sinc * t + _S4
+    cosine, sinc = cosine * t + _C3, sinc * t + _S3
+    cosine, sinc = cosine * t + _C2, sinc * t + _S2
+    cosine, sinc = cosine * t + _C1, sinc * t + _S1
+    cosine, sinc = cosine * t + _C0, sinc * t + _S0
+    return cosine, sinc
 
 
 @fused
@@ -38,26 +52,10 @@ def half_angle(t: float) -> tuple[float, float]:
         cos and sinc of half the angle.
 
     """
-    if t > _SERIES_LIMIT:
+    if t > SERIES_LIMIT:
         root = math.sqrt(t)
         return math.cos(root), math.sin(root) / root
-    cosine = _COS[8]
-    sinc = _SINC[8]
-    for k in range(7, -1, -1):
-        cosine = cosine * t + _COS[k]
-        sinc = sinc * t + _SINC[k]
-    return cosine, sinc
-
-
-@fused
-def small_half_angle(t: float) -> tuple[float, float]:
-    """Return what `half_angle` does, in fewer terms, for t up to `SMALL_HALF_ANGLE` (error below 3e-14)."""
-    cosine = _COS[5]
-    sinc = _SINC[5]
-    for k in range(4, -1, -1):
-        cosine = cosine * t + _COS[k]
-        sinc = sinc * t + _SINC[k]
-    return cosine, sinc
+    return half_angle_series(t)
 
 
 @fused
@@ -68,7 +66,7 @@ def quaternion(rx: float, ry: float, rz: float) -> tuple[float, float, float, fl
     return c, s * hx, s * hy, s * hz
 
 
-@fused
+@inlined
 def product(
     aw: float, ax: float, ay: float, az: float, bw: float, bx: float, by: float, bz: float
 ) -> tuple[float, float, float, float]:
@@ -81,7 +79,7 @@ def product(
     )
 
 
-@fused
+@inlined
 def rotated(
     w: float, x: float, y: float, z: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:

@@ -49,12 +49,16 @@ class NumpyTwin:
         """Take over what the simulator knows of its tree."""
         tree = sim.tree
         bank = build_bank(tree, sim.species, sim.settings)
-        self._species = sim.species
+        self._drag_law = sim.species.drag_law(sim.settings.in_leaf)
         self._oscillators = bank.oscillators
         branches, segments = bank.branches, bank.segments
         self._branch: dict[str, Any] = {n: branches[n].copy() for n in branches.dtype.names}
-        self._segment: dict[str, Any] = {n: segments[n].copy() for n in segments.dtype.names}
         self._owner = tree.branch_of_segment
+        rank = np.arange(tree.n_segments) - branches["first"][self._owner]
+        at, lane = branches["block"][self._owner] + rank, branches["lane"][self._owner]
+        self._segment: dict[str, Any] = {
+            name: segments[name][at, ..., lane] for name in ("slope", "tip_slope", "chord", "rest")
+        }
         self._subtree_end = tree.subtree_end
         order = tree.branch_order
         self._levels = [np.flatnonzero(order == k) for k in range(1, int(order.max()) + 1)]
@@ -106,10 +110,7 @@ class NumpyTwin:
         if dt != self._dt:
             self._set_step(bank, dt)
         wind = np.asarray(wind_mean, dtype=np.float64)
-        species = self._species
-        per_speed_squared = pressure(
-            float(np.linalg.norm(wind)), species.drag_coefficient, species.drag_exponent
-        )
+        per_speed_squared = pressure(float(np.linalg.norm(wind)), *self._drag_law)
         c = self._half[:, :, None]
         load = np.hstack([self._pull[:, None], self._moment])
         moment = two_axis_moment(self.x, 0.0 * self.v, load, 0.0 * self._pull, np.inf)
@@ -159,8 +160,7 @@ class NumpyTwin:
         turned = quaternion_product(base[owner], bend)
         pose = quaternion_product(turned, segment["rest"])
 
-        ahead = quaternion_rotated(pose, segment["length"][:, None] * np.array([1.0, 0.0, 0.0]))
-        ahead += quaternion_rotated(turned, segment["gap"])
+        ahead = quaternion_rotated(turned, segment["chord"])
         reached = np.vstack([np.zeros(3), np.cumsum(ahead, axis=0)])
         first = branch["first"]
         within = reached[:-1] - reached[first][owner]
