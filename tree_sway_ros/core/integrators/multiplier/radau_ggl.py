@@ -62,6 +62,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
         for stage in range(3):
             for i in range(width):
                 at = stage * width + i
+                if not abs(rhs[at, 0]) < 1e100:  # a comparison would pass over what is not a number
+                    return -1
                 x[at] = x[at] + rhs[at, 0]
                 if i < 3 * n:
                     change = max(change, abs(rhs[at, 0]))
