@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from tree_sway_ros.core.integrators.dense import exponential, solve
+from tree_sway_ros.core.integrators.dense import exponential, multiply, solve
 from tree_sway_ros.core.integrators.operation_count import plain
 from tree_sway_ros.core.integrators.redundant import solve_regularised
 
@@ -39,3 +39,20 @@ def test_repeated_constraints_share_the_multiplier():
     assert g @ accel == pytest.approx([0.0, 0.0], abs=1e-12)
     assert mass * accel + g.T @ lam == pytest.approx([3.0, 0.0], abs=1e-12)
     assert lam[0] == pytest.approx(lam[1])
+
+
+@pytest.mark.parametrize("run", [multiply, plain(multiply)])
+def test_products_agree_with_numpy_zeros_or_not(run):
+    rng = np.random.default_rng(3)
+    a, b = rng.normal(size=(4, 6)), rng.normal(size=(4, 3))
+    square = a @ a.T
+    square[1] = 0.0
+    b[:, 2] = 0.0
+    assert run(square, b) == pytest.approx(square @ b, rel=1e-13)
+
+
+def test_an_exponential_of_rotation_is_a_turn_whatever_the_angle():
+    for angle in (1e-9, 1.0, 40.0):
+        turn = exponential(np.array([[0.0, -angle], [angle, 0.0]]))
+        expected = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        assert turn == pytest.approx(np.array(expected), abs=1e-12)
