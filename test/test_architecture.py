@@ -149,7 +149,8 @@ def test_names_say_what_is_inside() -> None:
 def test_the_core_is_tested_as_much_as_it_is_written() -> None:
     source = lines_of(sorted((PACKAGE / "core").rglob("*.py")))
     tests = lines_of(sorted((ROOT / "test" / "core").rglob("*.py")))
-    tests += lines_of(sorted((ROOT / "test" / "battery").rglob("*.py")))
+    for room in ("battery", "golden"):
+        tests += lines_of(sorted((ROOT / "test" / room).rglob("*.py")))
     assert tests >= 0.7 * source, f"{tests} lines of tests for {source} lines of core"
 
 
