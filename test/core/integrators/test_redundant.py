@@ -8,7 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tree_sway_ros.core.integrators.chain import uniform_chain
-from tree_sway_ros.core.integrators.multiplier_form import forces, index1, jacobian, jacobian_rate, place
+from tree_sway_ros.core.integrators.multiplier_form import (
+    forces,
+    index1,
+    jacobian,
+    jacobian_rate,
+    place,
+)
 from tree_sway_ros.core.integrators.redundant import solve_regularised
 
 
