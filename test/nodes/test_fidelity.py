@@ -1,5 +1,7 @@
 """No more model than the scene needs: the solver listens where it is seen from."""
 
+import json
+
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
@@ -8,7 +10,7 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import PoseStamped  # noqa: E402
 
 from tree_sway_ros.ros.diagnostics import WARN  # noqa: E402
-from tree_sway_ros.ros.topics import CAMERA, SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.ros.topics import CAMERA, SEGMENT_POSES, TREE_DESCRIPTION  # noqa: E402
 
 
 def told(status):
@@ -44,3 +46,15 @@ def test_a_tolerance_nobody_can_meet_is_told(compose, observer, statuses, tree_f
     observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
     assert statuses("solver: model").level[0] == WARN
     assert "no model is within the tolerance" in statuses("solver: model").message
+
+
+def test_leaves_are_told_once_and_never_by_the_frame(compose, observer, tree_file):
+    compose(solver={"tree": tree_file, "leaf_on": True, "leaf_clusters": 40, "profile": "power"})
+    described = observer.listen(TREE_DESCRIPTION)
+    frames = observer.listen(SEGMENT_POSES)
+    observer.until(lambda: described and len(frames) > 30, "the description and frames")
+    leaves = json.loads(described[0].data)["leaves"]
+    assert len(leaves["segment"]) == 40
+    assert set(leaves["segment"]) <= set(range(7))
+    assert leaves["flutter"]["gain"] > 0.0
+    assert len(frames[-1].poses) == 7

@@ -22,13 +22,22 @@ def fits(value, schema, root="$"):
     for name in schema.get("required", ()):
         assert name in value, f"{root}.{name}"
     for name, part in schema.get("properties", {}).items():
-        fits(value[name], part, f"{root}.{name}")
+        if name in value:
+            fits(value[name], part, f"{root}.{name}")
     for item in value if isinstance(value, list) else ():
         fits(item, schema["items"], f"{root}[]")
 
 
 def test_it_fits_its_schema():
     fits(json.loads(describe(TREE, "map")), SCHEMA)
+    assert "leaves" not in json.loads(describe(TREE, "map"))
+
+
+def test_leaves_are_part_of_it_and_always_the_same():
+    told = describe(TREE, "map", leaf_clusters=12)
+    fits(json.loads(told), SCHEMA)
+    assert len(json.loads(told)["leaves"]["segment"]) == 12
+    assert describe(TREE, "map", leaf_clusters=12) == told
 
 
 def test_it_says_what_the_tree_says():

@@ -7,10 +7,13 @@ from typing import Any
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.fidelity import distance_to, tolerance_in_metres
+from tree_sway_ros.core.season import in_season
+from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulators import make_simulator
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.wind_averaging import WindAverage
 from tree_sway_ros.core.wind_gate import WindGate
+from tree_sway_ros.core.wind_profile import WindProfile
 from tree_sway_ros.importers.tree_source import open_tree
 from tree_sway_ros.ros.diagnostics import Status
 from tree_sway_ros.ros.node import TreeSwayNode
@@ -38,12 +41,24 @@ class SolverNode(TreeSwayNode):
         source = open_tree(self.values["tree"])
         species = self.values["species"]
         self.tree = source.tree
+        settings = SimulatorSettings(
+            n_modes=self.values["modes"] or None,
+            **self.values("stiffness", "integrator"),
+            damping_ratio=self.values["damping_ratio"] or None,
+            profile=WindProfile(
+                self.values["profile"],
+                self.values["anemometer_height"],
+                self.values["profile_exponent"],
+                self.values["roughness"],
+            ),
+        )
+        if self.values["leaf_on"]:
+            settings = in_season(source.tree, settings, leaf_on=True)
         self.simulator: Any = make_simulator(
             source.tree,
             species_named(species) if species else source.species,
-            n_modes=self.values["modes"] or None,
-            **self.values("fidelity", "tolerance", "stiffness", "integrator", "in_leaf"),
-            damping_ratio=self.values["damping_ratio"] or None,
+            settings,
+            **self.values("fidelity", "tolerance"),
         )
         self._camera: Any = None
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)

@@ -13,6 +13,7 @@ from tree_sway_ros.core.settings import STIFFNESS_RULES, SimulatorSettings
 from tree_sway_ros.core.simulators import FIDELITIES
 from tree_sway_ros.core.turbulence import TURBULENCE_MODELS
 from tree_sway_ros.core.wind_averaging import INTERPOLATIONS
+from tree_sway_ros.core.wind_profile import PROFILES
 from tree_sway_ros.ros.parameters import Parameter, Table
 
 _MODEL = SimulatorSettings()
@@ -194,7 +195,38 @@ SOLVER: Table = (
         choices=REAL_TIME,
         source="doc/choosing_a_method.md",
     ),
-    Parameter("in_leaf", _MODEL.in_leaf, "Damped as in leaf."),
+    Parameter("leaf_on", False, "Leaves, with their mass, drag and damping."),
+    Parameter(
+        "leaf_clusters",
+        1000,
+        "With leaves, so many clusters are told in `tree_description`; 0 for none.",
+        "",
+        0,
+        100_000,
+    ),
+    Parameter(
+        "profile", _MODEL.profile.kind, "Wind over height: the same, or by a law.", choices=PROFILES
+    ),
+    Parameter(
+        "anemometer_height",
+        _MODEL.profile.anemometer_height,
+        "Of the anemometer over the ground, for the profile.",
+        "m",
+        0.1,
+        200.0,
+    ),
+    Parameter(
+        "profile_exponent",
+        _MODEL.profile.exponent,
+        "Of the power law.",
+        "",
+        0.0,
+        1.0,
+        source="Davenport 1960",
+    ),
+    Parameter(
+        "roughness", _MODEL.profile.roughness, "Roughness length of the log law.", "m", 1e-5, 5.0
+    ),
     Parameter("damping_ratio", 0.0, "Of every branch; 0 for the species' own.", "", 0.0, 1.0),
     Parameter(
         "interpolation",

@@ -46,7 +46,8 @@ class PoseStream:
             self._markers = TreeMarkers(tree, frame_id, values["marker_classes"])
             self._marker_publisher = node.publisher(MARKERS)
         self._transforms = _Transforms(node, tree, frame_id) if values["publish_tf"] else None
-        self._description = String(data=describe(tree, frame_id))
+        leaf_clusters = values["leaf_clusters"] if values["leaf_on"] else 0
+        self._description = String(data=describe(tree, frame_id, leaf_clusters))
         self._description_publisher = node.publisher(TREE_DESCRIPTION)
         self._timer = node.create_timer(
             REPEAT_PERIOD, self.publish_description, clock=Clock(clock_type=ClockType.STEADY_TIME)

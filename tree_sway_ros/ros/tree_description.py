@@ -11,6 +11,10 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import numpy as np
+
+from tree_sway_ros.core.leaf_flutter import leaf_list
+from tree_sway_ros.core.leaves import leaf_clusters as leaf_clusters_of
 from tree_sway_ros.core.tree import Tree
 
 VERSION = 1
@@ -49,14 +53,36 @@ SCHEMA: dict[str, Any] = {
             "required": ["names", "parents", "first_segments"],
             "properties": {"names": _NAMES, "parents": _INDICES, "first_segments": _INDICES},
         },
+        "leaves": {
+            "type": "object",
+            "description": "one item a leaf cluster, carried by its segment; absent without leaves",
+            "required": ["segment", "flutter"],
+        },
     },
 }
 
 
-def describe(tree: Tree, frame_id: str) -> str:
-    """Describe a tree as JSON of `SCHEMA`."""
+def describe(tree: Tree, frame_id: str, leaf_clusters: int = 0) -> str:
+    """
+    Describe a tree as JSON of `SCHEMA`.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    frame_id
+        Frame of the poses.
+    leaf_clusters
+        How many clusters of leaves to place on it, always the same ones; none if 0.
+
+    """
+    leaves = {}
+    if leaf_clusters > 0:
+        clusters = leaf_clusters_of(tree, np.random.default_rng(0), count=leaf_clusters)
+        leaves = {"leaves": leaf_list(clusters)}
     return json.dumps(
         {
+            **leaves,
             "version": VERSION,
             "name": tree.name,
             "species": tree.species,
