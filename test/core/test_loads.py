@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.banks import build_bank
-from tree_sway_ros.core.loads import blow, gather, generalised, ride
+from tree_sway_ros.core.loads import air_records, blow, gather, generalised, ride
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import species_named
 
@@ -26,7 +26,7 @@ class Loaded:
     def handed(self, force):
         """Moments on the key rotations, and pulls, of forces at the load centres, at rest."""
         self.work["rotation"] = 0.0
-        self.work["force"] = force
+        self.work["force"] = self.work["met"] = force
         moment, pull = np.zeros(self.n), np.zeros(len(self.branches))
         gather(self.branches, self.work)
         generalised(self.branches, self.work, True, moment, pull)
@@ -103,11 +103,10 @@ def test_what_is_carried_pulls_at_its_own_height(sketch):
 
 
 def test_still_branches_feel_the_wind_of_the_books(loaded):
-    loaded.work["slip"] = 0.0
     loaded.work["velocity"], loaded.work["rotation"] = 0.0, 0.0
     rest, branches = np.zeros(loaded.n), loaded.branches.copy()
     branches["compliance"] = 0.0
-    blow(branches, loaded.work, rest, rest, 6.0, 2.0, 1.0, DRAG)
+    blow(branches, loaded.work, air_records(branches), rest, rest, 6.0, 2.0, 1.0, DRAG)
     wind = np.array([6.0, 2.0, 1.0])
     tree = loaded.tree
     for b in (3,):
@@ -123,7 +122,7 @@ def test_a_branch_that_goes_with_the_wind_feels_none(stem):
     tree = Loaded(stem())
     tree.work["velocity"][0] = [6.0, 2.0, 0.0, 0.0, 0.0, 0.0]
     rest = np.zeros(tree.n)
-    blow(tree.branches, tree.work, rest, rest, 6.0, 2.0, 0.0, DRAG)
+    blow(tree.branches, tree.work, air_records(tree.branches), rest, rest, 6.0, 2.0, 0.0, DRAG)
     assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
@@ -133,5 +132,5 @@ def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
     # Cayley's map turns by twice the arc tangent of half the vector.
     tree.work["rotation"][0] = [0.0, 2.0 * np.tan(np.pi / 4), 0.0]
     rest = np.zeros(tree.n)
-    blow(tree.branches, tree.work, rest, rest, 6.0, 0.0, 0.0, DRAG)
+    blow(tree.branches, tree.work, air_records(tree.branches), rest, rest, 6.0, 0.0, 0.0, DRAG)
     assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)

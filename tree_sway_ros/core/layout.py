@@ -77,10 +77,41 @@ WORK = np.dtype(
         ("velocity", "f8", (6,)),  # of the base (v, w), about the root, in rest geometry
         ("rotation", "f8", (3,)),  # of the base, from rest
         ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
-        ("slip", "f8", (3,)),  # what that force took off the relative wind, over the compliance [N]
+        ("met", "f8", (3,)),  # the same, where the base has turned the branch to [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
         ("half_angle", "f8"),  # bound on the square of half of what its segments turn by when placed [rad^2]
     ]
 )
 """What a step computes on the way, kept from one step to the next."""
+
+AIR = np.dtype(
+    [
+        ("speed", "f8", (LANES,)),  # as in `BRANCH`, as are the next three
+        ("compliance", "f8", (LANES,)),
+        ("area", "f8", (LANES,)),
+        ("projector", "f8", (6, LANES)),
+        ("motion", "f8", (3, LANES)),  # of what the wind sees [m/s]
+        ("base", "f8", (3, LANES)),  # rotation of the base
+        ("turn", "f8", (3, LANES)),  # rotation of what the wind sees
+        ("slip", "f8", (3, LANES)),  # what the last force took off the relative wind, over the compliance [N]
+        ("force", "f8", (3, LANES)),
+        ("met", "f8", (3, LANES)),
+    ]
+)
+"""What the wind meets on each of sixteen branches that follow each other, and its force."""
+
+SWAY = np.dtype(
+    [
+        ("x", "f8", (2, LANES)),
+        ("v", "f8", (2, LANES)),
+        ("load", "f8", (3, LANES)),  # along b, e1, e2 [N m]
+        ("middle_x", "f8", (2, LANES)),  # half a step on
+        ("middle_v", "f8", (2, LANES)),
+        ("whole", "f8", (8, LANES)),  # rows of the propagator of a step
+        ("half", "f8", (6, LANES)),  # of half a step under a constant load
+        ("guard", "f8", (3, LANES)),  # rows of `two_axis.guards`
+        ("is_solved", "i8", (LANES,)),  # whether it copies no other
+    ]
+)
+"""Oscillators of sixteen branches that follow each other."""

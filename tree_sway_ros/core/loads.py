@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.layout import WORK
+from tree_sway_ros.core.layout import AIR, LANES, WORK
 from tree_sway_ros.core.rotation import turned
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.wind_load import drag
@@ -49,17 +49,41 @@ def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
                 here.rotation[k] += twist[c, 3 + k] * angle
 
 
+def air_records(branches: Any) -> Any:
+    """
+    Lay out what `blow` knows of `BRANCH` records, (b,), sixteen at a time.
+
+    Returns
+    -------
+    ndarray
+        Of dtype `AIR`, (ceil(b / 16),), with no force so far.
+
+    """
+    air = np.zeros(-(-len(branches) // LANES), dtype=AIR)
+    refit(air, branches)
+    return air
+
+
+def refit(air: Any, branches: Any) -> None:
+    """Take over into `AIR` what has changed in `BRANCH` records; the slip stays."""
+    block, lane = np.divmod(np.arange(len(branches)), LANES)
+    for name in ("speed", "area", "projector", "compliance"):
+        air[name][block, ..., lane] = branches[name]
+
+
 @fused
 def blow(
-    branches: Any, work: Any, x: Floats, v: Floats, wx: float, wy: float, wz: float, per_speed_squared: float
-) -> None:
+    branches: Any, work: Any, air: Any, x: Floats, v: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> None:  # fmt: skip
     """
     Find the wind's force on every branch.
 
     Parameters
     ----------
-    branches, work
-        Records of `BRANCH` and `WORK`, (b,); the slip of the latter is read as that of the last step; force and slip are written.
+    branches, work, air
+        Records of `BRANCH` and `WORK`, (b,), and of `AIR`; the slip of the last is read as that of the last step; forces
+        and slip are written.
     x, v
         Key rotations and rates half a step on, under the last step's forces, (N,).
     wx, wy, wz
@@ -68,32 +92,67 @@ def blow(
         `pressure` of the wind in [kg/m^3].
 
     """
-    for b in range(len(branches)):
-        branch, here = branches[b], work[b]
-        if branch.source != b:
+    # Each pass goes over all branches: what is written one by one and read as vectors at once would have to wait.
+    n = len(branches)
+    for block in range(len(air)):
+        for lane in range(min(LANES, n - LANES * block)):
+            b = LANES * block + lane
+            _expose(branches[b], work[b], air[block], lane, x, v)
+    for block in range(len(air)):
+        _press(air[block], wx, wy, wz, per_speed_squared)
+    for block in range(len(air)):
+        for lane in range(min(LANES, n - LANES * block)):
+            here, pressed = work[LANES * block + lane], air[block]
             for k in range(3):
-                here.force[k] = work[branch.source].force[k]
-            continue
-        centre, velocity, force, slip = branch.centre, here.velocity, here.force, here.slip
-        mx = velocity[0] + velocity[4] * centre[2] - velocity[5] * centre[1]
-        my = velocity[1] + velocity[5] * centre[0] - velocity[3] * centre[2]
-        mz = velocity[2] + velocity[3] * centre[1] - velocity[4] * centre[0]
-        tx, ty, tz = here.rotation[0], here.rotation[1], here.rotation[2]
-        for c in range(branch.n_coordinates):
-            rate, angle = v[branch.coordinate + c], x[branch.coordinate + c]
-            mx += branch.flow[c, 0] * rate
-            my += branch.flow[c, 1] * rate
-            mz += branch.flow[c, 2] * rate
-            tx += branch.turn[c, 0] * angle
-            ty += branch.turn[c, 1] * angle
-            tz += branch.turn[c, 2] * angle
-        ux, uy, uz = branch.speed * wx - mx, branch.speed * wy - my, branch.speed * wz - mz
-        ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
-        beta = branch.compliance
-        ux, uy, uz = ux + beta * slip[0], uy + beta * slip[1], uz + beta * slip[2]
-        fx, fy, fz, f = drag(branch, per_speed_squared, ux, uy, uz)
-        slip[0], slip[1], slip[2] = f * ux, f * uy, f * uz
-        force[0], force[1], force[2] = turned(tx, ty, tz, fx, fy, fz)
+                here.force[k], here.met[k] = pressed.force[k, lane], pressed.met[k, lane]
+    for b in range(n):
+        source = branches[b].source
+        if source != b:
+            force, turn, met = work[b].force, work[b].rotation, work[b].met
+            for k in range(3):
+                force[k] = work[source].force[k]
+            met[0], met[1], met[2] = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
+
+
+@fused
+def _expose(branch: Any, work: Any, air: Any, lane: int, x: Floats, v: Floats) -> None:
+    """Set how the load of a branch moves and is turned."""
+    centre, velocity, rotation, i = branch.centre, work.velocity, work.rotation, branch.coordinate
+    flow, turn = branch.flow, branch.turn
+    mx = velocity[0] + velocity[4] * centre[2] - velocity[5] * centre[1]
+    my = velocity[1] + velocity[5] * centre[0] - velocity[3] * centre[2]
+    mz = velocity[2] + velocity[3] * centre[1] - velocity[4] * centre[0]
+    tx, ty, tz = rotation[0], rotation[1], rotation[2]
+    air.base[0, lane], air.base[1, lane], air.base[2, lane] = tx, ty, tz
+    for c in range(branch.n_coordinates):
+        rate, angle = v[i + c], x[i + c]
+        mx, my, mz = mx + flow[c, 0] * rate, my + flow[c, 1] * rate, mz + flow[c, 2] * rate
+        tx, ty, tz = tx + turn[c, 0] * angle, ty + turn[c, 1] * angle, tz + turn[c, 2] * angle
+    air.motion[0, lane], air.motion[1, lane], air.motion[2, lane] = mx, my, mz
+    air.turn[0, lane], air.turn[1, lane], air.turn[2, lane] = tx, ty, tz
+
+
+@fused
+def _press(air: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
+    """Find the force on sixteen branches, drag in the frame of each as it is turned."""
+    speed, motion, turn, base, slip = air.speed, air.motion, air.turn, air.base, air.slip
+    force, met, p = air.force, air.met, air.projector
+    for j in range(LANES):
+        tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
+        ux, uy, uz = turned(
+            -tx, -ty, -tz,
+            speed[j] * wx - motion[0, j], speed[j] * wy - motion[1, j], speed[j] * wz - motion[2, j],
+        )  # fmt: skip
+        beta = air.compliance[j]
+        ux, uy, uz = ux + beta * slip[0, j], uy + beta * slip[1, j], uz + beta * slip[2, j]
+        fx, fy, fz, f = drag(
+            p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
+            per_speed_squared * air.area[j], beta, ux, uy, uz,
+        )  # fmt: skip
+        slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
+        fx, fy, fz = turned(tx, ty, tz, fx, fy, fz)
+        force[0, j], force[1, j], force[2, j] = fx, fy, fz
+        met[0, j], met[1, j], met[2, j] = turned(-base[0, j], -base[1, j], -base[2, j], fx, fy, fz)
 
 
 @fused
@@ -133,8 +192,8 @@ def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: F
     """
     for b in range(len(branches)):
         branch, here = branches[b], work[b]
-        turn, force, chord = here.rotation, here.force, branch.frame
-        fx, fy, fz = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
+        met, chord = here.met, branch.frame
+        fx, fy, fz = met[0], met[1], met[2]
         i = branch.coordinate
         for c in range(branch.n_coordinates):
             moment[i + c] = branch.push[c, 0] * fx + branch.push[c, 1] * fy + branch.push[c, 2] * fz
@@ -176,7 +235,7 @@ def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True
     moments, pull, rest = np.zeros((2, n_coordinates)), np.zeros(len(branches)), np.zeros(n_coordinates)
     for moment, (wx, wy) in zip(moments, np.eye(2), strict=True):
         work = np.zeros(len(branches), dtype=WORK)
-        blow(branches, work, rest, rest, wx, wy, 0.0, 1.0)
+        blow(branches, work, air_records(branches), rest, rest, wx, wy, 0.0, 1.0)
         gather(branches, work)
         generalised(branches, work, carries, moment, pull)
     return moments.T

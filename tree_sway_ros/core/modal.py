@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.integrators.registry import DEFAULT, fill_steps
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
-from tree_sway_ros.core.loads import blow, gather, generalised, ride
+from tree_sway_ros.core.loads import air_records, blow, gather, generalised, refit, ride
 from tree_sway_ros.core.modes import Modes
 from tree_sway_ros.core.oscillators import fill_propagator
 from tree_sway_ros.core.reduction import Reduction
@@ -69,6 +69,7 @@ class ModalBank:
         self._limit = LOAD_MAX * diagonal
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
+        self._air = air_records(branches)
         self.modal = np.zeros((6, m))
         self.state = np.zeros((4, n))
         self._pull = np.zeros(len(branches))
@@ -80,6 +81,7 @@ class ModalBank:
         fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self._whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
         self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
+        refit(self._air, self.branches)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -100,7 +102,7 @@ class ModalBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self.modal, self.state, self.shapes, self._held,
+                self.branches, self.work, self._air, self.modal, self.state, self.shapes, self._held,
                 self._flexibility, self._limit, self._whole, self._half, self._pull,
                 wx, wy, wz, per_speed_squared,
             )
@@ -126,6 +128,7 @@ class ModalBank:
         self.modal[:] = 0.0
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
+        self._air["slip"] = 0.0
 
 
 def _participation(branches: Any, shapes: Floats) -> Floats:
@@ -180,7 +183,7 @@ def _to_middle(
 
 @fused
 def _advance(
-    branches: Any, work: Any, modal: Floats, state: Floats, shapes: Floats, held: Floats,
+    branches: Any, work: Any, air: Any, modal: Floats, state: Floats, shapes: Floats, held: Floats,
     flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
@@ -188,7 +191,7 @@ def _advance(
     eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
     moment, x, v = state[0], state[1], state[2]
     ride(branches, work, x, v)
-    blow(branches, work, x, v, wx, wy, wz, per_speed_squared)
+    blow(branches, work, air, x, v, wx, wy, wz, per_speed_squared)
     gather(branches, work)
     generalised(branches, work, True, moment, pull)
     over = 0

@@ -94,7 +94,7 @@ def rotated(
     )
 
 
-@fused
+@inlined
 def turned(
     rx: float, ry: float, rz: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.integrators.registry import DEFAULT, fill_steps
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.layout import WORK
-from tree_sway_ros.core.loads import blow, gather, generalised, ride
+from tree_sway_ros.core.layout import LANES, SWAY, WORK
+from tree_sway_ros.core.loads import air_records, blow, gather, generalised, refit, ride
 from tree_sway_ros.core.oscillators import fill_propagator
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
@@ -57,18 +57,28 @@ class UncoupledBank:
         self.inertia, self.damping, self.stiffness = inertia, damping, stiffness
         self.carries, self.integrator = carries, integrator
         self.work = np.zeros(n, dtype=WORK)
+        self._air = air_records(branches)
         self.state = np.zeros((5, 2 * n))
         self.x, self.v, self.moment, _, _ = self.state
-        self._whole, self._half = np.zeros((2, n, 8))
-        self._guard, self._pull = np.zeros((n, 3)), np.zeros(n)
+        self._pull = np.zeros(n)
+        self._sway = np.zeros(-(-n // LANES), dtype=SWAY)
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
-        fill_steps(self.integrator, self.inertia, self.damping, self.stiffness, dt, self._whole)
-        fill_propagator(self.inertia, self.damping, self.stiffness, 0.5 * dt, self._half)
-        fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, self._guard)
+        n = len(self.branches)
+        whole, half, guard = np.zeros((n, 8)), np.zeros((n, 8)), np.zeros((n, 3))
+        fill_steps(self.integrator, self.inertia, self.damping, self.stiffness, dt, whole)
+        fill_propagator(self.inertia, self.damping, self.stiffness, 0.5 * dt, half)
+        fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, guard)
+        held = half[:, [0, 1, 2, 4, 5, 6]]
+        held[:, [2, 5]] += half[:, [3, 7]]
+        block, lane = np.divmod(np.arange(n), LANES)
+        for name, rows in (("whole", whole), ("half", held), ("guard", guard)):
+            self._sway[name][block, :, lane] = rows
+        self._sway["is_solved"][block, lane] = self.branches["source"] == np.arange(n)
         flow = np.square(self.branches["flow"][:, :2]).sum(axis=(1, 2)) / 2.0
-        self.branches["compliance"] = flow * (self._half[:, 6] + self._half[:, 7])
+        self.branches["compliance"] = flow * held[:, 5]
+        refit(self._air, self.branches)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -89,8 +99,8 @@ class UncoupledBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self.state, self._whole, self._half, self._guard, self._pull,
-                self.carries, wx, wy, wz, per_speed_squared,
+                self.branches, self.work, self._air, self._sway, self.state, self._pull, self.carries,
+                wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
 
@@ -112,38 +122,76 @@ class UncoupledBank:
         """Go back to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
+        self._air["slip"] = 0.0
         self._pull[:] = 0.0
 
 
 @fused
 def _advance(
-    branches: Any, work: Any, state: Floats, whole: Floats, half: Floats, guard: Floats, pull: Floats,
-    carries: bool, wx: float, wy: float, wz: float, per_speed_squared: float,
+    branches: Any, work: Any, air: Any, sway: Any, state: Floats, pull: Floats, carries: bool,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     x, v, moment, middle_x, middle_v = state[0], state[1], state[2], state[3], state[4]
-    for b in range(len(branches)):
-        h, i = half[b], 2 * b
-        m = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+    n = len(branches)
+    for b in range(n):
+        here, j = sway[b // LANES], b % LANES
         for k in range(2):
-            middle_x[i + k] = h[0] * x[i + k] + h[1] * v[i + k] + (h[2] + h[3]) * m[k]
-            middle_v[i + k] = h[4] * x[i + k] + h[5] * v[i + k] + (h[6] + h[7]) * m[k]
+            here.x[k, j], here.v[k, j] = x[2 * b + k], v[2 * b + k]
+    _set_load(sway, pull, moment)
+    for block in range(len(sway)):
+        _to_middle(sway[block])
+    for b in range(n):
+        here, j = sway[b // LANES], b % LANES
+        for k in range(2):
+            middle_x[2 * b + k], middle_v[2 * b + k] = here.middle_x[k, j], here.middle_v[k, j]
     if carries:
         ride(branches, work, middle_x, middle_v)
-    blow(branches, work, middle_x, middle_v, wx, wy, wz, per_speed_squared)
+    blow(branches, work, air, middle_x, middle_v, wx, wy, wz, per_speed_squared)
     if carries:
         gather(branches, work)
     generalised(branches, work, carries, moment, pull)
+    _set_load(sway, pull, moment)
     held = 0
-    for b in range(len(branches)):
-        i, source = 2 * b, branches[b].source
-        if source == b:
-            c, g = whole[b], guard[b]
-            x[i], x[i + 1], v[i], v[i + 1], over = step_branch(
-                x[i], x[i + 1], v[i], v[i + 1], pull[b], moment[i], moment[i + 1],
-                c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], g[0], g[1], g[2],
-            )  # fmt: skip
-            held += over
-        else:
-            for k in range(2):
-                x[i + k], v[i + k] = x[2 * source + k], v[2 * source + k]
+    for block in range(len(sway)):
+        held += _step(sway[block])
+    for b in range(n):
+        source = branches[b].source
+        here, j = sway[source // LANES], source % LANES
+        for k in range(2):
+            x[2 * b + k], v[2 * b + k] = here.x[k, j], here.v[k, j]
+    return held
+
+
+@fused
+def _set_load(sway: Any, pull: Floats, moment: Floats) -> None:
+    for b in range(len(pull)):
+        load, j = sway[b // LANES].load, b % LANES
+        load[0, j], load[1, j], load[2, j] = pull[b], moment[2 * b], moment[2 * b + 1]
+
+
+@fused
+def _to_middle(sway: Any) -> None:
+    """State of sixteen branches half a step on, under the last step's load."""
+    x, v, load, h = sway.x, sway.v, sway.load, sway.half
+    middle_x, middle_v = sway.middle_x, sway.middle_v
+    for j in range(LANES):
+        mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
+        middle_x[0, j] = h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx
+        middle_x[1, j] = h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my
+        middle_v[0, j] = h[3, j] * x[0, j] + h[4, j] * v[0, j] + h[5, j] * mx
+        middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
+
+
+@fused
+def _step(sway: Any) -> int:
+    """Step sixteen branches; return how many loads were held."""
+    x, v, load, c, g, is_solved = sway.x, sway.v, sway.load, sway.whole, sway.guard, sway.is_solved
+    held = 0
+    for j in range(LANES):
+        x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
+            x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
+            c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],
+            g[0, j], g[1, j], g[2, j],
+        )  # fmt: skip
+        held += over * is_solved[j]
     return held

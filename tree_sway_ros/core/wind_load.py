@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.branch_model import BranchModel
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import inlined
 from tree_sway_ros.core.reduction import Reduction
 from tree_sway_ros.core.tree import Floats, Tree
 
@@ -106,19 +106,22 @@ def pressure(speed: float, coefficient: float, exponent: float) -> float:
     return 0.5 * AIR_DENSITY * coefficient * math.pow(streamlined, -exponent)
 
 
-@fused
+@inlined
 def drag(
-    branch: Any, per_speed_squared: float, ux: float, uy: float, uz: float
-) -> tuple[float, float, float, float]:
+    pxx: float, pyy: float, pzz: float, pxy: float, pxz: float, pyz: float,
+    c: float, compliance: float, ux: float, uy: float, uz: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """
     Force on a branch.
 
     Parameters
     ----------
-    branch
-        Its record.
-    per_speed_squared
-        `pressure` in [kg/m^3].
+    pxx, pyy, pzz, pxy, pxz, pyz
+        Its projector.
+    c
+        `pressure` times its area in [kg/m].
+    compliance
+        Velocity half a step after a unit of force in [s/kg].
     ux, uy, uz
         Air velocity in the branch's own frame, relative to what the branch would do without this force, in [m/s].
 
@@ -128,12 +131,10 @@ def drag(
         Force in the same frame in [N], and force per air velocity in [N s/m].
 
     """
-    p = branch.projector
-    nx = p[0] * ux + p[3] * uy + p[4] * uz
-    ny = p[3] * ux + p[1] * uy + p[5] * uz
-    nz = p[4] * ux + p[5] * uy + p[2] * uz
-    c = per_speed_squared * branch.area
+    nx = pxx * ux + pxy * uy + pxz * uz
+    ny = pxy * ux + pyy * uy + pyz * uz
+    nz = pxz * ux + pyz * uy + pzz * uz
     free = math.sqrt(max(ux * nx + uy * ny + uz * nz, 0.0))
-    relative_over_free = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * branch.compliance * c * free))
+    relative_over_free = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * compliance * c * free))
     f = c * free * relative_over_free * relative_over_free
     return f * nx, f * ny, f * nz, f
