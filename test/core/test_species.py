@@ -44,3 +44,14 @@ def test_guesses_are_marked():
 def test_a_species_cannot_be_changed_by_accident():
     with pytest.raises(dataclasses.FrozenInstanceError):
         species_named("oak").modulus = 1.0
+
+
+def test_without_leaves_a_tree_does_not_streamline():
+    oak = species_named("oak")
+    assert oak.drag_law(in_leaf=True) == (oak.drag_coefficient, oak.drag_exponent)
+    assert oak.drag_law(in_leaf=False) == (oak.bare_drag_coefficient, 0.0)
+
+
+def test_every_crown_in_leaf_streamlines():
+    for key in species_keys():
+        assert species_named(key).drag_law(in_leaf=True)[1] > 0.3

@@ -111,10 +111,10 @@ def test_a_hair_in_a_storm_follows_the_air_and_does_not_shake(stem, dt):
         assert tip_speed < 110.0
 
 
-def test_pressure_streamlines_between_ten_and_twenty():
+def test_pressure_streamlines_where_it_was_measured():
     assert pressure(15.0, 1.2, 0.0) == pytest.approx(0.5 * AIR_DENSITY * 1.2)
-    pine = [pressure(u, 3.07, 0.75) for u in (1.0, 10.0, 15.0, 20.0, 40.0)]
-    assert pine[0] == pine[1] == pytest.approx(0.5 * 1.225 * 3.07 * 10.0**-0.75)
+    pine = [pressure(u, 3.07, 0.75) for u in (1.0, 4.0, 6.0, 20.0, 40.0)]
+    assert pine[0] == pine[1] == pytest.approx(0.5 * 1.225 * 3.07 * 4.0**-0.75)
     assert pine[2] / pine[1] == pytest.approx(1.5**-0.75)
     assert pine[3] == pine[4]
 

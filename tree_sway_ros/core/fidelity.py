@@ -87,7 +87,7 @@ class FidelityLadder:
     def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
         """Find the response of every rung."""
         self.tree, self.species = tree, species
-        self._coefficient = species.drag_coefficient, species.drag_exponent
+        self._coefficient = species.drag_law(settings.in_leaf)
         truth: Complexes | None = None
         self._errors: list[Floats] = []
         self._rungs: list[tuple[str, int, float]] = []

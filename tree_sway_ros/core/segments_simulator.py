@@ -57,14 +57,15 @@ class SegmentsSimulator:
         damping = settings.damping_ratio
         if damping is None:
             damping = species.damping_in_leaf if settings.in_leaf else species.damping_bare
+        coefficient, exponent = species.drag_law(settings.in_leaf)
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
             tree,
             species.modulus,
             species.density,
             damping,
-            species.drag_coefficient,
-            drag_exponent=species.drag_exponent,
+            coefficient,
+            drag_exponent=exponent,
             gravity=settings.gravity,
             twist_ratio=2.0 * species.shear_ratio,
             wind_factor=settings.profile.over_anemometer(middle),

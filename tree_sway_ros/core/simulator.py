@@ -97,6 +97,7 @@ class SwaySimulator:
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self._bank: Bank = calibrated.bank(self.settings.rung, self.settings.n_modes)
+        self._drag_law = self.species.drag_law(self.settings.in_leaf)
         self._dt = 0.0
         self._wind = np.zeros(3)
         self._poses = np.zeros((tree.n_segments, 7))
@@ -173,7 +174,7 @@ class SwaySimulator:
             speed = math.sqrt(wx * wx + wy * wy + wz * wz)
         if dt != self._dt:
             self._set_step(dt)
-        load = pressure(speed, self.species.drag_coefficient, self.species.drag_exponent)
+        load = pressure(speed, *self._drag_law)
         held = self._bank.oscillators.advance(wx, wy, wz, load)
         if held:
             self.counts.held += held
@@ -220,6 +221,13 @@ class SwaySimulator:
         )
         displacement: Floats = np.array([x, y, z]) + length * along - self._rest_tip
         return displacement
+
+    @property
+    def base_moment(self) -> Floats:
+        """Moment of the last step's wind about the root node, of all branches where they stand at rest, in [N m], (3,)."""
+        centre, force = self._bank.branches["centre"], self._bank.oscillators.work["force"]
+        moment: Floats = np.cross(centre, force).sum(axis=0)
+        return moment
 
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""

@@ -2,14 +2,16 @@
 What a tree is made of: wood, damping and drag of each species, with the sources.
 
 Modulus and density are of green wood: ForestGALES species tables, the BIOMASS wood density table and the
-field table of Jackson et al. (2019). Drag is C U^-N between 10 and 20 m/s: Mayhead (1973) for conifers,
-Vollsinger et al. (2005) for broadleaves. Entries marked as estimates have no measurement behind them.
+field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 and 20 m/s: Mayhead (1973) for conifers,
+Vollsinger et al. (2005) for broadleaves. Ash, sycamore, walnut, Ficus and a broadleaf of no known species
+take the mean of the three measured broadleaves, Goldcrest takes spruce's. Entries marked as estimates have no measurement behind them.
 
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from tree_sway_ros.errors import SpeciesError
 
@@ -33,6 +35,8 @@ class Species:
         C of the drag law Cd = C U^-N in leaf, U in [m/s].
     drag_exponent
         N of the drag law in [-]: how much the crown streamlines.
+    bare_drag_coefficient
+        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, .82 to 1.2.
     shear_ratio
         Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood is nearer to
         1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the twist of stems alone.
@@ -49,26 +53,37 @@ class Species:
     damping_in_leaf: float = 0.10
     drag_coefficient: float = 1.2
     drag_exponent: float = 0.0
+    bare_drag_coefficient: float = 1.2
     shear_ratio: float = 1.0 / 2.6
     is_estimate: bool = False
 
+    def drag_law(self, in_leaf: bool) -> tuple[float, float]:
+        """Return C and N of ``Cd = C U^-N``; bare branches do not streamline."""
+        if in_leaf:
+            return self.drag_coefficient, self.drag_exponent
+        return self.bare_drag_coefficient, 0.0
+
+
+_GOLDCREST = "Cupressus macrocarpa 'Goldcrest'"
+_with_broadleaf_drag = partial(Species, drag_coefficient=2.345, drag_exponent=0.877)
+_with_spruce_drag = partial(Species, drag_coefficient=2.35, drag_exponent=0.51)
 
 _TABLE = {
     s.key: s
     for s in (
-        Species("benjamina", "Ficus benjamina", 8.3e9, 950.0, is_estimate=True),
-        Species("goldcrest", "Cupressus macrocarpa 'Goldcrest'", 6.0e9, 950.0, is_estimate=True),
-        Species("broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True),
-        Species("spruce", "Norway spruce", 6.3e9, 850.0, drag_coefficient=2.35, drag_exponent=0.51),
-        Species("sitka", "Sitka spruce", 5.9e9, 850.0, drag_coefficient=2.35, drag_exponent=0.51),
+        _with_broadleaf_drag("benjamina", "Ficus benjamina", 8.3e9, 950.0, is_estimate=True),
+        _with_spruce_drag("goldcrest", _GOLDCREST, 6.0e9, 950.0, is_estimate=True),
+        _with_broadleaf_drag("broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True),
+        _with_spruce_drag("spruce", "Norway spruce", 6.3e9, 850.0),
+        _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0),
         Species("pine", "Scots pine", 7.3e9, 850.0, drag_coefficient=3.07, drag_exponent=0.75),
         Species("douglas_fir", "Douglas-fir", 8.3e9, 850.0, drag_coefficient=2.40, drag_exponent=0.70),
         Species("birch", "birch", 9.9e9, 900.0, drag_coefficient=1.9627, drag_exponent=0.881),
         Species("oak", "oak", 9.4e9, 1010.0, drag_coefficient=2.6575, drag_exponent=0.846),
         Species("beech", "beech", 9.8e9, 1158.0, drag_coefficient=2.4141, drag_exponent=0.904),
-        Species("ash", "ash", 9.5e9, 801.0),
-        Species("sycamore", "sycamore", 8.4e9, 721.0),
-        Species("walnut", "walnut", 11.3e9, 805.0),
+        _with_broadleaf_drag("ash", "ash", 9.5e9, 801.0),
+        _with_broadleaf_drag("sycamore", "sycamore", 8.4e9, 721.0),
+        _with_broadleaf_drag("walnut", "walnut", 11.3e9, 805.0),
     )
 }
 

@@ -147,7 +147,7 @@ def articulated(tree: Tree, gravity: float, *, pieces: int) -> ArticulatedTree:
         wood.modulus,
         wood.density,
         DAMPING_RATIO,
-        wood.drag_coefficient,
+        wood.bare_drag_coefficient,
         gravity=gravity,
         subdivisions=pieces,
         twist_ratio=2.0 * wood.shear_ratio,

@@ -121,8 +121,8 @@ class MujocoTree:
         air = wind - middle
         across = air - np.einsum("ni,ni->n", air, chord)[:, None] * chord
         speed = float(np.clip(np.linalg.norm(wind), STREAMLINING_FROM, STREAMLINING_TO))
-        species = self.species
-        pressure = 0.5 * AIR_DENSITY * species.drag_coefficient * speed**-species.drag_exponent
+        coefficient, exponent = self.species.drag_law(in_leaf=False)
+        pressure = 0.5 * AIR_DENSITY * coefficient * speed**-exponent
         force = pressure * np.linalg.norm(across, axis=1)[:, None] * across
         wrench, centre = np.zeros((len(joint), 6)), data.xipos[self._body]
         tip_force, root_force = bodies.area[:, 1:] * force, bodies.area[:, :1] * force
@@ -160,9 +160,8 @@ class MujocoTree:
         tiny = 1e-3
         self.reset()
         self.blow(np.array([1.0, 0.0, 0.0]))
-        species = self.species
-        pressure = 0.5 * AIR_DENSITY * species.drag_coefficient
-        pressure *= STREAMLINING_FROM**-species.drag_exponent
+        coefficient, exponent = self.species.drag_law(in_leaf=False)
+        pressure = 0.5 * AIR_DENSITY * coefficient * STREAMLINING_FROM**-exponent
         self.data.qpos[:] = tiny / pressure * self._generalised() / self._stiffness
         self._forward(self.model, self.data)
         sway = float(self.tips()[0, 0] - self.tree.end[self._stem_tip, 0]) / tiny
