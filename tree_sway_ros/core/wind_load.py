@@ -3,8 +3,9 @@ What the wind does to a branch: one load centre a branch, so that cost does not 
 
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the piece, across it. Summed over a
 branch it acts at the centre of the load, on the mean displacement of the loaded pieces; the branch damps itself at the
-displacement that gives the same damping as the sum. Crowns streamline: Cd = C U^-N between 10 and 20 m/s
-(Mayhead 1973; Vollsinger et al. 2005), constant outside.
+displacement that gives the same damping as the sum. Crowns in leaf streamline: Cd = C U^-N
+(Mayhead 1973; Vollsinger et al. 2005) between 4 and 20 m/s, constant outside. Those are the speeds at which crowns were measured in
+wind tunnels (Rudnicki et al. 2004; Vollsinger et al. 2005).
 
 **Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step, where an explicit drag would
 shake it to pieces. With u the velocity the branch would have half a step on without the force, and beta the
@@ -28,7 +29,8 @@ from tree_sway_ros.core.tree import Floats, Tree
 AIR_DENSITY = 1.225
 """Of dry air at 15 degrees C and sea level in [kg/m^3] (ISO 2533)."""
 
-STREAMLINING_FROM, STREAMLINING_TO = 10.0, 20.0
+STREAMLINING_FROM, STREAMLINING_TO = 4.0, 20.0
+"""Wind speeds in [m/s] between which the drag law is measured."""
 
 
 def fill_branch_loads(
