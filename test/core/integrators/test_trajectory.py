@@ -61,7 +61,7 @@ def test_iterations_are_counted_and_failures_told(name):
     assert integrate(method, chain, loads, 0.01).failed >= 1
 
 
-def test_explicit_methods_iterate_nothing_and_long_double_stays():
+def test_explicit_methods_iterate_nothing_and_hand_back_their_state():
     chain, method = single_segment(), method_named("rk4")
     run = integrate(method, chain, calm(method, 1, 3), 0.01, theta=[0.1])
     assert (run.iterations, run.failed) == (0, 0)

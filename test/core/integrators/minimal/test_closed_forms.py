@@ -74,7 +74,6 @@ def test_symmetric_methods_run_backwards(name, n, slack):
             step(method, chain, state, load, 0.01)
         moved = np.abs(state[0] - theta).max()
         state[1] *= -1.0
-        assert moved > 0.1 or moved < slack
     assert moved < slack
     assert name != "rk4" or moved > 1e-11, "of an even order, but not symmetric"
 

@@ -100,17 +100,14 @@ def test_index_3_solution_satisfies_its_equations():
 
 
 @pytest.mark.parametrize("name", ["newmark", "hht", "generalized_alpha", "multiplier_bdf2",
-                                  "multiplier_implicit_midpoint", "radau_ggl", "linearly_implicit_euler"])
+                                  "multiplier_implicit_midpoint", "radau_ggl"])
 def test_a_step_that_fails_is_told_and_leaves_the_state(name):
     method = method_named(name)
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)
-    state[1, 0] = np.nan if name == "linearly_implicit_euler" else state[1, 0]
     before = state.copy()
     loads = np.full((len(method.nodes), 2, 2), np.nan)
-    told = type(method).kernel(CHAIN.table, state, loads, 0.01, method.options(CHAIN, 0.01))
-    if name != "linearly_implicit_euler":  # its matrix knows nothing of the load
-        assert told == -1
-        assert state == pytest.approx(before, abs=0.0)
+    assert type(method).kernel(CHAIN.table, state, loads, 0.01, method.options(CHAIN, 0.01)) == -1
+    assert np.array_equal(state, before)
 
 
 def test_rattle_runs_backwards():
