@@ -190,7 +190,7 @@ class CalibratedTree:
             oscillators = bank
         solved = int((branches["source"] == np.arange(len(branches))).sum())
         mass = float(sum(model.beam.integral(model.mass) for model in layer.models))
-        return Bank(oscillators, branches, layer.segments, frequencies, solved, mass)
+        return Bank(oscillators, branches, layer.segments.copy(), frequencies, solved, mass)
 
     @cached_property
     def _alone(self) -> _Layer:

@@ -62,9 +62,9 @@ def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, ou
         else:
             parent = branches[branch.parent]
             below = work[branch.parent].base
-            q = _seat_turn(parent, branch.seat_slope, x)
+            qw, qx, qy, qz = _seat_turn(parent, branch.seat_slope, x)
             base[0], base[1], base[2], base[3] = product(
-                below[0], below[1], below[2], below[3], q[0], q[1], q[2], q[3]
+                below[0], below[1], below[2], below[3], qw, qx, qy, qz
             )
         work[b].half_angle = _set_ways(branch, segments[branch.block], base, x)
     for k in range(len(segments)):
@@ -110,8 +110,11 @@ def _set_ways(branch: Any, head: Any, base: Floats, x: Floats) -> float:
     """Set what the segments of a branch share; return a bound on the square of half their rotation [rad^2]."""
     i, pairs, lane, frame = branch.coordinate, branch.n_pairs, branch.lane, branch.frame
     t = x[i] * x[i] + x[i + 1] * x[i + 1]
-    blend = min(max((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0), 1.0)
-    stretch = 1.0 + min(t, _STRETCH_TO) * (branch.skew + blend * (branch.tip_skew - branch.skew))
+    blend, skew = 0.0, branch.skew
+    if t > _BLEND_FROM:
+        blend = min((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 1.0)
+        skew += blend * (branch.tip_skew - skew)
+    stretch = 1.0 + min(t, _STRETCH_TO) * skew
     head.blend[lane] = blend
     for k in range(4):
         head.base[k, lane] = base[k]

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.layout import AIR, LANES, WORK
 from tree_sway_ros.core.rotation import turned
 from tree_sway_ros.core.tree import Floats
@@ -37,11 +37,12 @@ def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
         parent = branches[branch.parent]
         i, twist = parent.coordinate, branch.twist
         here, below = work[b], work[branch.parent]
+        vx, vy, ax, ay = v[i], v[i + 1], x[i], x[i + 1]
         for k in range(6):
-            here.velocity[k] = below.velocity[k]
+            here.velocity[k] = below.velocity[k] + twist[0, k] * vx + twist[1, k] * vy
         for k in range(3):
-            here.rotation[k] = below.rotation[k]
-        for c in range(parent.n_coordinates):
+            here.rotation[k] = below.rotation[k] + twist[0, 3 + k] * ax + twist[1, 3 + k] * ay
+        for c in range(2, parent.n_coordinates):
             rate, angle = v[i + c], x[i + c]
             for k in range(6):
                 here.velocity[k] += twist[c, k] * rate
@@ -114,7 +115,7 @@ def blow(
             met[0], met[1], met[2] = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
 
 
-@fused
+@inlined
 def _expose(branch: Any, work: Any, air: Any, lane: int, x: Floats, v: Floats) -> None:
     """Set how the load of a branch moves and is turned."""
     centre, velocity, rotation, i = branch.centre, work.velocity, work.rotation, branch.coordinate
@@ -205,10 +206,11 @@ def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: F
         parent = branches[branch.parent]
         i, chord = parent.coordinate, parent.frame
         for c in range(parent.n_coordinates):
-            total = 0.0
-            for k in range(6):
-                total += branch.twist[c, k] * wrench[k]
-            moment[i + c] += total
+            way = branch.twist[c]
+            moment[i + c] += (
+                way[0] * wrench[0] + way[1] * wrench[1] + way[2] * wrench[2]
+                + way[3] * wrench[3] + way[4] * wrench[4] + way[5] * wrench[5]
+            )  # fmt: skip
         along = chord[0, 0] * wrench[0] + chord[0, 1] * wrench[1] + chord[0, 2] * wrench[2]
         pull[branch.parent] += branch.axial_lever * along
 
