@@ -19,12 +19,14 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
     Inertia of each coordinate with its subtree giving way.
 
+    Both axes of a branch that carries others are taken as one, so that it does not matter how they are laid.
+
     Parameters
     ----------
     tree
         The tree.
     reduction
-        Its matrices.
+        Its matrices, two coordinates a branch.
 
     Returns
     -------
@@ -34,14 +36,14 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
     mass, stiffness = reduction.mass.tocsc(), reduction.stiffness.tocsc()
     inertia = np.asarray(mass.diagonal()).copy()
-    spring = np.asarray(stiffness.diagonal())
+    spring = np.repeat(np.asarray(stiffness.diagonal()).reshape(-1, 2).mean(axis=1), 2)
     for branch in np.flatnonzero(tree.subtree_end - np.arange(tree.n_branches) > 1):
         first, end = reduction.first[branch], reduction.first[tree.subtree_end[branch]]
         below = slice(int(first), int(end))
         its_mass, its_stiffness = mass[below, below], stiffness[below, below]
         own = int(reduction.first[branch + 1] - first)
         follow = its_mass[:, :own].toarray() / spring[below, None]
-        energy = np.einsum("ni,ni->i", follow, its_stiffness @ follow)
-        kinetic = np.einsum("ni,ni->i", follow, its_mass @ follow)
+        energy = np.einsum("ni,ni->", follow, its_stiffness @ follow)
+        kinetic = np.einsum("ni,ni->", follow, its_mass @ follow)
         inertia[first : first + own] = spring[first : first + own] * kinetic / energy
     return inertia
