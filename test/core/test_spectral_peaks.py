@@ -46,7 +46,6 @@ def test_one_line_does_not_make_a_peak_where_many_bins_are_averaged():
     ("spectrum", "band", "message"),
     [
         (hills(), None, "no peak in its spectrum"),
-        (hills((0.7, 1.0), duration=2.0), None, r"1\.4 cycles of 0.7\d* Hz in 2 s"),
         (hills((0.7, 1.0)), (20.0, 30.0), "hold nothing in the band"),
         (hills((0.7, 1.0)), (1e-5, 1e-4), "hold nothing in the band"),
     ],

@@ -27,7 +27,7 @@ _MIN_CYCLES = 20.0
 _MAX_POINTS = 600
 _SLOPE = 5.0
 _MIN_GAIN = 8.0
-"""Log-likelihood that a resonance must add to a smooth spectrum; chance does in 1 of 1,000 records."""
+"""Log-likelihood that a resonance must add to a smooth spectrum: 1 in 1,000 by chi-square of its three parameters."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import linalg, signal
+from scipy import fft, linalg, signal
 
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.errors import FormatError
@@ -45,7 +45,9 @@ class FreeDecay:
     explained
         Share of all motion's energy, within the fit, that decaying modes explain in [-].
     quiet
-        Motion around the frequency, before and after the decay, over its largest amplitude in [-].
+        Largest amplitude around the frequency before and after the decay, over the largest of all, in [-].
+    speed
+        Largest amplitude around the frequency times that frequency, in the unit of the motion a second.
 
     """
 
@@ -57,6 +59,7 @@ class FreeDecay:
     cycles: float
     explained: float
     quiet: float
+    speed: float
 
 
 @dataclass(frozen=True)
@@ -117,9 +120,9 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
             poles.append(_pencil(slow[begin:last:stride], stride * dt, rough).pole)
     spread = np.array([[abs(pole), -pole.real / abs(pole)] for pole in poles]).std(axis=0)
     circular = abs(fit.pole)
-    margin = round(1.5 * cycle)
+    margin = round(2.5 * cycle)
     outside = np.concatenate([envelope[: max(peak - margin, 0)], envelope[last + margin :]])
-    quiet = float(np.sqrt(np.mean(outside**2)) / envelope[peak]) if len(outside) else 0.0
+    quiet = float(outside.max(initial=0.0) / envelope[peak])
     share = slow[first:last].var(axis=0).sum() / motion[first:last].var(axis=0).sum()
     return FreeDecay(
         circular / (2.0 * np.pi),
@@ -130,6 +133,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
         cycles,
         fit.explained * min(float(share), 1.0),
         quiet,
+        float(envelope[peak]) * rough,
     )
 
 
@@ -142,7 +146,10 @@ def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
         slow = signal.sosfiltfilt(low, motion, axis=0)
     edges = np.array([0.5, min(1.7, 0.9 * nyquist / rough)]) * rough / nyquist
     band = signal.sosfiltfilt(signal.butter(2, edges, "bandpass", output="sos"), motion, axis=0)
-    envelope: Floats = np.sqrt((np.abs(signal.hilbert(band, axis=0)) ** 2).sum(axis=1))
+    # The transform is periodic: room behind the end keeps a large start out of it.
+    room = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
+    analytic = signal.hilbert(band, room, axis=0)[: len(motion)]
+    envelope: Floats = np.sqrt((np.abs(analytic) ** 2).sum(axis=1))
     return slow, envelope
 
 

@@ -17,7 +17,6 @@ from tree_sway_ros.errors import FormatError
 Band: TypeAlias = tuple[float, float] | None
 """Lowest and highest frequency to look at in [Hz]; all if None."""
 
-_MIN_CYCLES = 3.0
 _PROMINENCE = 1.5
 
 
@@ -62,7 +61,7 @@ class Spectrum:
         Raises
         ------
         FormatError
-            No peak, or fewer than three cycles of all.
+            No peak, or a band that the record does not reach.
 
         """
         low, high = band or (0.0, np.inf)
@@ -79,13 +78,6 @@ class Spectrum:
             at = np.array([np.argmax(level)])
         if not len(at):
             raise FormatError("no peak in its spectrum", cure="record longer, or in more wind")
-        cycles = grid[at] * self.duration
-        if (cycles < _MIN_CYCLES).all():
-            raise FormatError(
-                f"{cycles[-1]:.1f} cycles of {grid[at[-1]]:.3g} Hz in {self.duration:.3g} s",
-                cure="record at least 3 cycles of the sway, better 10",
-            )
-        at = at[cycles >= _MIN_CYCLES]
         return grid[at], level[at]
 
     def _level(self, grid: Floats, width: float, min_bins: int) -> Floats:

@@ -24,8 +24,8 @@ KINDS = ("release", "ambient")
 """Kinds of record."""
 
 _MIN_SAMPLES = 16
-_EXPLAINED, _QUIET = 0.6, 0.2
-_STRONG, _CLEAR = 0.03, 0.3
+_EXPLAINED, _QUIET = 0.6, 0.5
+_STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _estimate(found: FreeDecay | AmbientSway, kind: str) -> SwayEstimate:
 
 
 def _is_release(decay: FreeDecay) -> bool:
-    """Ambient motion has never less than a third of its largest swing around it; a release has a twentieth."""
+    """Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it."""
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
 
@@ -186,18 +186,20 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     peaks, level = spectrum.peaks(band, width=0.06)
     found: list[FreeDecay] = []
     refusals: list[FormatError] = []
-    for rough in peaks[level > _STRONG * level.max()]:
+    strong = level > _STRONG * level.max()
+    for rough in peaks[strong]:
         try:
             _refuse_coarse(gap, float(rough))
             found.append(free_decay(motion, dt, float(rough)))
         except FormatError as refusal:
             refusals.append(refusal)
-        else:
-            if _is_release(found[-1]):
-                return found[-1]
     if not found:
-        raise refusals[-1]
-    return max(found, key=lambda decay: decay.explained)
+        raise refusals[int(np.argmax(level[strong]))]
+    # Beside the sway, a step of the rest has slow parts that die away too; they move little a second.
+    fastest = max(found, key=lambda decay: decay.speed)
+    fast = [one for one in found if one.speed > _FAST * fastest.speed]
+    clearest = max(fast, key=lambda decay: decay.explained)
+    return next(filter(_is_release, fast), clearest) if fastest.quiet < _QUIET else fastest
 
 
 def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
