@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.adaptive import CROSS_FADE, REVIEW, RUN_IN, AdaptiveSimulator
-from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.reference.example_trees import forked_tree
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species
@@ -77,8 +76,8 @@ def test_a_wind_on_the_border_does_not_flicker(tree):
     assert changes <= 2
 
 
-def test_reset_and_bad_wind_as_in_one_simulator():
-    sim = AdaptiveSimulator(builtin_tree("benjamina"), tolerance=0.05)
+def test_reset_and_bad_wind_as_in_one_simulator(tree):
+    sim = adaptive(tree, 0.05)
     rest = sim.place().copy()
     assert sim.step((np.nan, 0.0, 0.0), DT) == 1
     assert sim.counts.refused == 1

@@ -24,7 +24,7 @@ from tree_sway_ros.errors import ParameterError
 DAMPING = 0.05
 WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY, damping_bare=DAMPING)
 NO_WEIGHT = SimulatorSettings(gravity=0.0)
-RATE, SETTLED = 60, 300
+RATE, SETTLED = 60, 240
 LADDER = (
     Estimate("frozen", 0, 0.05, 0.04, 5.0),
     Estimate("branch", 0, 0.04, 0.04, 10.0),
@@ -42,7 +42,7 @@ def gusty(seconds: int) -> np.ndarray:
 @pytest.mark.parametrize(("length_ratio", "diameter_ratio"), RATIOS)
 def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_ratio):
     tree = forked_tree(length_ratio, diameter_ratio)
-    wind = gusty(20)
+    wind = gusty(12)
     ladder = FidelityLadder(tree, WOOD, NO_WEIGHT)
     truth = ArticulatedTree(
         tree, EXAMPLE_MODULUS, EXAMPLE_DENSITY, DAMPING, 1.2, subdivisions=1, twist_ratio=1 / 1.3
