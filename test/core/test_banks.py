@@ -7,7 +7,7 @@ import pytest
 
 from tree_sway_ros.core.banks import build_bank
 from tree_sway_ros.core.kernel import like
-from tree_sway_ros.core.layout import BRANCH, SEGMENT, WORK
+from tree_sway_ros.core.layout import BRANCH, SEGMENT, WORK, branch_layout, segment_layout
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulator import SwaySimulator
 from tree_sway_ros.core.species import species_named
@@ -136,3 +136,11 @@ def test_records_have_room_for_all_that_a_step_needs(fork):
 
 def test_constants_are_plain_numbers_outside_compiled_code():
     assert like(0.5, np.float32(1.0)) == 0.5
+
+
+def test_records_of_plain_branches_have_room_for_no_more(fork):
+    for rung in ("branch", "subtree"):
+        bank = bank_of(fork(), rung=rung)
+        assert bank.branches.dtype == branch_layout(2, 1)
+        assert bank.segments.dtype == segment_layout(1)
+        assert bank.branches.dtype.itemsize < 0.5 * BRANCH.itemsize

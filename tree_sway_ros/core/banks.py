@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.branch_model import BranchModel, branch_models
 from tree_sway_ros.core.carried_inertia import carried_inertia
-from tree_sway_ros.core.layout import BRANCH, WORK
+from tree_sway_ros.core.layout import WORK, branch_layout
 from tree_sway_ros.core.loads import even_wind_moments
 from tree_sway_ros.core.modal import ModalBank
 from tree_sway_ros.core.modes import Modes, most_driven, natural_modes, refuse_buckling
@@ -220,7 +220,8 @@ class CalibratedTree:
         reduction = reduce_tree(
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
-        branches = np.zeros(tree.n_branches, dtype=BRANCH)
+        layout = branch_layout() if enriched else branch_layout(2, 1)
+        branches = np.zeros(tree.n_branches, dtype=layout)
         fill_branch_geometry(tree, models, branches)
         fill_branch_loads(tree, models, reduction, speed, branches)
         return _Layer(models, reduction, branches, segment_records(tree, models))

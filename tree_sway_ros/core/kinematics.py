@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.branch_shapes import N_SHAPES, N_TWISTS
+from tree_sway_ros.core.branch_shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.layout import LANES
 from tree_sway_ros.core.rotation import (
@@ -145,7 +145,7 @@ def _half_vector(segment: Any, head: Any, j: int) -> tuple[float, float, float]:
     slope, way = segment.slope, head.way
     first = slope[0, j] + head.blend[j] * (segment.tip_slope[j] - slope[0, j])
     hx, hy, hz = first * way[0, 0, j], first * way[0, 1, j], first * way[0, 2, j]
-    for c in range(1, N_SHAPES + N_TWISTS):
+    for c in range(1, slope.shape[0]):
         hx += slope[c, j] * way[c, 0, j]
         hy += slope[c, j] * way[c, 1, j]
         hz += slope[c, j] * way[c, 2, j]

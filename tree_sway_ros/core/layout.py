@@ -14,63 +14,89 @@ Frames: ``rest`` is the tree's frame at rest, its origin the root node. Position
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from tree_sway_ros.core.branch_shapes import MAX_COORDINATES, N_SHAPES, N_TWISTS
 
-BRANCH = np.dtype(
-    [
-        ("parent", "i8"),  # branch it sits on, -1 for the stem
-        ("seat", "i8"),  # segment it sits on, -1 for the stem
-        ("first", "i8"),  # its first segment
-        ("end", "i8"),  # one past its last segment
-        ("coordinate", "i8"),  # its first coordinate
-        ("n_coordinates", "i8"),  # pairs x, y, then twists
-        ("n_pairs", "i8"),
-        ("source", "i8"),  # branch whose motion it copies, itself if solved
-        ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
-        ("twist", "f8", (MAX_COORDINATES, 6)),  # motion of its base per unit of parent's coordinates
-        ("push", "f8", (MAX_COORDINATES, 3)),  # displacement under the wind's mean push
-        ("flow", "f8", (MAX_COORDINATES, 3)),  # displacement at which its drag damps
-        ("reach", "f8", (MAX_COORDINATES, 3)),  # displacement of its tip
-        ("tip", "f8", (3,)),  # tip at rest
-        ("turn", "f8", (MAX_COORDINATES, 3)),  # rotation of what the wind sees
-        ("lever", "f8"),  # of its own load about its base [m]
-        ("axial_lever", "f8"),  # of what it carries on its parent's rotation [m]
-        ("area", "f8"),  # drag area [m^2]
-        ("speed", "f8"),  # wind here over wind at the anemometer
-        ("compliance", "f8"),  # velocity half a step after a unit of force [s/kg]
-        ("centre", "f8", (3,)),  # centre of the wind load
-        ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
-        ("block", "i8"),  # record of its first segment
-        ("lane", "i8"),  # of all its segments
-        ("steepest", "f8", (N_SHAPES + N_TWISTS,)),  # square of the largest slope of each shape and twist
-        ("skew", "f8"),  # third cumulant of its slope shape, over 6
-        ("tip_skew", "f8"),  # the same of the tip-load shape
-        ("seat_slope", "f8", (N_SHAPES + N_TWISTS,)),  # of the parent's shapes and twists at its base
-        ("offset", "f8", (3,)),  # base, from its seat's start, in the seat's frame
-    ]
-)
-"""All that a step needs to know of a branch."""
+MAX_SLOPES = N_SHAPES + N_TWISTS
+"""Shapes and twists of an enriched branch."""
+
+
+@cache
+def branch_layout(n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+    """
+    All that a step needs to know of a branch, with room for so many coordinates, shapes and twists.
+
+    Where no branch has more than one shape, records have no room for more: a forest is solved no faster than its
+    records come from memory.
+
+    """
+    return np.dtype(
+        [
+            ("parent", "i8"),  # branch it sits on, -1 for the stem
+            ("seat", "i8"),  # segment it sits on, -1 for the stem
+            ("first", "i8"),  # its first segment
+            ("end", "i8"),  # one past its last segment
+            ("coordinate", "i8"),  # its first coordinate
+            ("n_coordinates", "i8"),  # pairs x, y, then twists
+            ("n_pairs", "i8"),
+            ("source", "i8"),  # branch whose motion it copies, itself if solved
+            ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
+            ("twist", "f8", (n_coordinates, 6)),  # motion of its base per unit of parent's coordinates
+            ("push", "f8", (n_coordinates, 3)),  # displacement under the wind's mean push
+            ("flow", "f8", (n_coordinates, 3)),  # displacement at which its drag damps
+            ("reach", "f8", (n_coordinates, 3)),  # displacement of its tip
+            ("tip", "f8", (3,)),  # tip at rest
+            ("turn", "f8", (n_coordinates, 3)),  # rotation of what the wind sees
+            ("lever", "f8"),  # of its own load about its base [m]
+            ("axial_lever", "f8"),  # of what it carries on its parent's rotation [m]
+            ("area", "f8"),  # drag area [m^2]
+            ("speed", "f8"),  # wind here over wind at the anemometer
+            ("compliance", "f8"),  # velocity half a step after a unit of force [s/kg]
+            ("centre", "f8", (3,)),  # centre of the wind load
+            ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
+            ("block", "i8"),  # record of its first segment
+            ("lane", "i8"),  # of all its segments
+            ("steepest", "f8", (n_slopes,)),  # square of the largest slope of each shape and twist
+            ("skew", "f8"),  # third cumulant of its slope shape, over 6
+            ("tip_skew", "f8"),  # the same of the tip-load shape
+            ("seat_slope", "f8", (n_slopes,)),  # of the parent's shapes and twists at its base
+            ("offset", "f8", (3,)),  # base, from its seat's start, in the seat's frame
+        ]
+    )
+
+
+BRANCH = branch_layout()
+"""With room for every coordinate."""
 
 LANES = 16
-SEGMENT = np.dtype(
-    [
-        ("head", "i8"),  # first record of its block
-        ("in_plane", "i8"),  # whether no branch of its block has more than one shape
-        ("slope", "f8", (N_SHAPES + N_TWISTS, LANES)),  # of each shape, then of each twist
-        ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
-        ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
-        ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
-        ("pose", "f8", (4, LANES)),  # orientation when placed, w x y z
-        ("ahead", "f8", (3, LANES)),  # its chord when placed
-        # Of the branch, in the first record of a block:
-        ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
-        ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
-        ("way", "f8", (N_SHAPES + N_TWISTS, 3, LANES)),  # half the rotation vector a unit of each slope
-    ]
-)
-"""All that placing needs to know of one segment of each of sixteen branches, and what it finds."""
+
+
+@cache
+def segment_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+    """All that placing needs to know of one segment of each of sixteen branches, and what it finds."""
+    return np.dtype(
+        [
+            ("head", "i8"),  # first record of its block
+            ("in_plane", "i8"),  # whether no branch of its block has more than one shape
+            ("slope", "f8", (n_slopes, LANES)),  # of each shape, then of each twist
+            ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
+            ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
+            ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
+            ("pose", "f8", (4, LANES)),  # orientation when placed, w x y z
+            ("ahead", "f8", (3, LANES)),  # its chord when placed
+            # Of the branch, in the first record of a block:
+            ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
+            ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
+            ("way", "f8", (n_slopes, 3, LANES)),  # half the rotation vector a unit of each slope
+        ]
+    )
+
+
+SEGMENT = segment_layout()
+"""With room for every shape and twist."""
 
 WORK = np.dtype(
     [

@@ -12,7 +12,7 @@ import numpy as np
 from tree_sway_ros.core.branch_beam import SlopeShape
 from tree_sway_ros.core.branch_model import BranchModel
 from tree_sway_ros.core.branch_shapes import N_SHAPES
-from tree_sway_ros.core.layout import LANES, SEGMENT
+from tree_sway_ros.core.layout import LANES, segment_layout
 from tree_sway_ros.core.rotation import quaternions_from_x, rotated
 from tree_sway_ros.core.tree import Floats, Tree
 
@@ -24,11 +24,12 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     Returns
     -------
     ndarray
-        Of dtype `SEGMENT`, in blocks of `lanes`.
+        Of `segment_layout`, in blocks of `lanes`.
 
     """
     block, lane, n_records = lanes(tree, models)
-    records = np.zeros(n_records, dtype=SEGMENT)
+    is_plain = all(len(model.coordinates) == 2 for model in models)
+    records = np.zeros(n_records, dtype=segment_layout(1) if is_plain else segment_layout())
     records["rest"][:, 0] = records["base"][:, 0] = 1.0
     records["head"] = np.maximum.accumulate(
         np.where(np.isin(np.arange(n_records), block), np.arange(n_records), 0)

@@ -52,7 +52,7 @@ def fill_branch_loads(
     for b, model in enumerate(models):
         record, beam = records[b], model.beam
         record["coordinate"] = reduction.first[b]
-        record["twist"] = reduction.twist[b]
+        record["twist"] = reduction.twist[b, : len(record["twist"])]
         weight = model.drag_area * beam.weight
         total = weight.sum()
         share = weight / total
