@@ -21,7 +21,8 @@ DENSITY_AND_DRAG = 0.5 * 1.225 * 1.2
 
 def drag(record, per_speed_squared, *wind):
     """Force alone."""
-    return drag_and_slip(record, per_speed_squared, *wind)[:3]
+    c = per_speed_squared * record["area"]
+    return drag_and_slip(*record["projector"], c, record["compliance"], *wind)[:3]
 
 
 def record_of(tree, dt=None, **changes):

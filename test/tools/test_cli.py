@@ -63,7 +63,8 @@ def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
 def test_help_and_version_need_no_module(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--help")[0] == 0
     text = capsys.readouterr().out
-    assert all(f"    {command} " in text for command in cli.COMMANDS)
+    listed = {line.split()[0] for line in text.splitlines() if line.startswith("    ")}
+    assert set(cli.COMMANDS) <= listed
     assert run("--version")[0] == 0
     assert capsys.readouterr().out.count(".") == 2
 

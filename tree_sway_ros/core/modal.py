@@ -111,8 +111,8 @@ class ModalBank:
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
-        eta = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
-        eta -= (self._held.T @ moments)[:, :, None]
+        dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
+        eta = dynamic - (self._held.T @ moments)[:, :, None]
         rest = self._flexibility[:, None, None] * moments[:, :, None]
         swinging: NDArray[np.complex128] = np.tensordot(self.shapes, eta, axes=(1, 0)) + rest
         return swinging

@@ -180,7 +180,7 @@ def _refuse_coarse(gap: float, rough: float) -> None:
 def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     """Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest does not hide."""
     padded = 4 * len(motion)
-    frequency = np.fft.rfftfreq(padded, dt)
+    frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
     spectrum = Spectrum(frequency, power, len(motion) * dt)
     peaks, level = spectrum.peaks(band, width=0.06)
@@ -205,7 +205,7 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
 def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
     """Slowest resonance that is clear next to the clearest."""
     taper = signal.windows.hann(len(motion))
-    frequency = np.fft.rfftfreq(len(motion), dt)
+    frequency = np.fft.rfftfreq(len(motion), dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(taper[:, None] * motion, axis=0)) ** 2).sum(axis=1)
     peaks, _ = Spectrum(frequency, power, len(motion) * dt).peaks(band, width=0.08, min_bins=8)
     found: list[AmbientSway] = []

@@ -9,6 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.tools.bench_cut import cut_table
+from tree_sway_ros.tools.bench_forest import forest_table
 from tree_sway_ros.tools.bench_step import StepTiming, time_steps
 from tree_sway_ros.tools.bench_tree import bench_tree
 
@@ -16,11 +18,14 @@ from tree_sway_ros.tools.bench_tree import bench_tree
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "what", choices=("step",), help="step: solve and place one step of a tree of 121 branches"
+        "what",
+        choices=("step", "cut", "forest"),
+        help="step: solve and place one step of a tree of 121 branches; cut: solve it cut in 3 to 24 segments a "
+        "branch; forest: 20 trees of 10,200 segments at 60 Hz",
     )
     parser.add_argument("--rounds", type=int, default=20, help="of 200 steps each (%(default)s)")
-    parser.add_argument("--segments", type=int, default=6, help="a branch (%(default)s)")
-    parser.add_argument("--json", action="store_true", help="for programs, in seconds")
+    parser.add_argument("--segments", type=int, default=6, help="a branch, for step (%(default)s)")
+    parser.add_argument("--json", action="store_true", help="for programs, in seconds; for step")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -29,6 +34,11 @@ def run(arguments: argparse.Namespace) -> int:
         if not low <= getattr(arguments, name) <= high:
             value = getattr(arguments, name)
             raise ParameterError(f"{value}", where=f"--{name}", cure=f"give {low} to {high}")
+    if arguments.what != "step":
+        is_cut = arguments.what == "cut"
+        print(f"one thread on {core_name()}")
+        print(cut_table(10 * arguments.rounds) if is_cut else forest_table())
+        return 0
     tree = bench_tree(arguments.segments)
     timings = [time_steps(tree, rung, arguments.rounds) for rung in ("branch", "subtree", "modes")]
     if arguments.json:

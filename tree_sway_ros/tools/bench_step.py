@@ -83,9 +83,9 @@ def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
     """
     simulator = SwaySimulator(tree, rung=rung, twig_tolerance=-1.0)
     twin = NumpyTwin(simulator) if rung in ("branch", "subtree") else None
-    gusts = _gusts(_STEPS_A_ROUND)
+    winds = gusts(_STEPS_A_ROUND)
     poses = np.zeros((tree.n_segments, 7))
-    difference = 0.0 if twin is None else _agree(simulator, twin, gusts, poses)
+    difference = 0.0 if twin is None else _agree(simulator, twin, winds, poses)
 
     def own_step(wind: Floats) -> None:
         simulator.step(wind, _DT)
@@ -96,13 +96,13 @@ def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
         twin.step(wind, _DT)
         twin.place(poses)
 
-    own_step(gusts[0])
+    own_step(winds[0])
     own: list[float] = []
     others: list[float] = []
     for _ in range(rounds):
-        own += _timed(own_step, gusts)
+        own += _timed(own_step, winds)
         if twin is not None:
-            others += _timed(twin_step, gusts[:_TWIN_STEPS_A_ROUND])
+            others += _timed(twin_step, winds[:_TWIN_STEPS_A_ROUND])
     if not others:
         return StepTiming(rung, float(np.median(own)), min(own))
     return StepTiming(
@@ -110,16 +110,16 @@ def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
     )
 
 
-def _gusts(count: int) -> Floats:
+def gusts(count: int) -> Floats:
     """Wind of a gusty day around 8 m/s, the same in every run, (count, 3)."""
     rng = np.random.default_rng(0)
     return np.array([8.0, 0.0, 0.0]) + rng.normal(0.0, [2.0, 1.5, 0.5], (count, 3))
 
 
-def _agree(simulator: SwaySimulator, twin: NumpyTwin, gusts: Floats, poses: Floats) -> float:
+def _agree(simulator: SwaySimulator, twin: NumpyTwin, winds: Floats, poses: Floats) -> float:
     """Largest difference over some steps; raises where it is more than rounding."""
     difference = 0.0
-    for wind in gusts[:_STEPS_TO_AGREE]:
+    for wind in winds[:_STEPS_TO_AGREE]:
         simulator.step(wind, _DT)
         twin.step(wind, _DT)
         difference = max(difference, float(np.abs(simulator.place(poses) - twin.place()).max()))
@@ -132,10 +132,10 @@ def _agree(simulator: SwaySimulator, twin: NumpyTwin, gusts: Floats, poses: Floa
     return difference
 
 
-def _timed(step: Callable[[Floats], object], gusts: Floats) -> list[float]:
+def _timed(step: Callable[[Floats], object], winds: Floats) -> list[float]:
     """Time of each step in [s]."""
     times = []
-    for wind in gusts:
+    for wind in winds:
         begin = time.perf_counter()
         step(wind)
         times.append(time.perf_counter() - begin)

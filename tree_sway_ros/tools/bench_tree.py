@@ -23,7 +23,9 @@ _CHILDREN = (12, 3, 2)
 _INSERTION = (0.0, np.radians(55.0), np.radians(50.0), np.radians(45.0))
 
 
-def bench_tree(segments_a_branch: int = SEGMENTS_A_BRANCH) -> Tree:
+def bench_tree(
+    segments_a_branch: int = SEGMENTS_A_BRANCH, children: tuple[int, ...] = _CHILDREN
+) -> Tree:
     """
     Build the benchmark tree.
 
@@ -31,11 +33,13 @@ def bench_tree(segments_a_branch: int = SEGMENTS_A_BRANCH) -> Tree:
     ----------
     segments_a_branch
         How finely each branch is cut; its shape stays the same.
+    children
+        How many branches sit on one of each order, but the last.
 
     Returns
     -------
     Tree
-        With 121 branches, of ``121 * segments_a_branch`` segments.
+        With 121 branches, of ``121 * segments_a_branch`` segments, if nothing is said of its children.
 
     """
     start: list[Floats] = []
@@ -55,11 +59,11 @@ def bench_tree(segments_a_branch: int = SEGMENTS_A_BRANCH) -> Tree:
         diameter += list(np.stack([thick[:-1], thick[1:]], axis=1))
         parent += [seat, *range(first, first + segments_a_branch - 1)]
         branch += [number] * segments_a_branch
-        if order == len(_CHILDREN):
+        if order == len(children):
             continue
-        for child in range(_CHILDREN[order]):
+        for child in range(children[order]):
             # Children sit on nodes of the upper two thirds, the last ones at the tip.
-            place = segments_a_branch * (2 + 4 * (child + 1) / _CHILDREN[order]) / 6
+            place = segments_a_branch * (2 + 4 * (child + 1) / children[order]) / 6
             node = max(1, int(place))
             heading = _GOLDEN_ANGLE * (len(waiting) + 1)
             turned = _tilted(direction, _INSERTION[order + 1], heading)
