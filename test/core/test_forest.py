@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.forest import Forest
+from tree_sway_ros.core.season import in_season
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulator import OK, WIND_REFUSED, SwaySimulator
+from tree_sway_ros.core.simulators import simulators_of
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.standing_tree import StandingTree
 from tree_sway_ros.core.turbulence import Turbulence
@@ -35,8 +37,6 @@ def test_one_tree_at_the_anemometer_moves_as_alone(fork):
         assert forest.step(wind, DT) == alone.step(wind, DT) == OK
         assert forest.place() == pytest.approx(alone.place(), abs=1e-12)
     assert forest.tip_displacements[0] == pytest.approx(alone.tip_displacement, abs=1e-12)
-    assert forest.mass == alone.mass
-    assert forest.frequencies(3) == pytest.approx(alone.frequencies(3))
 
 
 @given(
@@ -141,3 +141,37 @@ def test_a_forest_that_cannot_be_is_refused(fork):
         Forest([])
     with pytest.raises(ParameterError):
         Forest([StandingTree("a", fork())]).step((1.0, 0.0, 0.0), 0.0)
+
+
+def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
+    tree = fork()
+    trees = [
+        StandingTree("bare", tree, leaf_on=False),
+        StandingTree("green", tree, leaf_on=True),
+        StandingTree("as asked", tree),
+    ]
+    forest = Forest(trees, leaf_on=True, convection_ratio=np.inf)
+    assert [sim.settings.in_leaf for sim in forest.simulators] == [False, True, True]
+    alone = SwaySimulator(tree, settings=in_season(tree, leaf_on=True))
+    for wind in gusts(60):
+        forest.step(wind, DT)
+        alone.step(wind, DT)
+    forest.place(), alone.place()
+    assert forest.tip_displacements[1] == pytest.approx(alone.tip_displacement, abs=1e-12)
+    assert (forest.tip_displacements[0] != forest.tip_displacements[1]).any()
+
+
+def test_every_tree_finds_the_model_it_needs(fork, stem):
+    trees = [StandingTree("fork", fork()), StandingTree("twig", stem(length=0.1, base=0.02, tip=0.01))]
+    forest = Forest(trees, fidelity="auto", tolerance=1e-3)
+    chosen = [each.choice.name for each in simulators_of(forest)]
+    assert chosen[1] == "frozen"
+    assert chosen[0] != "frozen"
+    assert forest.step((6.0, 0.0, 0.0), DT) == OK
+    assert simulators_of(forest.simulators[0]) == (forest.simulators[0],)
+
+
+def test_an_error_names_the_tree(stem):
+    thin = stem(length=30.0, base=0.02, tip=0.02)
+    with pytest.raises(TreeError, match=r"^reed: "):
+        Forest([StandingTree("oak", stem()), StandingTree("reed", thin)])

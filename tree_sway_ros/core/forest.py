@@ -18,10 +18,12 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.gust_travel import GustHistory
 from tree_sway_ros.core.settings import SimulatorSettings
-from tree_sway_ros.core.simulator import OK, WIND_REFUSED, Counts, SwaySimulator
+from tree_sway_ros.core.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.simulators import Simulator, make_simulator
+from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.standing_tree import StandingTree, joined
 from tree_sway_ros.core.tree import Floats, Tree
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.errors import ParameterError, TreeSwayError
 
 
 class Forest:
@@ -34,8 +36,15 @@ class Forest:
         The trees, each with a name of its own.
     settings
         How they are modelled, but for those with settings of their own.
+    fidelity
+        Model of trees without settings of their own, as of `make_simulator`; the rung of the settings if None.
+    tolerance
+        Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on its own.
+    leaf_on
+        Whether trees that do not say bear leaves.
     anemometer
-        Where the wind is measured in [m], (3,), best upwind of all trees (`GustHistory`).
+        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind reaches first
+        if None (`GustHistory`).
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind everywhere.
     **changes
@@ -64,7 +73,10 @@ class Forest:
         trees: Sequence[StandingTree],
         settings: SimulatorSettings | None = None,
         *,
-        anemometer: ArrayLike = (0.0, 0.0, 0.0),
+        fidelity: str | None = None,
+        tolerance: float = 0.005,
+        leaf_on: bool = False,
+        anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
         **changes: Any,
     ) -> None:
@@ -77,7 +89,12 @@ class Forest:
         self.names = tuple(names)
         self.tree: Tree = joined([tree.placed() for tree in trees])
         self.simulators = tuple(
-            SwaySimulator(tree.placed(), tree.species, tree.settings_where_it_stands(self.settings))
+            _simulator(
+                tree,
+                tree.settings_where_it_stands(self.settings, leaf_on),
+                None if tree.settings is not None else fidelity,
+                tolerance,
+            )
             for tree in trees
         )
         self.gusts = GustHistory(
@@ -109,11 +126,6 @@ class Forest:
         return sum(sim.n_copied for sim in self.simulators)
 
     @property
-    def mass(self) -> float:
-        """Mass of wood and leaves in [kg]."""
-        return sum(sim.mass for sim in self.simulators)
-
-    @property
     def counts(self) -> Counts:
         """What was refused at the anemometer, and held in any tree."""
         held = sum(sim.counts.held for sim in self.simulators)
@@ -123,12 +135,6 @@ class Forest:
     def wind(self) -> Floats:
         """Wind at the anemometer in the last step in [m/s], (3,)."""
         return self._wind
-
-    def frequencies(self, count: int = 10) -> Floats:
-        """Lowest natural frequencies of all trees in [Hz], without air, (count,) or fewer."""
-        each = [sim.frequencies(count) for sim in self.simulators]
-        lowest: Floats = np.sort(np.concatenate(each))[:count]
-        return lowest
 
     def segments_of(self, name: str) -> slice:
         """
@@ -223,3 +229,21 @@ class Forest:
 
     def _rows_of(self, poses: Floats) -> tuple[Floats, ...]:
         return tuple(poses[each] for each in self._slices)
+
+
+def _simulator(
+    tree: StandingTree, settings: SimulatorSettings, fidelity: str | None, tolerance: float
+) -> Simulator:
+    """Simulator of one tree where it stands; what is wrong with it names the tree."""
+    placed = tree.placed()
+    try:
+        return make_simulator(
+            placed,
+            tree.species if tree.species is not None else species_named(placed.species),
+            settings,
+            fidelity=fidelity or settings.rung,
+            tolerance=tolerance,
+        )
+    except TreeSwayError as error:
+        where = f"{tree.name}: {error.where}" if error.where else tree.name
+        raise type(error)(error.what, where=where, cure=error.cure) from error

@@ -40,7 +40,8 @@ class GustHistory:
         Where wind is felt in [m], (t, 3); heights do not matter.
     anemometer
         Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been measured, so one upwind
-        of the anemometer feels the wind at once and is told of in `n_ahead`.
+        of the anemometer feels the wind at once and is told of in `n_ahead`. If None, at the place that the mean wind
+        reaches first, whichever way it blows.
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind everywhere.
     averaging_time
@@ -60,7 +61,7 @@ class GustHistory:
     def __init__(
         self,
         places: ArrayLike,
-        anemometer: ArrayLike = (0.0, 0.0, 0.0),
+        anemometer: ArrayLike | None = None,
         *,
         convection_ratio: float = 1.0,
         averaging_time: float = 60.0,
@@ -71,7 +72,9 @@ class GustHistory:
         points = np.array(places, dtype=np.float64).reshape(-1, 3)
         if not np.isfinite(points).all():
             raise ParameterError("a place that is not finite", where="places", cure="give metres")
-        self._along = points[:, :2] - np.array(three_numbers("anemometer", anemometer))[:2]
+        self._from_first = anemometer is None
+        origin = np.zeros(3) if anemometer is None else three_numbers("anemometer", anemometer)
+        self._along = points[:, :2] - np.array(origin)[:2]
         self._ratio = within("convection_ratio", convection_ratio, 0.1, math.inf)
         self._averaging = within("averaging_time", averaging_time, 0.0, 3600.0, "s", above=True)
         self._memory = within("memory", memory, 0.0, 600.0, "s")
@@ -129,7 +132,7 @@ class GustHistory:
         _remember(self._run, self._at, x, y, z, dt)
         _follow_mean(self._mean, x, y, dt, self._averaging)
         _feel(
-            self._run, self._at, self._along, self._mean, self._ratio, self._memory,
+            self._run, self._at, self._along, self._from_first, self._mean, self._ratio, self._memory,
             x, y, z, dt, self._wanted, self._delay, self._felt,
         )  # fmt: skip
         return self._felt
@@ -175,14 +178,19 @@ def _follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) 
 
 @kernel
 def _feel(
-    run: Floats, at: NDArray[np.int64], along: Floats, mean: Floats, ratio: float, memory: float,
-    x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats, felt: Floats,
+    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats, ratio: float,
+    memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats, felt: Floats,
 ) -> None:  # fmt: skip
     """Let delays follow the mean wind, and take the mean of the history over each place's own step."""
     now = run[at[0], 0]
     speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)
+    first = math.inf if from_first else 0.0
     for i in range(len(along)):
         wanted[i] = (along[i, 0] * mean[0] + along[i, 1] * mean[1]) / (ratio * speed * speed)
+        if from_first:
+            first = min(first, wanted[i])
+    for i in range(len(along)):
+        wanted[i] -= first
         before = delay[i]
         most = LARGEST_STRETCH * dt
         goal = min(max(wanted[i], 0.0), memory)

@@ -10,7 +10,8 @@ area A in every direction in a crown of outline F (Monsi & Saeki 1953).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -173,6 +174,33 @@ def leaf_clusters(
         frequency=leaf.flutter_frequency * rng.uniform(0.8, 1.25, count),
         phase=rng.uniform(0.0, 2.0 * np.pi, count),
     )
+
+
+def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int]) -> LeafClusters:
+    """
+    Join the leaves of trees that are joined to one record.
+
+    Parameters
+    ----------
+    clusters
+        Leaves of each tree.
+    n_segments
+        Segments of each tree.
+
+    """
+    first = np.concatenate([[0], np.cumsum(n_segments)[:-1]])
+    carriers = [each.segment + at for each, at in zip(clusters, first, strict=True)]
+    columns = {
+        field.name: np.concatenate([getattr(each, field.name) for each in clusters])
+        for field in fields(LeafClusters)
+    }
+    return LeafClusters(**{**columns, "segment": np.concatenate(carriers)})
+
+
+def no_clusters() -> LeafClusters:
+    """Return no leaves at all."""
+    none = np.zeros(0)
+    return LeafClusters(none.astype(np.int64), none.reshape(0, 3), none.reshape(0, 4), none, none, none)
 
 
 def _facing_up(away: Floats, rest: Rotation) -> Floats:

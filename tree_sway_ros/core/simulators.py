@@ -23,10 +23,9 @@ FIDELITIES = ("auto", *RUNGS, "segments")
 
 
 class Simulator(Protocol):
-    """A tree that sways, whatever the model."""
+    """A tree that sways, whatever the model; or a forest."""
 
     tree: Tree
-    species: Species
     settings: SimulatorSettings
 
     @property
@@ -100,3 +99,8 @@ def make_simulator(
     if fidelity == "segments":
         return SegmentsSimulator(tree, species, model)
     return SwaySimulator(tree, species, replace(model, rung=fidelity))
+
+
+def simulators_of(simulator: Any) -> tuple[Any, ...]:
+    """Return the simulator of each tree: of a `Forest` all of them, of a tree its own."""
+    return tuple(getattr(simulator, "simulators", (simulator,)))

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tree_sway_ros.core.season import in_season
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.tree import Floats, Ints, Tree
@@ -36,6 +37,8 @@ class StandingTree:
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
         How it is modelled; as the forest if None.
+    leaf_on
+        Whether it bears leaves; as the forest if None.
 
     Raises
     ------
@@ -52,6 +55,7 @@ class StandingTree:
     yaw: float = 0.0
     species: Species | None = None
     settings: SimulatorSettings | None = None
+    leaf_on: bool | None = None
 
     def __post_init__(self) -> None:
         """Refuse what is nowhere."""
@@ -76,13 +80,31 @@ class StandingTree:
             self.tree, start=moved(self.tree.start), end=moved(self.tree.end), name=self.name
         )
 
-    def settings_where_it_stands(self, forest: SimulatorSettings) -> SimulatorSettings:
-        """Return its settings, the ground of the wind profile raised to where it stands."""
+    def settings_where_it_stands(
+        self, forest: SimulatorSettings, leaf_on: bool = False
+    ) -> SimulatorSettings:
+        """
+        Return its settings, the ground of the wind profile raised to where it stands.
+
+        Parameters
+        ----------
+        forest
+            Settings of trees that have none of their own.
+        leaf_on
+            Whether trees that do not say bear leaves.
+
+        """
         settings = self.settings if self.settings is not None else forest
+        if self.bears_leaves(leaf_on):
+            settings = in_season(self.tree, settings, leaf_on=True)
         raised = self.z - float(self.tree.start[0, 2])
         return replace(
             settings, profile=replace(settings.profile, ground=settings.profile.ground + raised)
         )
+
+    def bears_leaves(self, leaf_on: bool) -> bool:
+        """Whether it bears leaves where those that do not say bear them, or not."""
+        return leaf_on if self.leaf_on is None else self.leaf_on
 
 
 def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
