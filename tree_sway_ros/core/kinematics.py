@@ -62,7 +62,7 @@ def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, ou
         else:
             parent = branches[branch.parent]
             below = work[branch.parent].base
-            qw, qx, qy, qz = _seat_turn(parent, branch.seat_slope, x)
+            qw, qx, qy, qz = seat_turn(parent, branch.seat_slope, x)
             base[0], base[1], base[2], base[3] = product(
                 below[0], below[1], below[2], below[3], qw, qx, qy, qz
             )
@@ -88,8 +88,25 @@ def place(branches: Any, segments: Any, work: Any, x: Floats, origin: Floats, ou
 
 
 @fused
-def _seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float, float]:
-    """Rotation of a place on a branch, by the slopes there."""
+def seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float, float]:
+    """
+    Rotation of a place on a branch.
+
+    Parameters
+    ----------
+    parent
+        Record of `BRANCH`.
+    slope
+        Of its shapes and twists at that place, (c,).
+    x
+        Key rotations, (N,).
+
+    Returns
+    -------
+    tuple
+        Quaternion w x y z, from rest.
+
+    """
     i, pairs, frame = parent.coordinate, parent.n_pairs, parent.frame
     stretch = 1.0 + min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
     ux, uy, spin = slope[0] * stretch * x[i], slope[0] * stretch * x[i + 1], 0.0
