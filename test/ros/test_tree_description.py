@@ -2,6 +2,8 @@ import json
 
 import numpy as np
 
+from tree_sway_ros.core.leaves import leaf_clusters
+from tree_sway_ros.core.standing_tree import StandingTree, joined
 from tree_sway_ros.core.tree_building import tree_from_segments
 from tree_sway_ros.ros.tree_description import SCHEMA, VERSION, describe
 
@@ -33,11 +35,20 @@ def test_it_fits_its_schema():
     assert "leaves" not in json.loads(describe(TREE, "map"))
 
 
-def test_leaves_are_part_of_it_and_always_the_same():
-    told = describe(TREE, "map", leaf_clusters=12)
+def test_leaves_are_part_of_it():
+    told = describe(TREE, "map", leaf_clusters(TREE, np.random.default_rng(0), count=12))
     fits(json.loads(told), SCHEMA)
     assert len(json.loads(told)["leaves"]["segment"]) == 12
-    assert describe(TREE, "map", leaf_clusters=12) == told
+
+
+def test_every_tree_of_several_begins_with_a_segment_without_a_parent():
+    trees = [StandingTree("a", TREE), StandingTree("b", TREE, x=3.0)]
+    told = json.loads(describe(joined([each.placed() for each in trees]), "map"))
+    fits(told, SCHEMA)
+    parents, names = told["segments"]["parents"], told["segments"]["names"]
+    roots = [name for name, parent in zip(names, parents, strict=True) if parent < 0]
+    assert [name.split("/")[0] for name in roots] == ["a", "b"]
+    assert len(set(names)) == 2 * TREE.n_segments
 
 
 def test_it_says_what_the_tree_says():

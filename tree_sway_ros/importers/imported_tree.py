@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
+import numpy as np
+
+from tree_sway_ros.core.leaves import LeafClusters, leaf_clusters
+from tree_sway_ros.core.season import in_season
+from tree_sway_ros.core.settings import SimulatorSettings
+from tree_sway_ros.core.simulators import Simulator, make_simulator
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.tree import Tree
 
@@ -34,3 +41,45 @@ class TreeFile:
     source: str
     notes: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def of_species(self, species: Species) -> TreeFile:
+        """Return the same tree of another wood, with that species' leaves."""
+        return replace(self, tree=replace(self.tree, species=species.key), species=species)
+
+    def simulator(
+        self,
+        settings: SimulatorSettings | None = None,
+        *,
+        fidelity: str = "auto",
+        tolerance: float = 0.005,
+        leaf_on: bool = False,
+        **changes: Any,
+    ) -> Simulator:
+        """
+        Make a simulator of the tree.
+
+        Parameters
+        ----------
+        settings, fidelity, tolerance, **changes
+            As for `make_simulator`.
+        leaf_on
+            Whether the tree bears leaves.
+
+        Raises
+        ------
+        TreeSwayError
+            As `make_simulator`.
+
+        """
+        model = replace(settings or SimulatorSettings(), **changes)
+        if leaf_on:
+            model = in_season(self.tree, model, leaf_on=True)
+        return make_simulator(
+            self.tree, self.species, model, fidelity=fidelity, tolerance=tolerance
+        )
+
+    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
+        """Place clusters of leaves on it, always the same ones; None without leaves."""
+        if not leaf_on or count < 1:
+            return None
+        return leaf_clusters(self.tree, np.random.default_rng(0), count=count)

@@ -1,4 +1,4 @@
-"""A tree by name or by path: what the command line and the nodes call TREE."""
+"""A tree or a forest by name or by path: what the command line and the nodes call TREE."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.errors import FormatError
+from tree_sway_ros.importers.forest_file import ForestFile
+from tree_sway_ros.importers.forest_yaml import is_forest, read_forest
 from tree_sway_ros.importers.imported_tree import TreeFile
 from tree_sway_ros.importers.tree_file import read_tree
 
@@ -30,7 +32,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     Raises
     ------
     FormatError
-        Neither a built-in tree nor a file.
+        Neither a built-in tree nor a file, or the file of a forest.
     TreeSwayError
         What reading the file may raise.
 
@@ -47,4 +49,29 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
             f"no tree '{text}'",
             cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",
         )
+    if is_forest(path):
+        raise FormatError("a forest, where one tree is asked for", where=text, cure="name one of its trees")
     return read_tree(path, **options)
+
+
+def open_scene(name_or_path: str | Path, seed: int = 0) -> TreeFile | ForestFile:
+    """
+    Open a built-in tree, a tree file or the file of a forest; either makes its simulator itself.
+
+    Parameters
+    ----------
+    name_or_path
+        As of `open_tree`, or a YAML file with a list of trees.
+    seed
+        Seed of a built-in tree.
+
+    Raises
+    ------
+    TreeSwayError
+        As `open_tree` and `read_forest`.
+
+    """
+    path = Path(name_or_path).expanduser()
+    if str(name_or_path) not in BUILTIN_TREES and is_forest(path):
+        return read_forest(path, open_tree)
+    return open_tree(name_or_path, seed)

@@ -71,7 +71,7 @@ def parse_yaml(text: str, source: str) -> YamlNode:
 
     """
     if not text.strip():
-        raise FormatError("empty", where=source, cure="describe a tree in it")
+        raise FormatError("empty", where=source, cure="describe a tree or a forest in it")
     try:
         return _compose(text, source)
     except yaml.MarkedYAMLError as error:
@@ -107,14 +107,14 @@ def _compose(text: str, source: str) -> YamlNode:
             root = node
         else:
             raise FormatError(
-                "a second document", where=f"{source}:{line}", cure="keep one tree a file"
+                "a second document", where=f"{source}:{line}", cure="keep one document a file"
             )
         if kind is not yaml.ScalarEvent:
             if len(stack) >= _MAX_DEPTH:
                 raise FormatError(f"nested deeper than {_MAX_DEPTH}", where=f"{source}:{line}")
             stack.append(_Open(node))
     if root is None:
-        raise FormatError("no document", where=source, cure="describe a tree in it")
+        raise FormatError("no document", where=source, cure="describe a tree or a forest in it")
     return root
 
 

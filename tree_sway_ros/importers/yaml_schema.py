@@ -23,14 +23,19 @@ from tree_sway_ros.importers.yaml_nodes import YamlNode
 Schema = dict[str, Any]
 
 _KINDS = {"object": "a mapping", "array": "a list", "string": "a text", "number": "a number",
-          "integer": "a whole number"}  # fmt: skip
+          "integer": "a whole number", "boolean": "true or false"}  # fmt: skip
+
+
+def packaged_schema(name: str) -> Schema:
+    """Return a JSON schema that stands beside this file."""
+    resource = files("tree_sway_ros.importers").joinpath(name)
+    schema: Schema = json.loads(resource.read_text(encoding="utf-8"))
+    return schema
 
 
 def tree_schema() -> Schema:
     """Return the JSON schema of the YAML form of a tree."""
-    resource = files("tree_sway_ros.importers").joinpath("tree_schema.json")
-    schema: Schema = json.loads(resource.read_text(encoding="utf-8"))
-    return schema
+    return packaged_schema("tree_schema.json")
 
 
 class SchemaCheck:
@@ -55,6 +60,7 @@ class SchemaCheck:
             "string": self._text,
             "number": self._number,
             "integer": self._number,
+            "boolean": self._truth,
         }
 
     def value(self, node: YamlNode, schema: Schema | None = None, name: str = "the file") -> Any:
@@ -122,6 +128,12 @@ class SchemaCheck:
             raise self._error(node, f"{name} is empty", "give a text")
         return node.value
 
+    def _truth(self, node: YamlNode, schema: Schema, name: str) -> bool:
+        if node.is_plain and node.value in ("true", "false"):
+            return node.value == "true"
+        found = f"'{node.value[:40]}'" if isinstance(node.value, str) else node.kind
+        raise self._error(node, f"{name} is {found}", f"give {_KINDS['boolean']}")
+
     def _number(self, node: YamlNode, schema: Schema, name: str) -> float | int:
         kind = _KINDS[schema["type"]]
         if not isinstance(node.value, str):
@@ -140,7 +152,7 @@ class SchemaCheck:
         return int(number) if schema["type"] == "integer" else number
 
 
-_TYPES = {"object": dict, "array": list, "string": str, "number": str, "integer": str}
+_TYPES = {"object": dict, "array": list, "string": str, "number": str, "integer": str, "boolean": str}
 
 
 def _inside(name: str, key: str) -> str:

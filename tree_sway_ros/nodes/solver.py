@@ -7,14 +7,13 @@ from typing import Any
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.fidelity import distance_to, tolerance_in_metres
-from tree_sway_ros.core.season import in_season
 from tree_sway_ros.core.settings import SimulatorSettings
-from tree_sway_ros.core.simulators import make_simulator
+from tree_sway_ros.core.simulators import simulators_of
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.wind_averaging import WindAverage
 from tree_sway_ros.core.wind_gate import WindGate
 from tree_sway_ros.core.wind_profile import WindProfile
-from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.importers.tree_source import open_scene
 from tree_sway_ros.ros.diagnostics import Status
 from tree_sway_ros.ros.node import TreeSwayNode
 from tree_sway_ros.ros.pacer import Pacer, Tick
@@ -38,9 +37,9 @@ class SolverNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("solver", **options)
-        source = open_tree(self.values["tree"])
-        species = self.values["species"]
-        self.tree = source.tree
+        source = open_scene(self.values["tree"])
+        if self.values["species"]:
+            source = source.of_species(species_named(self.values["species"]))
         settings = SimulatorSettings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator"),
@@ -52,13 +51,8 @@ class SolverNode(TreeSwayNode):
                 self.values["roughness"],
             ),
         )
-        if self.values["leaf_on"]:
-            settings = in_season(source.tree, settings, leaf_on=True)
-        self.simulator: Any = make_simulator(
-            source.tree,
-            species_named(species) if species else source.species,
-            settings,
-            **self.values("fidelity", "tolerance"),
+        self.simulator: Any = source.simulator(
+            settings, **self.values("fidelity", "tolerance", "leaf_on")
         )
         self._camera: Any = None
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
@@ -67,7 +61,8 @@ class SolverNode(TreeSwayNode):
         # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
         self._gate = WindGate(max_speed=150.0, max_rate=1e4)
         self._sway_report = SwayReport()
-        self.stream = PoseStream(self, source.tree)
+        leaves = source.leaves(**self.values("leaf_on"), count=self.values["leaf_clusters"])
+        self.stream = PoseStream(self, source.tree, leaves)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
@@ -100,12 +95,12 @@ class SolverNode(TreeSwayNode):
             self._stepper.request(self._set_tolerance)
 
     def _set_tolerance(self) -> None:
-        tolerance = self.values["tolerance"]
-        if self._camera is not None:
-            pixels, focal_length = self.values["tolerance_pixels"], self.values["focal_length"]
-            distance = distance_to(self.tree, self._camera)
-            tolerance = tolerance_in_metres(pixels, distance, focal_length)
-        self.simulator.tolerance = tolerance
+        for simulator in simulators_of(self.simulator):
+            simulator.tolerance = self.values["tolerance"]
+            if self._camera is not None:
+                pixels, focal_length = self.values["tolerance_pixels"], self.values["focal_length"]
+                distance = distance_to(simulator.tree, self._camera)
+                simulator.tolerance = tolerance_in_metres(pixels, distance, focal_length)
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:

@@ -146,7 +146,7 @@ WIND: Table = (
 )
 
 SOLVER: Table = (
-    Parameter("tree", "benjamina", "Built-in name or file."),
+    Parameter("tree", "benjamina", "Built-in name, or file of a tree or a forest."),
     Parameter("species", "", "Key of the wood; empty for the tree's own."),
     Parameter("rate", 60.0, "Steps a second.", "Hz", 1.0, 1000.0),
     Parameter(
@@ -195,7 +195,7 @@ SOLVER: Table = (
         choices=REAL_TIME,
         source="doc/choosing_a_method.md",
     ),
-    Parameter("leaf_on", False, "Leaves, with their mass, drag and damping."),
+    Parameter("leaf_on", False, "Leaves, with their mass, drag and damping; in a forest, of trees that do not say."),
     Parameter(
         "leaf_clusters",
         1000,

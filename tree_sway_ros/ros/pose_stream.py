@@ -9,6 +9,7 @@ from typing import Any
 from rclpy.clock import Clock, ClockType
 from std_msgs.msg import String
 
+from tree_sway_ros.core.leaves import LeafClusters
 from tree_sway_ros.core.tree import Tree
 from tree_sway_ros.errors import MissingDependencyError
 from tree_sway_ros.ros.cdr import pose_array_template
@@ -21,7 +22,7 @@ from tree_sway_ros.ros.wind_messages import fill_stamp
 
 class PoseStream:
     """
-    Publishes one tree; what nobody subscribes to is not computed.
+    Publishes one tree, or a forest as one; what nobody subscribes to is not computed.
 
     Parameters
     ----------
@@ -29,10 +30,12 @@ class PoseStream:
         A `TreeSwayNode` with the solver's parameters.
     tree
         The tree.
+    leaves
+        Clusters of leaves that the description tells of; none if None.
 
     """
 
-    def __init__(self, node: Any, tree: Tree) -> None:
+    def __init__(self, node: Any, tree: Tree, leaves: LeafClusters | None = None) -> None:
         values = node.values
         frame_id = values["frame_id"]
         self.frames = 0
@@ -46,8 +49,7 @@ class PoseStream:
             self._markers = TreeMarkers(tree, frame_id, values["marker_classes"])
             self._marker_publisher = node.publisher(MARKERS)
         self._transforms = _Transforms(node, tree, frame_id) if values["publish_tf"] else None
-        leaf_clusters = values["leaf_clusters"] if values["leaf_on"] else 0
-        self._description = String(data=describe(tree, frame_id, leaf_clusters))
+        self._description = String(data=describe(tree, frame_id, leaves))
         self._description_publisher = node.publisher(TREE_DESCRIPTION)
         self._timer = node.create_timer(
             REPEAT_PERIOD, self.publish_description, clock=Clock(clock_type=ClockType.STEADY_TIME)

@@ -6,6 +6,7 @@ import time
 from dataclasses import asdict
 from typing import Any
 
+from tree_sway_ros.core.simulators import simulators_of
 from tree_sway_ros.ros.diagnostics import OK, STALE, WARN, Status
 from tree_sway_ros.ros.pacer import Pace, Pacer
 from tree_sway_ros.ros.stepping import Stepper
@@ -78,11 +79,16 @@ def _model(simulator: Any) -> Status:
         "branches copied": simulator.n_copied,
         **asdict(simulator.counts),
     }
-    choice = getattr(simulator, "choice", None)
-    if choice is not None:
-        values["chosen"] = choice.name
-        values["estimated error [m]"] = choice.error
-        values["tolerance [m]"] = simulator.tolerance
-        if choice.error > simulator.tolerance:
-            return Status("model", WARN, f"no model is within the tolerance; {choice.name}", values)
+    trees = simulators_of(simulator)
+    if trees != (simulator,):
+        values |= {f"fidelity of {each.tree.name}": each.rung for each in trees}
+    adaptive = [each for each in trees if hasattr(each, "choice")]
+    if adaptive:
+        worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
+        values["chosen"] = ", ".join(dict.fromkeys(each.choice.name for each in adaptive))
+        values["estimated error [m]"] = worst.choice.error
+        values["tolerance [m]"] = worst.tolerance
+        if worst.choice.error > worst.tolerance:
+            what = f"no model is within the tolerance; {worst.choice.name}"
+            return Status("model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values)
     return Status("model", OK, simulator.rung, values)

@@ -11,10 +11,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-import numpy as np
-
 from tree_sway_ros.core.leaf_flutter import leaf_list
-from tree_sway_ros.core.leaves import leaf_clusters as leaf_clusters_of
+from tree_sway_ros.core.leaves import LeafClusters
 from tree_sway_ros.core.tree import Tree
 
 VERSION = 1
@@ -62,27 +60,23 @@ SCHEMA: dict[str, Any] = {
 }
 
 
-def describe(tree: Tree, frame_id: str, leaf_clusters: int = 0) -> str:
+def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
     """
     Describe a tree as JSON of `SCHEMA`.
 
     Parameters
     ----------
     tree
-        The tree.
+        The tree, or trees joined to one record: each begins with a segment whose parent is -1.
     frame_id
         Frame of the poses.
-    leaf_clusters
-        How many clusters of leaves to place on it, always the same ones; none if 0.
+    leaves
+        Its clusters of leaves; left out if None.
 
     """
-    leaves = {}
-    if leaf_clusters > 0:
-        clusters = leaf_clusters_of(tree, np.random.default_rng(0), count=leaf_clusters)
-        leaves = {"leaves": leaf_list(clusters)}
     return json.dumps(
         {
-            **leaves,
+            **({} if leaves is None else {"leaves": leaf_list(leaves)}),
             "version": VERSION,
             "name": tree.name,
             "species": tree.species,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import argparse
 
 from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.importers.tree_source import open_scene
 from tree_sway_ros.ros.composition import Composition
 from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters import Value
@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tree",
         default="benjamina",
-        help="benjamina, goldcrest, broadleaf, or a file (%(default)s)",
+        help="benjamina, goldcrest, broadleaf, or a file of a tree or a forest (%(default)s)",
     )
     parser.add_argument("--wind", metavar="FILE", help="a wind record to play; simulated if left out")
     parser.add_argument(
@@ -39,12 +39,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=fidelity.default,
         help="model of the sway (%(default)s)",
     )
+    parser.add_argument("--leaves", action="store_true", help="in leaf: the solver's leaf_on")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
-    tree = open_tree(arguments.tree).tree
+    tree = open_scene(arguments.tree).tree
     print(f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)", flush=True)
     try:
         with interrupted_once(), Composition(_nodes(arguments)) as nodes:
@@ -65,12 +66,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def size_of(tree: Tree) -> str:
-    """Number of branches and segments, and height, for people."""
-    return f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
+    """Number of branches and segments, of trees if there are more, and height, for people."""
+    n_trees = int((tree.branch_parent < 0).sum())
+    trees = f"{n_trees} trees, " if n_trees > 1 else ""
+    return f"{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
 
 
 def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
-    solver = {"tree": arguments.tree, "rate": arguments.rate, "fidelity": arguments.fidelity}
+    solver: dict[str, Value] = {"tree": arguments.tree, "rate": arguments.rate, "fidelity": arguments.fidelity}
+    solver["leaf_on"] = arguments.leaves
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
     return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}
