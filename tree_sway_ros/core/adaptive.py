@@ -1,8 +1,8 @@
 """
 A tree that uses no more model than its scene needs, and changes models unseen.
 
-The error of every rung in the wind of the last minute is known beforehand (`fidelity`); the cheapest that stays within the
-tolerance is used. When wind or camera ask for another, the new one first sways along unseen until it has
+The error and the cost of every rung in the wind of the last minute are known beforehand (`fidelity_ladder`); the cheapest that
+stays within the tolerance is used, or, where none that can be afforded does, the most accurate of those. When wind or camera ask for another, the new one first sways along unseen until it has
 forgotten that it started at rest, then the picture goes over to it within a second: every pose is a mix of two that agree but for
 the tolerance. A rung is left upwards as soon as it must be, downwards only when a lesser one would do with a third to
 spare, so that a wind on the border does not flicker.
@@ -11,19 +11,20 @@ spare, so that a wind on the border does not flicker.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.fidelity import Estimate, FidelityLadder, choose
+from tree_sway_ros.core.fidelity import Estimate, choose
+from tree_sway_ros.core.fidelity_ladder import FidelityLadder
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulator import Counts, SwaySimulator
 from tree_sway_ros.core.species import Species, species_named
 from tree_sway_ros.core.tree import Floats, Tree
 from tree_sway_ros.core.wind_climate import ClimateTracker, WindClimate
-from tree_sway_ros.errors import ParameterError
 
 RUN_IN = 10.0
 """How long a new model sways unseen in [s]."""
@@ -47,6 +48,8 @@ class AdaptiveSimulator:
         As for `SwaySimulator`; the rung of the settings does not matter.
     tolerance
         Largest error of the tips in [m], root mean square over time and tips.
+    budget
+        Largest cost of a step and a placing in [us]; 0 for none.
     expected
         The wind to start for; a fresh breeze of 8 m/s if None.
 
@@ -59,6 +62,7 @@ class AdaptiveSimulator:
         settings: SimulatorSettings | None = None,
         *,
         tolerance: float = 0.005,
+        budget: float = 0.0,
         expected: WindClimate | None = None,
     ) -> None:
         """Judge all rungs once, and start on the one that the expected wind asks for."""
@@ -66,11 +70,13 @@ class AdaptiveSimulator:
         self.species = species if species is not None else species_named(tree.species)
         self.settings = settings or SimulatorSettings()
         self.ladder = FidelityLadder(tree, self.species, self.settings)
-        self.tolerance = tolerance
+        self.tolerance, self.budget = tolerance, budget
+        self.pace = 1.0
+        """Cost here over the cost that the ladder says: set it once it is measured."""
         self._tracker = ClimateTracker()
-        self._built: dict[tuple[str, int], SwaySimulator] = {}
+        self._built: dict[str, SwaySimulator] = {}
         self.choice = self._choose(expected or WindClimate.steady(8.0, 0.2))
-        for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
+        for estimate in self._estimates(WindClimate.steady(0.0, 0.0)):
             self._simulator(estimate)  # now, for a change must not hold up the stream
         self._shown = self._simulator(self.choice)
         self._next: SwaySimulator | None = None
@@ -92,6 +98,11 @@ class AdaptiveSimulator:
     def n_copied(self) -> int:
         """Branches that copy the motion of another in the model in use."""
         return self._shown.n_copied
+
+    @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body in the model in use."""
+        return self._shown.n_frozen
 
     @property
     def counts(self) -> Counts:
@@ -152,29 +163,40 @@ class AdaptiveSimulator:
         self._shown.reset()
         self._next = None
 
+    def _estimates(self, climate: WindClimate) -> list[Estimate]:
+        """Judge every rung, with its cost on this machine."""
+        found = self.ladder.estimates(climate)
+        return [replace(each, cost=self.pace * each.cost) for each in found]
+
     def _choose(self, climate: WindClimate, current: Estimate | None = None) -> Estimate:
-        estimates = self.ladder.estimates(climate)
-        try:
-            wanted = choose(estimates, tolerance=self.tolerance)
-            if current is not None and wanted.cost < current.cost:
-                careful = choose(estimates, tolerance=_SPARE * self.tolerance)
-                same = next(e for e in estimates if e.name == current.name)
-                wanted = careful if careful.cost < same.cost else same
-        except ParameterError:
-            wanted = choose(estimates)
+        estimates = self._estimates(climate)
+        affordable = [e for e in estimates if e.cost <= self.budget or self.budget == 0.0]
+        affordable = affordable or estimates[:1]
+        same = next((e for e in affordable if current and e.name == current.name), None)
+        wanted = _least(affordable, self.tolerance)
+        if wanted is None:
+            wanted = choose(affordable)
+            return same if same is not None and _SPARE * same.error < wanted.error else wanted
+        if same is not None and wanted.cost < same.cost:
+            careful = _least(affordable, _SPARE * self.tolerance)
+            return careful if careful is not None and careful.cost < same.cost else same
         return wanted
 
     def _simulator(self, wanted: Estimate) -> SwaySimulator:
-        key = wanted.rung, wanted.n_modes
-        if key not in self._built:
+        if wanted.name not in self._built:
             model = replace(self.settings, rung=wanted.rung, n_modes=max(wanted.n_modes, 1))
-            self._built[key] = SwaySimulator(
-                self.tree, self.species, model, calibrated=self.ladder.calibrated
-            )
-            self._built[key].step((0.0, 0.0, 0.0), 1.0 / 60.0)
-            self._built[key].reset()
-            self._built[key].counts.steps = 0
-        return self._built[key]
+            calibrated = self.ladder.calibrated(wanted)
+            sim = SwaySimulator(self.tree, self.species, model, calibrated=calibrated)
+            sim.step((0.0, 0.0, 0.0), 1.0 / 60.0)
+            sim.reset()
+            sim.counts.steps = 0
+            self._built[wanted.name] = sim
+        return self._built[wanted.name]
+
+
+def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
+    """Find the cheapest within a tolerance, if there is one."""
+    return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)
 
 
 @fused

@@ -21,6 +21,7 @@ from tree_sway_ros.core.modes import Modes, most_driven, natural_modes, refuse_b
 from tree_sway_ros.core.placing_records import fill_branch_geometry, segment_records
 from tree_sway_ros.core.reduction import Reduction, reduce_tree
 from tree_sway_ros.core.response import Responding
+from tree_sway_ros.core.rigid_placing import RigidParts
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.tree import Floats, Tree
@@ -98,6 +99,8 @@ class Bank:
         Branches that are solved and do not copy.
     mass
         Of wood and leaves in [kg].
+    frozen
+        What moves with its parent as one body, and how many branches that is.
 
     """
 
@@ -107,6 +110,8 @@ class Bank:
     frequencies: Floats
     n_solved: int
     mass: float
+    frozen: RigidParts | None = None
+    n_frozen: int = 0
 
 
 def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Bank:
@@ -118,13 +123,14 @@ def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Ban
 
 
 @dataclass(frozen=True)
-class _Layer:
+class Layer:
     """A tree reduced in one of the three ways that rungs differ in."""
 
     models: list[BranchModel]
     reduction: Reduction
     branches: Any
     segments: Any
+    mass: float
 
 
 class CalibratedTree:
@@ -170,12 +176,11 @@ class CalibratedTree:
             More modes than there are.
 
         """
-        layer = self._coupled if rung in ("modes", "coupled") else self._carried
-        layer = self._alone if rung == "branch" else layer
+        layer = self.layer(rung)
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if rung == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
-        elif layer is self._coupled:
+        elif layer is self.coupled:
             modes = self._modes(rung, n_modes)
             oscillators = ModalBank(
                 branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
@@ -189,22 +194,30 @@ class CalibratedTree:
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
         solved = int((branches["source"] == np.arange(len(branches))).sum())
-        mass = float(sum(model.beam.integral(model.mass) for model in layer.models))
-        return Bank(oscillators, branches, layer.segments.copy(), frequencies, solved, mass)
+        return Bank(oscillators, branches, layer.segments.copy(), frequencies, solved, layer.mass)
+
+    def layer(self, rung: str) -> Layer:
+        """Reduction that a rung starts from."""
+        if rung == "branch":
+            return self.alone
+        return self.coupled if rung in ("modes", "coupled") else self.carried
 
     @cached_property
-    def _alone(self) -> _Layer:
-        return self._layer(carries=False, enriched=frozenset())
+    def alone(self) -> Layer:
+        """Every branch on its own."""
+        return self._reduced(carries=False, enriched=frozenset())
 
     @cached_property
-    def _carried(self) -> _Layer:
-        return self._layer(carries=True, enriched=frozenset())
+    def carried(self) -> Layer:
+        """Branches that carry their children, one shape each."""
+        return self._reduced(carries=True, enriched=frozenset())
 
     @cached_property
-    def _coupled(self) -> _Layer:
-        return self._layer(carries=True, enriched=_enriched(self.tree, self.settings.enrich))
+    def coupled(self) -> Layer:
+        """Branches that carry their children, those of the enriched ones with further shapes."""
+        return self._reduced(carries=True, enriched=_enriched(self.tree, self.settings.enrich))
 
-    def _layer(self, *, carries: bool, enriched: frozenset[int]) -> _Layer:
+    def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
         tree, species, settings = self.tree, self.species, self.settings
         speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
         models = branch_models(
@@ -224,11 +237,17 @@ class CalibratedTree:
         branches = np.zeros(tree.n_branches, dtype=layout)
         fill_branch_geometry(tree, models, branches)
         fill_branch_loads(tree, models, reduction, speed, branches)
-        return _Layer(models, reduction, branches, segment_records(tree, models))
+        return Layer(
+            models,
+            reduction,
+            branches,
+            segment_records(tree, models),
+            float(sum(model.beam.integral(model.mass) for model in models)),
+        )
 
     def _modes(self, rung: str, count: int | None) -> Modes:
         """All modes, or those of the slowest that the wind drives most."""
-        reduction = self._coupled.reduction
+        reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
         is_driven = rung == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
@@ -239,9 +258,9 @@ class CalibratedTree:
         modes = self._slowest.slowest(wanted)
         if not is_driven:
             return modes
-        return most_driven(modes, even_wind_moments(self._coupled.branches, n), n_modes)
+        return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
 
-    def _uncoupled(self, layer: _Layer, branches: Any, *, carries: bool) -> UncoupledBank:
+    def _uncoupled(self, layer: Layer, branches: Any, *, carries: bool) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
         tree, settings = self.tree, self.settings
         inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)

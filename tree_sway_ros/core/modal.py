@@ -114,8 +114,8 @@ class ModalBank:
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
         eta = dynamic - (self._held.T @ moments)[:, :, None]
         rest = self._flexibility[:, None, None] * moments[:, :, None]
-        swinging: NDArray[np.complex128] = np.tensordot(self.shapes, eta, axes=(1, 0)) + rest
-        return swinging
+        swinging = np.tensordot(self.shapes, eta, axes=(1, 0)) + rest
+        return np.asarray(swinging, dtype=np.complex128)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""

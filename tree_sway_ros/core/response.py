@@ -30,9 +30,9 @@ class Responding(Protocol):
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
 
 
-def tip_response(oscillators: Responding, n_coordinates: int, frequencies: Floats) -> Complexes:
+def key_response(oscillators: Responding, n_coordinates: int, frequencies: Floats) -> Complexes:
     """
-    Motion of every tip under an even wind load of 1 N/m^2 drag pressure that swings.
+    Key rotations under an even wind load of 1 N/m^2 drag pressure that swings.
 
     Parameters
     ----------
@@ -46,13 +46,17 @@ def tip_response(oscillators: Responding, n_coordinates: int, frequencies: Float
     Returns
     -------
     Complexes
-        Displacement of the tips per unit of load along x and along y, (b, 3, 2, f), in [m^3/N].
+        Per unit of load along x and along y, (N, 2, f), in [m^2/N].
 
     """
     branches = oscillators.branches
     moments = even_wind_moments(branches, n_coordinates, carries=oscillators.carries)
-    rotations = oscillators.response(moments, 2.0 * np.pi * np.asarray(frequencies))
-    return tip_motion(branches, rotations)
+    return oscillators.response(moments, 2.0 * np.pi * np.asarray(frequencies))
+
+
+def tip_response(oscillators: Responding, n_coordinates: int, frequencies: Floats) -> Complexes:
+    """Displacement of every tip under that load, (b, 3, 2, f), in [m^3/N]; arguments as of `key_response`."""
+    return tip_motion(oscillators.branches, key_response(oscillators, n_coordinates, frequencies))
 
 
 def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
@@ -72,21 +76,33 @@ def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
         Displacement of the tip of each branch, (b, 3, ...).
 
     """
-    trailing = rotations.shape[1:]
-    base = np.zeros((len(branches), 6, *trailing), dtype=rotations.dtype)
-    tips = np.zeros((len(branches), 3, *trailing), dtype=rotations.dtype)
+    base = base_motion(branches, rotations)
+    tips = carried_to(base, branches["tip"])
+    for tip, branch in zip(tips, branches, strict=True):
+        k = int(branch["n_coordinates"])
+        own = rotations[branch["coordinate"] : branch["coordinate"] + k]
+        tip += np.tensordot(branch["reach"][:k], own, axes=(0, 0))
+    return tips
+
+
+def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
+    """Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6, ...)."""
+    base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     for b, branch in enumerate(branches):
         if branch["parent"] >= 0:
             parent = branches[branch["parent"]]
             k = int(parent["n_coordinates"])
             ways = rotations[parent["coordinate"] : parent["coordinate"] + k]
             base[b] = base[branch["parent"]] + np.tensordot(branch["twist"][:k], ways, axes=(0, 0))
-        k = int(branch["n_coordinates"])
-        own = rotations[branch["coordinate"] : branch["coordinate"] + k]
-        x, y, z = branch["tip"]
-        vx, vy, vz, wx, wy, wz = base[b]
-        tips[b] = np.tensordot(branch["reach"][:k], own, axes=(0, 0))
-        tips[b, 0] += vx + wy * z - wz * y
-        tips[b, 1] += vy + wz * x - wx * z
-        tips[b, 2] += vz + wx * y - wy * x
-    return tips
+    return base
+
+
+def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
+    """Displacement of points (p, 3) that ride on bodies moving by (v, w) about the root, (p, 6, ...), (p, 3, ...)."""
+    x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
+    wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]
+    moved = motion[:, :3].copy()
+    moved[:, 0] += wy * z - wz * y
+    moved[:, 1] += wz * x - wx * z
+    moved[:, 2] += wx * y - wy * x
+    return moved

@@ -71,7 +71,7 @@ class SegmentsSimulator:
             wind_factor=settings.profile.over_anemometer(middle),
         )
         self.wind = np.zeros(3)
-        self.n_solved, self.n_copied = tree.n_branches, 0
+        self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0
         self._poses = np.zeros((tree.n_segments, 7))
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
         self.place()

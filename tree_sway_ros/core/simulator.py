@@ -119,7 +119,12 @@ class SwaySimulator:
     @property
     def n_copied(self) -> int:
         """Branches that copy the motion of another."""
-        return self.tree.n_branches - self._bank.n_solved
+        return self.tree.n_branches - self._bank.n_solved - self._bank.n_frozen
+
+    @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body."""
+        return self._bank.n_frozen
 
     @property
     def wind(self) -> Floats:
@@ -198,15 +203,11 @@ class SwaySimulator:
 
         """
         poses = self._poses if out is None else out
-        bank = self._bank
-        place(
-            bank.branches,
-            bank.segments,
-            bank.oscillators.work,
-            bank.oscillators.rotations(),
-            self._origin,
-            poses,
-        )
+        bank, work = self._bank, self._bank.oscillators.work
+        rotations = bank.oscillators.rotations()
+        place(bank.branches, bank.segments, work, rotations, self._origin, poses)
+        if bank.frozen is not None:
+            bank.frozen.place(bank.branches, work, rotations, poses)
         if out is not None:
             self._poses[self._highest] = out[self._highest]
         return poses

@@ -45,6 +45,10 @@ class Simulator(Protocol):
         """Branches that copy the motion of another."""
 
     @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body."""
+
+    @property
     def tip_displacement(self) -> Floats:
         """Way of the highest tip from rest in [m], (3,)."""
 
@@ -65,6 +69,7 @@ def make_simulator(
     *,
     fidelity: str = "auto",
     tolerance: float = 0.005,
+    budget: float = 0.0,
     **changes: Any,
 ) -> Simulator:
     """
@@ -78,6 +83,8 @@ def make_simulator(
         One of `FIDELITIES`.
     tolerance
         Largest error of the tips in [m] that ``auto`` may allow itself.
+    budget
+        Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the tolerance; 0 for none.
     **changes
         Fields of the settings.
 
@@ -95,7 +102,7 @@ def make_simulator(
         )
     model = replace(settings or SimulatorSettings(), **changes)
     if fidelity == "auto":
-        return AdaptiveSimulator(tree, species, model, tolerance=tolerance)
+        return AdaptiveSimulator(tree, species, model, tolerance=tolerance, budget=budget)
     if fidelity == "segments":
         return SegmentsSimulator(tree, species, model)
     return SwaySimulator(tree, species, replace(model, rung=fidelity))
