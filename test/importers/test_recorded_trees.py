@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
+from tree_sway_ros.core.banks import build_bank
+from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.importers.tree_export import write_tree
 from tree_sway_ros.importers.tree_file import read_tree
 
@@ -107,6 +109,16 @@ def test_walnut():
     fine = [row for row in cells if re.search(r"[SU]\d+", "".join(row[:10])) and "".join(row[15:18])]
     assert tree.n_segments + merged == len(fine)
     assert tree.base_diameter[0] == pytest.approx(0.270)
+
+
+def test_the_walnut_sways_as_walnuts_do():
+    """f1 within 1.2 to 1.9 Hz, and 20 modes or more below 2.9 Hz, with the walnut wood of the table."""
+    tree_file = read_tree(TREES / "walnut.mtg", species="walnut")
+    settings = SimulatorSettings(rung="modes", n_modes=20, mode_choice="slowest")
+    slowest = build_bank(tree_file.tree, tree_file.species, settings).frequencies
+    assert 1.2 <= slowest[0] <= 1.9
+    assert len(slowest) == 20
+    assert slowest[-1] < 2.9
 
 
 @pytest.mark.parametrize("name", ["walnut.mtg", "qsm_treeqsm_v5.mat"])
