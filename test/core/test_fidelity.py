@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from tree_sway_ros.core.fidelity import Estimate, choose, distance_to, tolerance_in_metres
@@ -49,7 +50,7 @@ def test_the_distance_is_to_what_is_nearest(fork):
     top = tree.end[tree.branch_first[1:] - 1]
     assert distance_to(tree, tree.start[0]) == 0.01
     highest = top[top[:, 2].argmax()]
-    assert distance_to(tree, highest + (0.0, 0.0, 7.0)) == pytest.approx(7.0)
+    assert distance_to(tree, highest + np.array([0.0, 0.0, 7.0])) == pytest.approx(7.0)
 
 
 def test_a_model_is_named_as_people_say_it():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -37,7 +39,7 @@ def test_sets_are_nested_from_none_to_all_but_the_stem(sets):
     assert counts[-1] == 39
     assert counts == sorted(counts)
     assert len(set(counts)) >= 4
-    for less, more in zip(sets, sets[1:], strict=False):
+    for less, more in pairwise(sets):
         assert not np.any(less & ~more)
 
 

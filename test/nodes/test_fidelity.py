@@ -45,7 +45,20 @@ def test_a_tolerance_nobody_can_meet_is_told(compose, observer, statuses, tree_f
     compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 1e-6})
     observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
     assert statuses("solver: model").level[0] == WARN
-    assert "no model is within the tolerance" in statuses("solver: model").message
+    assert "no model is within the tolerance; allow" in statuses("solver: model").message
+
+
+def test_a_budget_is_told_and_kept_where_it_can_be(compose, observer, statuses, tree_file):
+    compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 1e-6, "budget": 0.5})
+    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
+    status = statuses("solver: model")
+    assert status.level[0] == WARN
+    assert "no model is within the budget; allow" in status.message
+    values = told(status)
+    assert float(values["budget [us]"]) == 0.5
+    assert float(values["estimated cost [us]"]) > 0.5
+    assert values["fidelity"] == "frozen"
+    assert int(values["branches frozen"]) > 0
 
 
 def test_leaves_are_told_once_and_never_by_the_frame(compose, observer, tree_file):

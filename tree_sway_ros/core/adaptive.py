@@ -73,10 +73,11 @@ class AdaptiveSimulator:
         self.tolerance, self.budget = tolerance, budget
         self.pace = 1.0
         """Cost here over the cost that the ladder says: set it once it is measured."""
+        self._expected = expected or WindClimate.steady(8.0, 0.2)
         self._tracker = ClimateTracker()
         self._built: dict[str, SwaySimulator] = {}
-        self.choice = self._choose(expected or WindClimate.steady(8.0, 0.2))
-        for estimate in self._estimates(WindClimate.steady(0.0, 0.0)):
+        self.choice = self._choose(self._expected)
+        for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
             self._simulator(estimate)  # now, for a change must not hold up the stream
         self._shown = self._simulator(self.choice)
         self._next: SwaySimulator | None = None
@@ -103,6 +104,11 @@ class AdaptiveSimulator:
     def n_frozen(self) -> int:
         """Branches that move with their parent as one body in the model in use."""
         return self._shown.n_frozen
+
+    @property
+    def frame_cost(self) -> float:
+        """What a step and a placing of the chosen model take on this machine in [us]."""
+        return self.pace * self.choice.cost
 
     @property
     def counts(self) -> Counts:
@@ -159,19 +165,17 @@ class AdaptiveSimulator:
         return poses
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Go back to rest and to the wind that was expected, at once on the model that it asks for."""
+        self._tracker = ClimateTracker()
+        self.choice = self._choose(self._expected)
+        self._shown, self._next = self._simulator(self.choice), None
         self._shown.reset()
-        self._next = None
-
-    def _estimates(self, climate: WindClimate) -> list[Estimate]:
-        """Judge every rung, with its cost on this machine."""
-        found = self.ladder.estimates(climate)
-        return [replace(each, cost=self.pace * each.cost) for each in found]
+        self._since_review = 0.0
 
     def _choose(self, climate: WindClimate, current: Estimate | None = None) -> Estimate:
-        estimates = self._estimates(climate)
-        affordable = [e for e in estimates if e.cost <= self.budget or self.budget == 0.0]
-        affordable = affordable or estimates[:1]
+        estimates = self.ladder.estimates(climate)
+        affordable = [e for e in estimates if self.pace * e.cost <= self.budget]
+        affordable = (affordable or estimates[:1]) if self.budget > 0.0 else estimates
         same = next((e for e in affordable if current and e.name == current.name), None)
         wanted = _least(affordable, self.tolerance)
         if wanted is None:

@@ -126,6 +126,11 @@ class Forest:
         return sum(sim.n_copied for sim in self.simulators)
 
     @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body."""
+        return sum(sim.n_frozen for sim in self.simulators)
+
+    @property
     def counts(self) -> Counts:
         """What was refused at the anemometer, and held in any tree."""
         held = sum(sim.counts.held for sim in self.simulators)

@@ -6,7 +6,7 @@ from typing import Any
 
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway_ros.core.fidelity import distance_to, tolerance_in_metres
+from tree_sway_ros.core.scene_demand import tell_demand, tell_pace
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulators import simulators_of
 from tree_sway_ros.core.species import species_named
@@ -42,7 +42,7 @@ class SolverNode(TreeSwayNode):
             source = source.of_species(species_named(self.values["species"]))
         settings = SimulatorSettings(
             n_modes=self.values["modes"] or None,
-            **self.values("stiffness", "integrator"),
+            **self.values("stiffness", "integrator", "gravity"),
             damping_ratio=self.values["damping_ratio"] or None,
             profile=WindProfile(
                 self.values["profile"],
@@ -57,7 +57,9 @@ class SolverNode(TreeSwayNode):
         self._camera: Any = None
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
-        self._stepper.warm_up()
+        tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
+        self._tell_demand()
+        self.simulator.reset()  # on the model that is asked for
         # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
         self._gate = WindGate(max_speed=150.0, max_rate=1e4)
         self._sway_report = SwayReport()
@@ -90,17 +92,13 @@ class SolverNode(TreeSwayNode):
         self.on_change({})
 
     def on_change(self, values: dict[str, Any]) -> None:
-        """Take a new tolerance before the next step."""
+        """Take a new tolerance or budget before the next step."""
         if self.values["fidelity"] == "auto":
-            self._stepper.request(self._set_tolerance)
+            self._stepper.request(self._tell_demand)
 
-    def _set_tolerance(self) -> None:
-        for simulator in simulators_of(self.simulator):
-            simulator.tolerance = self.values["tolerance"]
-            if self._camera is not None:
-                pixels, focal_length = self.values["tolerance_pixels"], self.values["focal_length"]
-                distance = distance_to(simulator.tree, self._camera)
-                simulator.tolerance = tolerance_in_metres(pixels, distance, focal_length)
+    def _tell_demand(self) -> None:
+        wanted = self.values("tolerance", "tolerance_pixels", "focal_length", "budget")
+        tell_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:

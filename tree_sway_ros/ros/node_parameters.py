@@ -155,7 +155,7 @@ SOLVER: Table = (
     Parameter(
         "fidelity",
         "modes",
-        "Model of the sway, from the least to the most; `auto` takes the least within the tolerance.",
+        "Model of the sway, from the least to the most; `auto` takes the least within tolerance and budget.",
         choices=FIDELITIES,
         source="`branch` is the paper's, `segments` its predecessors'",
     ),
@@ -178,6 +178,15 @@ SOLVER: Table = (
         "px",
         0.01,
         100.0,
+        live=True,
+    ),
+    Parameter(
+        "budget",
+        0.0,
+        "Longest time that `auto` lets a frame take, before any tolerance; 0 for no limit.",
+        "us",
+        0.0,
+        1e6,
         live=True,
     ),
     Parameter("focal_length", 1000.0, "Of that camera.", "px", 1.0, 100_000.0, live=True),
@@ -226,6 +235,14 @@ SOLVER: Table = (
     ),
     Parameter(
         "roughness", _MODEL.profile.roughness, "Roughness length of the log law.", "m", 1e-5, 5.0
+    ),
+    Parameter(
+        "gravity",
+        _MODEL.gravity,
+        "Its weight softens a tree; 0 leaves it out, for a scan too noisy to stand.",
+        "m/s^2",
+        0.0,
+        30.0,
     ),
     Parameter("damping_ratio", 0.0, "Of every branch; 0 for the species' own.", "", 0.0, 1.0),
     Parameter(

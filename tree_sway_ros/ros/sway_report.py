@@ -77,6 +77,7 @@ def _model(simulator: Any) -> Status:
         "fidelity": simulator.rung,
         "branches solved": simulator.n_solved,
         "branches copied": simulator.n_copied,
+        "branches frozen": simulator.n_frozen,
         **asdict(simulator.counts),
     }
     trees = simulators_of(simulator)
@@ -88,7 +89,14 @@ def _model(simulator: Any) -> Status:
         values["chosen"] = ", ".join(dict.fromkeys(each.choice.name for each in adaptive))
         values["estimated error [m]"] = worst.choice.error
         values["tolerance [m]"] = worst.tolerance
+        cost, budget = sum(each.frame_cost for each in adaptive), sum(each.budget for each in adaptive)
+        values["estimated cost [us]"] = cost
+        values["budget [us]"] = budget
+        if 0.0 < budget < cost:
+            what = f"no model is within the budget; allow {cost:.3g} us for {values['chosen']}"
+            return Status("model", WARN, what, values)
         if worst.choice.error > worst.tolerance:
-            what = f"no model is within the tolerance; {worst.choice.name}"
+            nearest = f"allow {worst.choice.error:.2g} m for {worst.choice.name}"
+            what = f"no model is within the tolerance; {nearest}"
             return Status("model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values)
     return Status("model", OK, simulator.rung, values)
