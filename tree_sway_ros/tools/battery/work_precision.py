@@ -141,11 +141,12 @@ def measure(rates: tuple[int, ...] = RATES, methods: tuple[str, ...] = tuple(MET
             cost = flops_a_step(method, chain, blowing["smooth"], 60)
             for rate in rates:
                 for name, wind in blowing.items():
-                    theta = integrate(method, chain, loads_for(method, wind, name, rate), 1 / rate,
-                                      first=wind(np.zeros(1))[0]).theta
-                    error = theta - truth[name][:: fine // rate]
+                    run = integrate(method, chain, loads_for(method, wind, name, rate), 1 / rate,
+                                    first=wind(np.zeros(1))[0])
+                    error = run.theta - truth[name][:: fine // rate]
                     rms = float(np.sqrt(np.mean(error**2)))
-                    gone = not rms < float(np.std(truth[name]))  # worse than standing still
+                    # worse than standing still, or standing still where it could not go on
+                    gone = run.failed > 0.01 * len(error) or not rms < float(np.std(truth[name]))
                     points.append(Point(key, method.form, system, name, rate,
                                         np.nan if gone else rms, cost, wall))
     return points

@@ -34,8 +34,12 @@ def test_a_good_guess_is_worth_iterations():
 
 
 @pytest.mark.parametrize("name", ["implicit_midpoint", "tr_bdf2", "bdf2"])
-def test_what_cannot_be_solved_is_told(name):
+def test_what_cannot_be_solved_is_told_and_leaves_the_state(name):
     method = method_named(name)
-    state = method.start(CHAIN, np.zeros(3), np.zeros(3), LOAD, 0.01)
+    state = method.start(CHAIN, np.full(3, 0.1), np.zeros(3), LOAD, 0.01)
+    before, options = state.copy(), method.options(CHAIN, 0.01)
     loads = np.full((len(method.nodes), 3, 2), np.nan)
-    assert type(method).kernel(CHAIN.table, state, loads, 0.01, method.options(CHAIN, 0.01)) == -1
+    assert type(method).kernel(CHAIN.table, state, loads, 0.01, options) == -1
+    np.testing.assert_array_equal(state, before)
+    loads[:] = LOAD
+    assert type(method).kernel(CHAIN.table, state, loads, 0.01, options) > 0

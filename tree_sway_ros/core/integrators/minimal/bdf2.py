@@ -20,6 +20,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     base = (state[0] * 4.0 - state[2]) * (1.0 / 3.0)
     base_rate = (state[1] * 4.0 - state[3]) * (1.0 / 3.0)
     iterations = solve_stage(table, base, base_rate, load[0], dt * (2.0 / 3.0), theta, omega)
+    if iterations < 0:  # a failed step leaves the state as it was
+        return iterations
     state[2, :] = state[0]
     state[3, :] = state[1]
     state[0, :] = theta

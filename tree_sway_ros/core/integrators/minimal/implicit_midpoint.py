@@ -18,6 +18,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     """Half a step implicitly, half a step on."""
     theta, omega = state[0].copy(), state[1].copy()
     iterations = solve_stage(table, state[0], state[1], load[0], 0.5 * dt, theta, omega)
+    if iterations < 0:  # a failed step leaves the state as it was
+        return iterations
     for i in range(len(theta)):
         state[0, i] = theta[i] + theta[i] - state[0, i]
         state[1, i] = omega[i] + omega[i] - state[1, i]

@@ -29,11 +29,15 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     first = solve_stage(
         table, state[0] + state[1] * h, state[1] + accel * h, load[1], h, theta, omega
     )
+    if first < 0:  # a failed step leaves the state as it was
+        return first
     base, base_rate = theta * MIDDLE - state[0] * OLD, omega * MIDDLE - state[1] * OLD
     second = solve_stage(table, base, base_rate, load[2], h, theta, omega)
+    if second < 0:
+        return second
     state[0, :] = theta
     state[1, :] = omega
-    return first + second if first > 0 and second > 0 else -1
+    return first + second
 
 
 class TrBdf2(MinimalMethod):
