@@ -55,6 +55,7 @@ extras = {
     "gltf": ["trimesh>=4.0"],
     "h5": ["h5py>=3.7"],
     "mujoco": ["mujoco>=3.2"],
+    "sundials": ["scikit-sundae>=1.0"],
     # colcon runs pytest only where an extra of this name asks for it.
     "test": ["pytest>=7,<9", "pytest-xdist>=3", "hypothesis>=6.60", "mpmath>=1.2", "jsonschema>=4"],
     "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML"],

@@ -17,6 +17,7 @@ from tree_sway_ros.core.integrators.method import Method
 from tree_sway_ros.core.integrators.operation_count import CountedNumber, counted, flops, plain
 from tree_sway_ros.core.integrators.registry import METHODS, method_named
 from tree_sway_ros.core.integrators.trajectory import integrate, sample
+from tree_sway_ros.tools.battery import sundials_ida
 
 Array = NDArray[Any]
 Wind = Callable[[Array], Array]
@@ -81,12 +82,16 @@ def winds(n: int) -> dict[str, Wind]:
 
 def loads_for(method: Method, wind: Wind, name: str, rate: int) -> Array:
     """Samples at the method's nodes; in gusts the mean over each step, as the solver is fed."""
+    return _loads_at(method.nodes, wind, name, rate)
+
+
+def _loads_at(nodes: tuple[float, ...], wind: Wind, name: str, rate: int) -> Array:
     steps = int(SECONDS * rate)
     if name != "gusty":
-        return sample(wind, method.nodes, 1 / rate, steps)
+        return sample(wind, nodes, 1 / rate, steps)
     middles = tuple((np.arange(MEAN_POINTS) + 0.5) / MEAN_POINTS)
     means = sample(wind, middles, 1 / rate, steps).mean(1)
-    return np.ascontiguousarray(np.repeat(means[:, None], len(method.nodes), axis=1))
+    return np.ascontiguousarray(np.repeat(means[:, None], len(nodes), axis=1))
 
 
 def flops_a_step(method: Method, chain: PlanarChain, wind: Wind, rate: int) -> int:
@@ -149,4 +154,23 @@ def measure(rates: tuple[int, ...] = RATES, methods: tuple[str, ...] = tuple(MET
                     gone = run.failed > 0.01 * len(error) or not rms < float(np.std(truth[name]))
                     points.append(Point(key, method.form, system, name, rate,
                                         np.nan if gone else rms, cost, wall))
+        if methods == tuple(METHODS) and sundials_ida.is_installed():
+            points += _points_of_ida(chain, system, blowing, truth, rates, unit)
+    return points
+
+
+def _points_of_ida(
+    chain: PlanarChain, system: str, blowing: dict[str, Wind], truth: dict[str, Array],
+    rates: tuple[int, ...], unit: float,
+) -> list[Point]:  # fmt: skip
+    """SUNDIALS IDA, which takes steps of its own between frames: cost and time are those of a frame."""
+    points = []
+    for rate in rates:
+        for name, wind in blowing.items():
+            loads = _loads_at(sundials_ida.NODES, wind, name, rate)
+            run = sundials_ida.run_ida(chain, loads, 1 / rate, wind(np.zeros(1))[0])
+            every = (len(truth[name]) - 1) // (len(run.theta) - 1)
+            rms = float(np.sqrt(np.mean((run.theta - truth[name][::every]) ** 2)))
+            points.append(Point(sundials_ida.NAME, "multiplier", system, name, rate, rms, run.flops,
+                                run.seconds / unit))
     return points
