@@ -1,5 +1,6 @@
 """Pictures: that they are written, and that what they show is there."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.leaves import leaf_clusters
+from tree_sway_ros.core.standing_tree import StandingTree, joined
 from tree_sway_ros.core.tree import Tree
 from tree_sway_ros.core.tree_building import tree_from_segments
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
@@ -61,6 +63,23 @@ def test_wind_from_the_west_leans_the_right_hand_tree_to_the_right(tmp_path: Pat
     assert moved.max() > still.max() + 30
     blue = (picture[..., 2] > picture[..., 0] + 80).any(axis=0)
     assert blue[: len(blue) // 2].sum() == 0 < blue[len(blue) // 2 :].sum()
+
+
+def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
+    trees = [StandingTree(f"pole{i}", pole(), x=3.0 * i).placed() for i in range(3)]
+    joint = joined(trees)
+    leaves = leaf_clusters(trees[1], np.random.default_rng(0), count=30)
+    leaves = replace(leaves, segment=leaves.segment + trees[0].n_segments)
+    poses = rest_poses(joint.start, joint.end)
+    path = picture_in_wind(trees, poses, [6.0, 0.0, 0.0], tmp_path / "row.png", leaves=leaves)
+    picture = pixels(path)
+    assert picture.shape[0] > 0.7 * picture.shape[1]  # at rest above, in wind below
+    row = picture[int(0.36 * len(picture))]
+    dark = np.flatnonzero(row.max(axis=1) < 180)
+    assert np.count_nonzero(np.diff(dark) > 50) == 2
+    is_green = picture[..., 1] > np.maximum(picture[..., 0], picture[..., 2]) + 25
+    green = np.flatnonzero(is_green.any(axis=0))
+    assert 0.3 * picture.shape[1] < green.min() < green.max() < 0.7 * picture.shape[1]
 
 
 @pytest.mark.parametrize("name", ["benjamina", "broadleaf"])

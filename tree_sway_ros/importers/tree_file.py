@@ -129,6 +129,7 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
             raise ParameterError(
                 f"format {chosen.name} has no option '{option}'", cure=f"it has: {names}"
             )
+    _check_kinds(chosen, options)
     own = {name: options.pop(name) for name in chosen.own_options if name in options}
     content = chosen.read(path, **own)
     if isinstance(content, TreeFile):
@@ -148,6 +149,19 @@ def read_tree(path: str | Path, format: str | None = None, **options: Any) -> Tr
     if not others:
         return first
     return replace(first, notes=(*first.notes, f"the file holds {len(others)} more trees"))
+
+
+def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
+    """Refuse values of another kind than the option's."""
+    kinds = {field.name: str(field.type) for field in fields(CylinderOptions)}
+    kinds |= {name: str(kind) for name, kind in chosen.read.__annotations__.items()}
+    for name, value in options.items():
+        wanted = kinds[name].split(" ")[0]
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        fits = {"float": is_number, "bool": isinstance(value, bool), "str": isinstance(value, str)}
+        if not (fits[wanted] or (value is None and "None" in kinds[name])):
+            cure = {"float": "give a number", "bool": "give true or false", "str": "give a text"}
+            raise ParameterError(f"option {name} is '{value}'", cure=cure[wanted])
 
 
 def _format_named(name: str) -> TreeFormat:

@@ -8,7 +8,7 @@ from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.species import species_named
-from tree_sway_ros.errors import FormatError
+from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.importers.forest_file import ForestFile
 from tree_sway_ros.importers.forest_yaml import is_forest, read_forest
 from tree_sway_ros.importers.imported_tree import TreeFile
@@ -39,6 +39,10 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     """
     text = str(name_or_path)
     if text in BUILTIN_TREES:
+        if options:
+            raise ParameterError(
+                f"option '{next(iter(options))}' for a built-in tree", cure="leave it out: it has no file"
+            )
         tree = builtin_tree(text, seed)
         return TreeFile(tree, species_named(tree.species), text)
     path = Path(text).expanduser()
@@ -54,7 +58,9 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     return read_tree(path, **options)
 
 
-def open_scene(name_or_path: str | Path, seed: int = 0) -> TreeFile | ForestFile:
+def open_scene(
+    name_or_path: str | Path, seed: int = 0, **options: Any
+) -> TreeFile | ForestFile:
     """
     Open a built-in tree, a tree file or the file of a forest; either makes its simulator itself.
 
@@ -62,16 +68,24 @@ def open_scene(name_or_path: str | Path, seed: int = 0) -> TreeFile | ForestFile
     ----------
     name_or_path
         As of `open_tree`, or a YAML file with a list of trees.
-    seed
-        Seed of a built-in tree.
+    seed, **options
+        As of `open_tree`; a forest has none.
 
     Raises
     ------
+    ParameterError
+        Options for a forest or a built-in tree.
     TreeSwayError
         As `open_tree` and `read_forest`.
 
     """
     path = Path(name_or_path).expanduser()
     if str(name_or_path) not in BUILTIN_TREES and is_forest(path):
+        if options:
+            raise ParameterError(
+                f"option '{next(iter(options))}' for a forest",
+                where=str(path),
+                cure="convert its trees first, and name the new files in the forest",
+            )
         return read_forest(path, open_tree)
-    return open_tree(name_or_path, seed)
+    return open_tree(name_or_path, seed, **options)

@@ -15,6 +15,7 @@ import numpy as np
 
 from tree_sway_ros.core.species import Species, species_named
 from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.errors import FormatError
 from tree_sway_ros.importers.yaml_schema import tree_schema
 
 
@@ -33,6 +34,8 @@ def write_yaml_tree(path: Path, tree: Tree, species: Species | None = None) -> N
 
     Raises
     ------
+    FormatError
+        If it is a forest.
     SpeciesError
         If the species table does not know the tree's species.
 
@@ -42,6 +45,12 @@ def write_yaml_tree(path: Path, tree: Tree, species: Species | None = None) -> N
 
 def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
     """Return a tree as YAML text; see `write_yaml_tree`."""
+    if np.count_nonzero(tree.branch_parent < 0) > 1:
+        raise FormatError(
+            "a forest as the YAML of one tree",
+            where=tree.name,
+            cure="convert its trees one by one, or write .obj or .glb",
+        )
     species = species_named(tree.species) if species is None else species
     lines = ["tree_sway: 1", f"name: {_quoted(tree.name)}", f"species: {_quoted(species.key)}"]
     wood = _wood(species)

@@ -5,20 +5,22 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
+from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser)
+    add_tree_arguments(parser, forests=True)
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read a tree and write it."""
-    tree_file = opened_tree(arguments)
-    for note in tree_file.notes:
+    scene = opened_scene(arguments)
+    for note in scene.notes:
         print(f"note: {note}", file=sys.stderr)
-    write_tree_file(arguments.output, tree_file.tree, tree_file.species)
+    species = scene.species if isinstance(scene, TreeFile) else None
+    write_tree_file(arguments.output, scene.tree, species)
     return 0

@@ -14,6 +14,7 @@ from tree_sway_ros.importers.tree_source import open_scene
 from tree_sway_ros.ros.composition import Composition
 from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters import Value
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary
 from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
@@ -39,7 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=fidelity.default,
         help="model of the sway (%(default)s)",
     )
-    parser.add_argument("--leaves", action="store_true", help="in leaf: the solver's leaf_on")
+    add_leaves_argument(parser)
+    parser.add_argument(
+        "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -74,7 +78,9 @@ def size_of(tree: Tree) -> str:
 
 def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
     solver: dict[str, Value] = {"tree": arguments.tree, "rate": arguments.rate, "fidelity": arguments.fidelity}
-    solver["leaf_on"] = arguments.leaves
+    solver["leaf_on"] = leaves_are_on(arguments)
+    if arguments.gravity == "off":
+        solver["gravity"] = 0.0
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
     return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}

@@ -5,24 +5,28 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from tree_sway_ros.core.banks import build_bank
+from tree_sway_ros.core.season import in_season
 from tree_sway_ros.core.settings import RUNGS, SimulatorSettings
 from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway_ros.importers.forest_file import ForestFile
 from tree_sway_ros.importers.imported_tree import TreeFile
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaf_settings
+from tree_sway_ros.tools.info_forest import forest_facts, forest_text
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser)
+    add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
     parser.add_argument("--rung", choices=RUNGS, default="modes", help="model (%(default)s)")
     parser.add_argument(
@@ -38,18 +42,27 @@ def run(arguments: argparse.Namespace) -> int:
     """Print what a tree is."""
     if arguments.count < 1:
         raise ParameterError(f"{arguments.count} frequencies", where="--count", cure="ask for 1 or more")
-    tree_file = opened_tree(arguments)
+    scene = opened_scene(arguments)
+    if isinstance(scene, ForestFile):
+        facts = forest_facts(scene, partial(_facts, arguments), leaves_are_on(arguments))
+        print(json.dumps(facts, indent=2) if arguments.json else forest_text(facts))
+        return 0
+    facts = _facts(arguments, scene, leaves_are_on(arguments))
+    print(json.dumps(facts, indent=2) if arguments.json else _text(facts, scene))
+    return 0
+
+
+def _facts(arguments: argparse.Namespace, tree_file: TreeFile, leaf_on: bool) -> dict[str, Any]:
     settings = SimulatorSettings(
         rung=arguments.rung,
         gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
         # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
         n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
         mode_choice="slowest",
-        **leaf_settings(tree_file.tree, arguments),
     )
-    facts = tree_facts(tree_file, settings, arguments.count)
-    print(json.dumps(facts, indent=2) if arguments.json else _text(facts, tree_file))
-    return 0
+    if leaf_on:
+        settings = in_season(tree_file.tree, settings, leaf_on=True)
+    return tree_facts(tree_file, settings, arguments.count)
 
 
 def tree_facts(tree_file: TreeFile, settings: SimulatorSettings, count: int) -> dict[str, Any]:

@@ -8,25 +8,41 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-import numpy as np
-
-from tree_sway_ros.core.leaves import LeafClusters, foliage_of, leaf_clusters
+from tree_sway_ros.core.leaves import LeafClusters, foliage_of
 from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.importers.forest_file import ForestFile
+from tree_sway_ros.importers.imported_tree import TreeFile
+
+_DRAWN = 1500
 
 
 def add_leaves_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the choice of the season."""
-    parser.add_argument("--leaves", choices=("on", "off"), default="off", help="(%(default)s)")
+    """Add the choice of the season; ``--leaves`` alone is on."""
+    parser.add_argument(
+        "--leaves",
+        nargs="?",
+        choices=("on", "off"),
+        const="on",
+        default="off",
+        help="in leaf; those of a forest where its file does not say (%(default)s)",
+    )
+
+
+def leaves_are_on(arguments: argparse.Namespace) -> bool:
+    """Whether the season is that of leaves."""
+    return bool(arguments.leaves == "on")
 
 
 def leaf_settings(tree: Tree, arguments: argparse.Namespace) -> dict[str, Any]:
     """What the leaves change in `SimulatorSettings`; nothing if they are off."""
-    if arguments.leaves == "off":
+    if not leaves_are_on(arguments):
         return {}
     foliage = foliage_of(tree)
     return {"in_leaf": True, "leaf_mass": foliage.mass, "leaf_area": foliage.drag_area}
 
 
-def drawn_leaves(tree: Tree, arguments: argparse.Namespace) -> LeafClusters | None:
-    """Clusters to draw, the same in every picture of a tree; None if the leaves are off."""
-    return None if arguments.leaves == "off" else leaf_clusters(tree, np.random.default_rng(0))
+def drawn_leaves(
+    scene: TreeFile | ForestFile, arguments: argparse.Namespace
+) -> LeafClusters | None:
+    """Clusters to draw, the same in every picture of a tree; None if there are none."""
+    return scene.leaves(leaves_are_on(arguments), _DRAWN)

@@ -6,23 +6,26 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from tree_sway_ros.core.anemometer_model import AnemometerModel
 from tree_sway_ros.core.settings import RUNGS
-from tree_sway_ros.core.simulator import SwaySimulator
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.core.simulators import Simulator, simulators_of
+from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway_ros.importers.forest_file import ForestFile
 from tree_sway_ros.importers.imported_tree import TreeFile
 from tree_sway_ros.importers.wind_file import read_wind
 from tree_sway_ros.tools.leaves_argument import (
     add_leaves_argument,
     drawn_leaves,
-    leaf_settings,
+    leaves_are_on,
 )
 from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
-from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_tree
+from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_scene
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 
@@ -32,7 +35,7 @@ _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "tree", nargs="?", default="benjamina", metavar="TREE", help="name or file (%(default)s)"
+        "tree", nargs="?", default="benjamina", metavar="TREE", help="name, or file of a tree or a forest (%(default)s)"
     )
     parser.add_argument(
         "--tree",
@@ -56,36 +59,42 @@ def run(arguments: argparse.Namespace) -> int:
     if not 0.0 < arguments.seconds <= 3600.0:
         raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0 to 3600")
     arguments.tree = arguments.portrait or arguments.tree
-    tree_file = opened_tree(arguments)
+    scene = opened_scene(arguments)
     if arguments.portrait is not None:
-        _portrait(tree_file, arguments)
+        _portrait(scene, arguments)
     else:
-        _motion(tree_file, arguments)
+        _motion(scene, arguments)
     print(arguments.output)
     return 0
 
 
-def _portrait(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
+def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None:
     speed = 10.0 if arguments.speed is None else arguments.speed
-    simulator = _simulator(tree_file, arguments)
+    simulator = _simulator(scene, arguments)
     wind = np.array([speed, 0.0, 0.0])
     for _ in range(round(_SETTLING / _SETTLING_STEP)):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
-        tree_file.tree,
+        [each.tree for each in simulators_of(simulator)],
         simulator.place(),
         wind,
         arguments.output,
-        leaves=drawn_leaves(tree_file.tree, arguments),
+        leaves=drawn_leaves(scene, arguments),
     )
 
 
-def _simulator(tree_file: TreeFile, arguments: argparse.Namespace) -> SwaySimulator:
-    leaves = leaf_settings(tree_file.tree, arguments)
-    return SwaySimulator(tree_file.tree, tree_file.species, rung=arguments.rung, **leaves)
+def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> Simulator:
+    """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
+    model: dict[str, Any] = {"fidelity": arguments.rung, "leaf_on": leaves_are_on(arguments)}
+    try:
+        return scene.simulator(**model)
+    except TreeError as error:
+        light = scene.simulator(**model, gravity=0.0)
+        print(f"note: without its own weight, as it cannot stand: {error}", file=sys.stderr)
+        return light
 
 
-def _motion(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
+def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None:
     speed = 6.0 if arguments.speed is None else arguments.speed
     source = f"simulated wind, mean {speed:g} m/s"
     samples: Samples
@@ -94,8 +103,8 @@ def _motion(tree_file: TreeFile, arguments: argparse.Namespace) -> None:
     else:
         record = read_wind(arguments.wind)
         samples, source = recorded(record), Path(record.source).name
-    result = ride(_simulator(tree_file, arguments), samples, arguments.seconds)
+    result = ride(_simulator(scene, arguments), samples, arguments.seconds)
     if len(result.time) < 2:
         raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
-    title = f"{tree_file.tree.name}, {arguments.rung}, {source}"
+    title = f"{scene.tree.name}, {arguments.rung}, {source}"
     plot_wind_and_tip(result.time, result.wind, result.tip, arguments.output, title=title)

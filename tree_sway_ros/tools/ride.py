@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.anemometer_model import AnemometerModel
-from tree_sway_ros.core.simulator import SwaySimulator
+from tree_sway_ros.core.simulators import Simulator
 from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.core.wind_averaging import WindAverage
 from tree_sway_ros.importers.wind_record import WindRecord
@@ -52,7 +52,7 @@ def simulated(model: AnemometerModel) -> Samples:
         yield tick / model.rate, model.sample(tick)
 
 
-def ride(simulator: SwaySimulator, samples: Samples, seconds: float, rate: float = 60.0) -> Ride:
+def ride(simulator: Simulator, samples: Samples, seconds: float, rate: float = 60.0) -> Ride:
     """
     Take a tree through a wind.
 

@@ -7,25 +7,36 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+from typing import Any
 
 from tree_sway_ros.core.species import species_keys, species_named
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.importers.forest_file import ForestFile
 from tree_sway_ros.importers.imported_tree import TreeFile
-from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.importers.tree_source import open_scene, open_tree
+
+_TREE = "benjamina, goldcrest, broadleaf, or a file"
 
 
-def add_tree_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add TREE and what can be said of its wood."""
-    parser.add_argument("tree", metavar="TREE", help="benjamina, goldcrest, broadleaf, or a file")
+def add_tree_arguments(parser: argparse.ArgumentParser, *, forests: bool = False) -> None:
+    """Add TREE and what can be said of its wood; `forests` says that TREE may be a forest."""
+    parser.add_argument("tree", metavar="TREE", help=f"{_TREE}{' of a tree or a forest' * forests}")
     add_wood_arguments(parser)
 
 
 def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what can be said of the wood of a tree."""
+    """Add what can be said of the wood of a tree, and of how its file is to be read."""
     parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
     parser.add_argument("--species", help=f"its wood, if not the tree's own: {', '.join(species_keys())}")
     parser.add_argument("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")
     parser.add_argument("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
+    parser.add_argument(
+        "--option",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="how to read its file, for example twig_diameter=0.004; may be repeated (doc/trees.md)",
+    )
 
 
 def opened_tree(arguments: argparse.Namespace) -> TreeFile:
@@ -38,11 +49,58 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
         No such tree or species, a file that cannot be read, a modulus or density that is not positive.
 
     """
-    tree_file = open_tree(arguments.tree, arguments.seed)
+    tree_file = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
     species = species_named(arguments.species) if arguments.species else tree_file.species
+    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments)))
+
+
+def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
+    """
+    Open the tree or the forest that the arguments name, with the wood they give it.
+
+    Raises
+    ------
+    TreeSwayError
+        As `opened_tree`; values for one tree where there are several.
+
+    """
+    scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
+    if isinstance(scene, TreeFile):
+        return opened_tree(arguments)
+    if _wood(arguments):
+        raise ParameterError(
+            "modulus or density for a whole forest",
+            where=scene.source,
+            cure="say --species, or give trees files with wood of their own",
+        )
+    return scene.of_species(species_named(arguments.species)) if arguments.species else scene
+
+
+def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Values in place of those of the species."""
     given = {name: getattr(arguments, name) for name in ("modulus", "density")}
     changed = {name: value for name, value in given.items() if value is not None}
     for name, value in changed.items():
         if not 0.0 < value < float("inf"):
             raise ParameterError(f"{value:g} is not positive", where=f"--{name}", cure="give an SI value")
-    return dataclasses.replace(tree_file, species=dataclasses.replace(species, **changed))
+    return changed
+
+
+def _options(given: list[str]) -> dict[str, Any]:
+    """Options of the reader: numbers and truths as such, all else as text."""
+    options: dict[str, Any] = {}
+    for each in given:
+        name, equals, text = each.partition("=")
+        if not (name and equals and text):
+            raise ParameterError(f"'{each}'", where="--option", cure="write NAME=VALUE")
+        options[name.strip().replace("-", "_")] = _value(text.strip())
+    return options
+
+
+def _value(text: str) -> Any:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -9,7 +9,7 @@ from tree_sway_ros.importers.tree_export import write_tree
 OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
 
 
-def write_tree_file(path: str, tree: Tree, species: Species) -> None:
+def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
     """Write a tree and say what was written."""
     write_tree(path, tree, species)
     size = f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"

@@ -1,8 +1,11 @@
-"""Pictures of a tree, as files: at rest, and beside itself in wind."""
+"""Pictures of a tree or several, as files: at rest, and beside themselves in wind."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import accumulate
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +16,7 @@ from tree_sway_ros.core.tree import Floats, Tree
 from tree_sway_ros.view.plotting import new_figure, save_figure
 from tree_sway_ros.view.projection import Camera, ends_of_poses, rest_poses
 from tree_sway_ros.view.tree_drawing import (
+    Frame,
     draw_ghost,
     draw_scale,
     draw_tree,
@@ -20,11 +24,18 @@ from tree_sway_ros.view.tree_drawing import (
     frame_around,
 )
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 _INCHES_HIGH = 6.0
+_INCHES_WIDE = 9.0
+_WIDE = 1.3
+"""Width over height from which what stands in wind is drawn below what rests, not beside."""
 
 
 def picture_at_rest(
-    tree: Tree,
+    tree: Tree | Sequence[Tree],
     path: str | Path,
     *,
     leaves: LeafClusters | None = None,
@@ -37,11 +48,11 @@ def picture_at_rest(
     Parameters
     ----------
     tree
-        What to draw.
+        What to draw; or several, each where it stands.
     path
         File to write; the suffix names the format.
     leaves
-        Its leaves; none are drawn if None.
+        Their leaves, on segments counted through all trees; none are drawn if None.
     camera
         From where; from the south, east to the right, if None.
     title
@@ -54,17 +65,19 @@ def picture_at_rest(
 
     """
     camera = camera or Camera()
-    frame = frame_around(np.vstack([tree.start, tree.end]), camera)
+    trees = _listed(tree)
+    start, end = _nodes(trees)
+    frame = frame_around(np.vstack([start, end]), camera)
     figure = new_figure(max(_INCHES_HIGH * frame.aspect, 3.6), _INCHES_HIGH + 0.4)
     axes = figure.add_axes((0.0, 0.0, 1.0, 0.93))
-    draw_tree(axes, tree, tree.start, tree.end, camera, frame, _leaves_at_rest(tree, leaves))
+    _draw(axes, trees, rest_poses(start, end), camera, frame, leaves)
     draw_scale(axes, frame)
-    figure.suptitle(title if title is not None else _caption(tree), y=0.985)
+    figure.suptitle(title if title is not None else _caption(trees), y=0.985)
     return save_figure(figure, path)
 
 
 def picture_in_wind(
-    tree: Tree,
+    tree: Tree | Sequence[Tree],
     poses: ArrayLike,
     wind: ArrayLike,
     path: str | Path,
@@ -79,9 +92,9 @@ def picture_in_wind(
     Parameters
     ----------
     tree
-        At rest.
+        At rest; or several, each where it stands.
     poses
-        Pose block in wind, (n, 7): x y z [m], and the quaternion's x y z w.
+        Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
     wind
         Where it blows to in [m/s], (3,).
     path, leaves, camera, title
@@ -94,37 +107,70 @@ def picture_in_wind(
 
     """
     camera = camera or Camera()
-    start, end = ends_of_poses(poses, tree.length)
-    frame = frame_around(np.vstack([tree.start, tree.end, start, end]), camera, headroom=0.1)
-    figure = new_figure(max(2.0 * _INCHES_HIGH * frame.aspect, 6.0), _INCHES_HIGH + 0.4)
-    left = figure.add_axes((0.0, 0.0, 0.5, 0.93))
-    right = figure.add_axes((0.5, 0.0, 0.5, 0.93))
-    blowing = np.asarray(wind, dtype=np.float64)
-    fluttering = _leaves_in_wind(leaves, np.asarray(poses, dtype=np.float64), blowing, 0.0)
-    draw_tree(left, tree, tree.start, tree.end, camera, frame, _leaves_at_rest(tree, leaves))
-    draw_ghost(right, tree, camera)
-    draw_tree(right, tree, start, end, camera, frame, fluttering)
-    draw_scale(left, frame)
-    draw_wind(right, frame, camera, blowing)
-    left.text(0.03, 0.97, "at rest", transform=left.transAxes, va="top", color="#555555")
-    right.text(0.97, 0.97, "in wind", transform=right.transAxes, ha="right", va="top", color="#555555")
-    figure.suptitle(title if title is not None else _caption(tree), y=0.985)
+    trees = _listed(tree)
+    block, blowing = (np.asarray(each, dtype=np.float64) for each in (poses, wind))
+    start, end = _nodes(trees)
+    moved = ends_of_poses(block, np.concatenate([each.length for each in trees]))
+    frame = frame_around(np.vstack([start, end, *moved]), camera, headroom=0.1)
+    figure, rest, windy = _two_axes(frame)
+    _draw(rest, trees, rest_poses(start, end), camera, frame, leaves)
+    for each in trees:
+        draw_ghost(windy, each, camera)
+    angle = 0.0 if leaves is None else flutter_angle(leaves, float(np.linalg.norm(blowing)), 0.0)
+    _draw(windy, trees, block, camera, frame, leaves, angle)
+    draw_scale(rest, frame)
+    draw_wind(windy, frame, camera, blowing)
+    rest.text(0.03, 0.97, "at rest", transform=rest.transAxes, va="top", color="#555555")
+    windy.text(0.97, 0.97, "in wind", transform=windy.transAxes, ha="right", va="top", color="#555555")
+    figure.suptitle(title if title is not None else _caption(trees), y=0.985)
     return save_figure(figure, path)
 
 
-def _leaves_at_rest(tree: Tree, leaves: LeafClusters | None) -> tuple[Floats, Floats] | None:
-    poses = rest_poses(tree.start, tree.end)
-    return None if leaves is None else (leaf_poses(leaves, poses), leaves.size)
+def _two_axes(frame: Frame) -> tuple[Figure, Axes, Axes]:
+    """Beside each other, or what is wide one above the other."""
+    if frame.aspect <= _WIDE:
+        figure = new_figure(max(2.0 * _INCHES_HIGH * frame.aspect, 6.0), _INCHES_HIGH + 0.4)
+        left, right = figure.add_axes((0.0, 0.0, 0.5, 0.93)), figure.add_axes((0.5, 0.0, 0.5, 0.93))
+        return figure, left, right
+    figure = new_figure(_INCHES_WIDE, 2.0 * _INCHES_WIDE / frame.aspect + 0.4)
+    upper, lower = figure.add_axes((0.0, 0.47, 1.0, 0.47)), figure.add_axes((0.0, 0.0, 1.0, 0.47))
+    return figure, upper, lower
 
 
-def _leaves_in_wind(
-    leaves: LeafClusters | None, poses: Floats, wind: Floats, time: float
-) -> tuple[Floats, Floats] | None:
-    if leaves is None:
-        return None
-    angle = flutter_angle(leaves, float(np.linalg.norm(wind)), time)
-    return leaf_poses(leaves, poses, angle), leaves.size
+def _draw(
+    axes: Axes,
+    trees: tuple[Tree, ...],
+    poses: Floats,
+    camera: Camera,
+    frame: Frame,
+    leaves: LeafClusters | None,
+    flutter: ArrayLike = 0.0,
+) -> None:
+    """Draw every tree in its poses, those in front last."""
+    ends = list(accumulate((each.n_segments for each in trees), initial=0))
+    blocks = None if leaves is None else (leaf_poses(leaves, poses, flutter), leaves.size)
+    far_first = sorted(range(len(trees)), key=lambda i: -float(camera.distance(trees[i].start[0])))
+    for i in far_first:
+        own = None
+        if leaves is not None and blocks is not None:
+            of_this = (leaves.segment >= ends[i]) & (leaves.segment < ends[i + 1])
+            own = blocks[0][of_this], blocks[1][of_this]
+        start, end = ends_of_poses(poses[ends[i] : ends[i + 1]], trees[i].length)
+        draw_tree(axes, trees[i], start, end, camera, frame, own)
 
 
-def _caption(tree: Tree) -> str:
-    return f"{tree.name}: {tree.n_segments} segments, {tree.height:.2f} m"
+def _listed(tree: Tree | Sequence[Tree]) -> tuple[Tree, ...]:
+    return (tree,) if isinstance(tree, Tree) else tuple(tree)
+
+
+def _nodes(trees: tuple[Tree, ...]) -> tuple[Floats, Floats]:
+    """Root-side and tip-side nodes of all segments at rest in [m], (n, 3) each."""
+    start = np.concatenate([each.start for each in trees])
+    return start, np.concatenate([each.end for each in trees])
+
+
+def _caption(trees: tuple[Tree, ...]) -> str:
+    segments = sum(each.n_segments for each in trees)
+    if len(trees) > 1:
+        return f"{len(trees)} trees: {segments} segments"
+    return f"{trees[0].name}: {segments} segments, {trees[0].height:.2f} m"

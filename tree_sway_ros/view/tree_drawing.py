@@ -59,12 +59,12 @@ def frame_around(
     camera
         From where.
     margin, headroom
-        Space round it, and more above it, over its larger side.
+        Space round it, and more above it, over its height, or what is much wider than high.
 
     """
     seen = camera.project(points).reshape(-1, 3)
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
-    size = float((high - low).max())
+    size = max(float(high[1] - low[1]), 0.4 * float(high[0] - low[0]))
     middle = 0.5 * float(low[0] + high[0])
     half = max(0.5 * float(high[0] - low[0]), 0.3 * size) + margin * size
     top = float(high[1]) + (margin + headroom) * size
@@ -101,7 +101,8 @@ def draw_tree(
 
     axes.set(xlim=(frame.left, frame.right), ylim=(frame.bottom, frame.top), aspect="equal")
     axes.axis("off")
-    _draw_ground(axes, tree, camera, frame)
+    own = frame_around(np.vstack([tree.start, tree.end]), camera)
+    _draw_ground(axes, tree, camera, own)
     base, tip = camera.project(start), camera.project(end)
     depth = _depth(camera, 0.5 * (start + end), frame)
     polygons = list(_tapered(base, tip, tree.base_diameter, tree.tip_diameter))
@@ -109,7 +110,7 @@ def draw_tree(
     away = 0.5 * (base[:, 2] + tip[:, 2])
     # Edges in the same colour close the joints and keep thin twigs visible.
     edges = np.full(len(away), 0.45)
-    if leaves is not None:
+    if leaves is not None and len(leaves[1]):
         corners, normal = leaf_blades(tree.species, *leaves)
         seen = camera.project(corners)
         depth = _depth(camera, corners.mean(axis=1), frame)

@@ -1,0 +1,74 @@
+"""
+What there is to say about a forest: a line a tree, and the sums.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from tree_sway_ros.core.species import species_named
+from tree_sway_ros.importers.forest_file import ForestFile
+from tree_sway_ros.importers.imported_tree import TreeFile
+
+_SUMS = ("branches", "segments", "volume", "mass")
+
+
+def forest_facts(
+    forest: ForestFile, facts_of: Callable[[TreeFile, bool], dict[str, Any]], leaf_on: bool
+) -> dict[str, Any]:
+    """
+    Gather what there is to say about a forest.
+
+    Parameters
+    ----------
+    forest
+        The forest.
+    facts_of
+        Says the same of one tree, with or without leaves.
+    leaf_on
+        Whether trees that do not say bear leaves.
+
+    Returns
+    -------
+    dict
+        SI units throughout; fit for JSON.
+
+    """
+    trees = []
+    for each in forest.trees:
+        species = each.species if each.species is not None else species_named(each.tree.species)
+        file = TreeFile(each.placed(), species, forest.source)
+        place = {"x": each.x, "y": each.y, "z": each.z, "yaw": each.yaw}
+        trees.append({**facts_of(file, each.bears_leaves(leaf_on)), "place": place})
+    return {
+        "name": forest.name,
+        "source": forest.source,
+        "notes": list(forest.notes),
+        **{name: sum(tree[name] for tree in trees) for name in _SUMS},
+        "height": forest.tree.height,
+        "trees": trees,
+    }
+
+
+def forest_text(facts: dict[str, Any]) -> str:
+    """Lay the facts out for people."""
+    trees = facts["trees"]
+    wide = max(4, *(len(tree["name"]) for tree in trees))
+    lines = [
+        f"{facts['name']}, from {facts['source']}",
+        f"  size       {len(trees)} trees, {facts['branches']} branches, {facts['segments']} segments, "
+        f"{facts['volume'] * 1e3:.4g} l of wood, {facts['mass']:.4g} kg",
+        f"  {'tree':{wide}}   species       east    north   height   segments       mass       sways",
+    ]
+    for tree in trees:
+        place, slowest = tree["place"], tree["frequencies"]
+        sways = f"{slowest[0]:6.3f} Hz" if slowest else "        -"
+        lines.append(
+            f"  {tree['name']:{wide}}   {tree['species']:11} {place['x']:6.2f}   {place['y']:6.2f} "
+            f"{tree['height']:6.2f} m   {tree['segments']:8d} {tree['mass']:7.4g} kg   {sways}"
+            f"{'   in leaf' if tree['in_leaf'] else ''}"
+        )
+    notes = [*facts["notes"], *(f"{tree['name']}: {n}" for tree in trees for n in tree["notes"])]
+    return "\n".join([*lines, *(f"  note       {note}" for note in notes)])
