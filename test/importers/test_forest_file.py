@@ -8,8 +8,9 @@ from tree_sway_ros.core.forest import Forest
 from tree_sway_ros.core.leaves import foliage_of
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.standing_tree import StandingTree
+from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.importers.forest_file import ForestFile
-from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.importers.tree_source import open_scene, open_tree
 
 FILE = open_tree(Path(__file__).parent / "data" / "seedling.yaml")
 
@@ -61,3 +62,23 @@ def test_a_tree_file_makes_its_simulator_too():
     assert sim.settings.leaf_area == pytest.approx(foliage_of(FILE.tree).drag_area)
     assert FILE.leaves(False, 40) is None
     assert FILE.leaves(True, 40).segment.shape == (40,)
+
+
+def test_trees_of_one_file_stand_where_they_do_in_it():
+    path = Path(__file__).parent / "data" / "forest.treefile.txt"
+    forest = open_scene(path)
+    assert [(each.name, each.x, each.y, each.z) for each in forest.trees] == [
+        ("forest.treefile1", 0.0, 0.0, 0.0),
+        ("forest.treefile2", 10.0, 0.0, 0.0),
+    ]
+    assert forest.tree.start[:, 0].max() >= 10.0
+    second = open_scene(path, tree=2)
+    assert (second.tree.name, second.origin) == ("forest.treefile2", (110.0, 200.0, 50.0))
+    with pytest.raises(ParameterError, match="tree 3 of 2; give 1 to 2"):
+        open_scene(path, tree=3)
+    with pytest.raises(ParameterError, match=r"option tree is '1.5'; give a whole number"):
+        open_scene(path, tree=1.5)
+    # Left where they are, they stand where the file has them.
+    placed = open_scene(path, to_origin=False).tree
+    assert placed.start[0].tolist() == [100.0, 200.0, 50.0]
+    assert placed.start[forest.trees[0].tree.n_segments].tolist() == [110.0, 200.0, 50.0]

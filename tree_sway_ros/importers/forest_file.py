@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -20,6 +21,7 @@ from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.standing_tree import StandingTree, joined
 from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.importers.imported_tree import TreeFile
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,3 +120,14 @@ class ForestFile:
             for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
         ]
         return joined_clusters(clusters, [each.tree.n_segments for each in self.trees])
+
+
+def forest_of_files(files: Sequence[TreeFile], name: str) -> ForestFile:
+    """Return the trees of one file as a forest: where they stand in it, the first at the origin."""
+    first = np.array(files[0].origin)
+    trees = []
+    for each in files:
+        x, y, z = (np.array(each.origin) - first + each.tree.start[0]).tolist()
+        trees.append(StandingTree(each.tree.name, each.tree, x, y, z, species=each.species))
+    notes = [f"{each.tree.name}: {note}" for each in files for note in each.notes]
+    return ForestFile(name, tuple(trees), files[0].source, tuple(notes))

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from tree_sway_ros.errors import FormatError, TreeError
+from tree_sway_ros.errors import FormatError, ParameterError, TreeError
 from tree_sway_ros.importers.cylinders import Cylinders
 from tree_sway_ros.importers.node_skeleton import Skeleton
 from tree_sway_ros.importers.table_file import row_numbers, whole
@@ -26,12 +26,21 @@ def looks_like_treefile(head: str) -> bool:
     return re.search(r"^(?!#).*\bx,y,z,radius\b", head, re.MULTILINE) is not None
 
 
-def read_treefile(path: Path) -> tuple[Cylinders, ...]:
+def read_treefile(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
     """
     Read the trees of a RayCloudTools tree file.
 
+    Parameters
+    ----------
+    path
+        The file.
+    tree
+        Which of its trees, from 1; all of them if 0.
+
     Raises
     ------
+    ParameterError
+        A tree that the file does not hold.
     FormatError
         No header, trunks without branches, a line that does not hold whole nodes.
     TreeError
@@ -60,12 +69,16 @@ def read_treefile(path: Path) -> tuple[Cylinders, ...]:
     for index, (number, line) in enumerate(lines[1:], start=1):
         where = f"{source}:{number}"
         skeleton = _skeleton(line, n_of_tree, columns, where)
-        tree = skeleton.cylinders(where, cones=False)
-        tree.name = f"{path.stem}{index}" if len(lines) > 2 else path.stem
-        trees.append(tree)
+        cylinders = skeleton.cylinders(where, cones=False)
+        cylinders.name = f"{path.stem}{index}" if len(lines) > 2 else path.stem
+        trees.append(cylinders)
     if not trees:
         raise FormatError("no trees", where=source)
-    return tuple(trees)
+    if not 0 <= tree <= len(trees):
+        raise ParameterError(
+            f"tree {tree} of {len(trees)}", where=source, cure=f"give 1 to {len(trees)}, or 0 for all"
+        )
+    return (trees[int(tree) - 1],) if tree else tuple(trees)
 
 
 def _skeleton(line: str, n_of_tree: int, columns: list[str], where: str) -> Skeleton:

@@ -159,9 +159,10 @@ def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
         wanted = kinds[name].split(" ")[0]
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         fits = {"float": is_number, "bool": isinstance(value, bool), "str": isinstance(value, str)}
+        fits["int"] = is_number and float(value).is_integer()
         if not (fits[wanted] or (value is None and "None" in kinds[name])):
-            cure = {"float": "give a number", "bool": "give true or false", "str": "give a text"}
-            raise ParameterError(f"option {name} is '{value}'", cure=cure[wanted])
+            cure = {"float": "a number", "int": "a whole number", "bool": "true or false", "str": "a text"}
+            raise ParameterError(f"option {name} is '{value}'", cure=f"give {cure[wanted]}")
 
 
 def _format_named(name: str) -> TreeFormat:

@@ -9,10 +9,10 @@ from typing import Any
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.species import species_named
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.importers.forest_file import ForestFile
+from tree_sway_ros.importers.forest_file import ForestFile, forest_of_files
 from tree_sway_ros.importers.forest_yaml import is_forest, read_forest
 from tree_sway_ros.importers.imported_tree import TreeFile
-from tree_sway_ros.importers.tree_file import read_tree
+from tree_sway_ros.importers.tree_file import read_tree, read_trees
 
 
 def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile:
@@ -67,7 +67,7 @@ def open_scene(
     Parameters
     ----------
     name_or_path
-        As of `open_tree`, or a YAML file with a list of trees.
+        As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds several.
     seed, **options
         As of `open_tree`; a forest has none.
 
@@ -88,4 +88,7 @@ def open_scene(
                 cure="convert its trees first, and name the new files in the forest",
             )
         return read_forest(path, open_tree)
-    return open_tree(name_or_path, seed, **options)
+    if str(name_or_path) in BUILTIN_TREES or not path.exists():
+        return open_tree(name_or_path, seed, **options)
+    files = read_trees(path, **options)
+    return files[0] if len(files) == 1 else forest_of_files(files, path.stem)

@@ -49,9 +49,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
         No such tree or species, a file that cannot be read, a modulus or density that is not positive.
 
     """
-    tree_file = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
-    species = species_named(arguments.species) if arguments.species else tree_file.species
-    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments)))
+    return _of_wood(open_tree(arguments.tree, arguments.seed, **_options(arguments.option)), arguments)
 
 
 def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
@@ -66,7 +64,7 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
     """
     scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
     if isinstance(scene, TreeFile):
-        return opened_tree(arguments)
+        return _of_wood(scene, arguments)
     if _wood(arguments):
         raise ParameterError(
             "modulus or density for a whole forest",
@@ -74,6 +72,11 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
             cure="say --species, or give trees files with wood of their own",
         )
     return scene.of_species(species_named(arguments.species)) if arguments.species else scene
+
+
+def _of_wood(tree_file: TreeFile, arguments: argparse.Namespace) -> TreeFile:
+    species = species_named(arguments.species) if arguments.species else tree_file.species
+    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments)))
 
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
