@@ -167,13 +167,18 @@ def _draw(points: list[Rung], path: Path) -> None:
         here = [point for point in points if point.model == model]
         lowest = min(here, key=lambda p: p.error)
         place = lowest.nanoseconds / 1e3, lowest.error
-        is_coarse = model in ("branch", "subtree", "segments")
-        way, side = ((0, -14), "center") if is_coarse else ((9, -4), "left")
-        axes.annotate(model, place, xytext=way, textcoords="offset points", ha=side, fontsize=9)
+        way, side = ((-9, -4), "right") if model.startswith("modes") else ((0, -15), "center")
+        text = axes.annotate(model, place, xytext=way, textcoords="offset points", ha=side, fontsize=10)
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8})
     errors, costs = [p.error for p in points], [p.nanoseconds / 1e3 for p in points]
     axes.set(xscale="log", yscale="log")
     axes.set(xlim=(min(costs) / 1.5, 1.6 * max(costs)), ylim=(min(errors) / 2, 1.5))
-    axes.set(xlabel="CPU time a frame [us]", ylabel="tip error over tip motion [-]")
+    axes.set_xlabel("CPU time a frame, solving and placing [us]", fontsize=11)
+    axes.set_ylabel("tip error over tip motion [-]", fontsize=11)
+    ticks = [m * 10**e for e in range(5) for m in (1, 2, 5)]
+    low, high = axes.get_xlim()
+    axes.set_xticks([t for t in ticks if low <= t <= high])
+    axes.minorticks_off()
     axes.xaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_major_formatter("{x:g}")
     axes.grid(alpha=0.25)
