@@ -1,4 +1,4 @@
-"""The tables of the README are those of the code."""
+"""The tables of the pages are those of the code."""
 
 from __future__ import annotations
 
@@ -6,20 +6,28 @@ from pathlib import Path
 
 import pytest
 
+from tree_sway_ros.core.species import species_keys
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools import cli
-from tree_sway_ros.tools.docs import markdown_tables, with_tables
+from tree_sway_ros.tools.docs import PAGES, markdown_tables, species_table, with_tables
 
 ROOT = Path(__file__).resolve().parents[2]
 MARK = "before\n<!-- table: {} -->\nSTALE\n<!-- end -->\nafter\n"
 
 
-def test_the_readme_is_up_to_date() -> None:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert with_tables(text) == text, "run: tree-sway docs"
+def test_the_pages_are_up_to_date() -> None:
+    texts = [(ROOT / page).read_text(encoding="utf-8") for page in PAGES]
+    for text in texts:
+        assert with_tables(text) == text, "run: tree-sway docs"
     for name in markdown_tables():
-        assert f"<!-- table: {name} -->" in text
+        assert f"<!-- table: {name} -->" in "".join(texts)
+
+
+def test_every_species_has_a_row() -> None:
+    rows = species_table().splitlines()[2:]
+    assert [row.split("`")[1] for row in rows] == list(species_keys())
+    assert "| 9.4 | 1010 | 0.04, 0.1 | 2.6575 U^-0.846 |" in next(row for row in rows if "`oak`" in row)
 
 
 def test_a_table_is_replaced_and_the_rest_kept() -> None:

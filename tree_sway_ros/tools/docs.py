@@ -1,5 +1,5 @@
 """
-``tree-sway docs``: the tables of topics and parameters, taken from the code and put into the README.
+``tree-sway docs``: the tables of topics, parameters and species, taken from the code and put into the pages.
 
 A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between them is
 replaced.
@@ -12,9 +12,14 @@ import argparse
 import re
 from pathlib import Path
 
+from tree_sway_ros.core.leaf_traits import leaf_traits
+from tree_sway_ros.core.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros import parameters, topics
 from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
+
+PAGES = ("README.md", "doc/trees.md")
+"""Pages with tables."""
 
 _TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
@@ -22,23 +27,24 @@ _TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DO
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "file", nargs="?", default="README.md", help="file with the tables (%(default)s)"
+        "files", nargs="*", default=PAGES, help=f"files with tables ({', '.join(PAGES)})"
     )
     parser.add_argument("--check", action="store_true", help="change nothing; exit 2 if not up to date")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Bring the tables of a file up to date, or check that they are."""
-    path = Path(arguments.file)
-    text = path.read_text(encoding="utf-8")
-    fresh = with_tables(text, where=str(path))
-    if fresh == text:
-        print(f"{path}: up to date")
-        return 0
-    if arguments.check:
-        raise FormatError("not up to date", where=str(path), cure="run tree-sway docs")
-    path.write_text(fresh, encoding="utf-8")
-    print(f"{path}: tables written")
+    """Bring the tables of the files up to date, or check that they are."""
+    for file in arguments.files:
+        path = Path(file)
+        text = path.read_text(encoding="utf-8")
+        fresh = with_tables(text, where=str(path))
+        if fresh == text:
+            print(f"{path}: up to date")
+            continue
+        if arguments.check:
+            raise FormatError("not up to date", where=str(path), cure="run tree-sway docs")
+        path.write_text(fresh, encoding="utf-8")
+        print(f"{path}: tables written")
     return 0
 
 
@@ -77,8 +83,26 @@ def with_tables(text: str, where: str = "text") -> str:
 
 
 def markdown_tables() -> dict[str, str]:
-    """Every table by its name: ``topics``, and the parameters of each node by the node's name."""
-    tables = {"topics": topics.markdown_table()}
+    """Every table by its name: ``topics``, ``species``, and the parameters of each node by the node's name."""
+    tables = {"topics": topics.markdown_table(), "species": species_table()}
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters.markdown_table(table)
     return tables
+
+
+def species_table() -> str:
+    """Wood, damping, drag and leaves of every species."""
+    lines = [
+        "| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | leaves [m^2/m^2] | [kg/m^2] |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for key in species_keys():
+        wood, leaf = species_named(key), leaf_traits(key)
+        mark = " (an estimate)" if wood.is_estimate else ""
+        lines.append(
+            f"| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} "
+            f"| {wood.damping_bare:g}, {wood.damping_in_leaf:g} "
+            f"| {wood.drag_coefficient:g} U^-{wood.drag_exponent:g} "
+            f"| {leaf.area_per_section:g}{', evergreen' if leaf.is_evergreen else ''} | {leaf.fresh_mass:g} |"
+        )
+    return "\n".join(lines) + "\n"
