@@ -11,17 +11,20 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.importers.forest_yaml import parse_forest
 from tree_sway_ros.importers.tree_file import TREE_FORMATS, read_trees
+from tree_sway_ros.importers.tree_source import open_tree
 from tree_sway_ros.importers.treeqsm_text import read_treeqsm_text
 from tree_sway_ros.importers.wind_file import WIND_FORMATS, read_wind
 
 DATA = Path(__file__).parent / "data"
 TREES = ["seedling.yaml", "segments.csv", "fork.simpleforest.csv", "fork.archi.csv",
          "fork.treeqsm23.txt", "fork.treeqsm24.txt", "fork.pytlidar.txt", "forest.treefile.txt",
-         "fork.mtg", "fork.swc", "fork5.mat", "fork7.mat", "fork73.mat"]  # fmt: skip
+         "fork.mtg", "fork.swc", "fork5.mat", "fork7.mat", "fork73.mat", "glade.yaml"]  # fmt: skip
 WINDS = ["sonic.toa5.dat", "mast.nmea", "weather.nmea", "wind.csv", "wind_components.csv",
          "wind.db3", "wind.mcap"]  # fmt: skip
 
+SEEDLING = open_tree(DATA / "seedling.yaml")
 TOKENS = [b"nan", b"inf", b"-1", b"0", b"1e308", b"-1e999", b"99999999999999999999", b"", b"\n", b"\t",
           b",", b"[", b"{", b"&a [*a]", b"- ", b"\x00", b"\xff\xfe", b'"', b"1e-320", b".5", b"1_0",
           "\u0663".encode(), b"$", b"*", b"<S1", b"+A1", b"segment: 3", b"parent: stem", b"at: 0"]  # fmt: skip
@@ -79,6 +82,12 @@ def samples(tmp_path_factory):
         content["fork73.mat"] = (folder / "fork73.mat").read_bytes()
     except ImportError:
         pass
+    content["glade.yaml"] = b"""name: glade
+anemometer: [0, 0, 10]
+trees:
+- {name: a, tree: segments.csv, x: 1, y: -2.5, yaw: .3, leaf_on: true}
+- {name: b, tree: ./segments.csv, species: oak, z: 1e1}
+"""
     content.update(bags(folder))
     return content
 
@@ -129,7 +138,11 @@ def check(path: Path, name: str, content: bytes, format: str | None) -> None:
         if name in WINDS:
             assert_sound_wind(read_wind(path, format=format))
         else:
-            for tree_file in read_trees(path, format=format):
+            if name == "glade.yaml":
+                trees = parse_forest(path.read_text(errors="replace"), lambda *_: SEEDLING, name).trees
+            else:
+                trees = read_trees(path, format=format)
+            for tree_file in trees:
                 assert_sound_tree(tree_file.tree)
     except TreeSwayError as error:
         message = str(error)

@@ -20,16 +20,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tree_sway_ros.core.species import species_named
+from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.standing_tree import StandingTree
 from tree_sway_ros.errors import FormatError, TreeSwayError
 from tree_sway_ros.importers.forest_file import ForestFile
 from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.importers.species_yaml import open_species
 from tree_sway_ros.importers.text_file import read_head, read_text
 from tree_sway_ros.importers.yaml_nodes import YamlNode, parse_yaml
 from tree_sway_ros.importers.yaml_schema import SchemaCheck, packaged_schema
 
 OpenTree = Callable[[str, int], TreeFile]
+OpenSpecies = Callable[[str], Species]
 _SUFFIXES = (".yaml", ".yml", ".json")
 _TREES = re.compile(r"""^\{?\s*["']?trees["']?\s*:""", re.MULTILINE)
 
@@ -66,11 +68,23 @@ def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) ->
         beside = path.parent / Path(name).expanduser()
         return open_tree(beside if beside.is_file() else name, seed)
 
-    return parse_forest(read_text(path), opened, str(path), default_name=path.stem)
+    @cache
+    def opened_species(name: str) -> Species:
+        beside = path.parent / Path(name).expanduser()
+        return open_species(beside if beside.is_file() else name)
+
+    return parse_forest(
+        read_text(path), opened, str(path), default_name=path.stem, open_species=opened_species
+    )
 
 
 def parse_forest(
-    text: str, open_tree: OpenTree, source: str = "text", default_name: str = "forest"
+    text: str,
+    open_tree: OpenTree,
+    source: str = "text",
+    *,
+    default_name: str = "forest",
+    open_species: OpenSpecies = open_species,
 ) -> ForestFile:
     """Read a forest from YAML text; see `read_forest`."""
     root = parse_yaml(text, source)
@@ -81,7 +95,7 @@ def parse_forest(
     _refuse_same_names(values["trees"], nodes, source)
     trees, notes = [], []
     for entry, node in zip(values["trees"], nodes, strict=True):
-        standing, file_notes = _standing(entry, open_tree, f"{source}:{node.line}")
+        standing, file_notes = _standing(entry, open_tree, open_species, f"{source}:{node.line}")
         trees.append(standing)
         notes += [f"{standing.name}: {note}" for note in file_notes]
     anemometer = values.get("anemometer")
@@ -96,14 +110,14 @@ def parse_forest(
 
 
 def _standing(
-    entry: dict[str, Any], open_tree: OpenTree, where: str
+    entry: dict[str, Any], open_tree: OpenTree, open_species: OpenSpecies, where: str
 ) -> tuple[StandingTree, tuple[str, ...]]:
     """One tree of the list, and the notes of its file."""
     name = entry["name"]
     try:
         tree_file = open_tree(entry["tree"], entry.get("seed", 0))
         if "species" in entry:
-            tree_file = tree_file.of_species(species_named(entry["species"]))
+            tree_file = tree_file.of_species(open_species(entry["species"]))
     except TreeSwayError as error:
         inner = f"{error.where}: {error.what}" if error.where else error.what
         raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None

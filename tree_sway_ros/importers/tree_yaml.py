@@ -54,7 +54,7 @@ def parse_yaml_tree(text: str, source: str = "text", default_name: str = "tree")
     """Read a tree from YAML text; see `read_yaml_tree`."""
     root = parse_yaml(text, source)
     values: dict[str, Any] = SchemaCheck(tree_schema(), source).value(root)
-    species = _species(values, root, source)
+    species = species_of(values, root, source)
     if ("branches" in values) == ("segments" in values):
         found = "both branches and segments" if "branches" in values else "no branches or segments"
         raise FormatError(found, where=f"{source}:{root.line}", cure="give one of the two")
@@ -72,7 +72,8 @@ def parse_yaml_tree(text: str, source: str = "text", default_name: str = "tree")
     return TreeFile(tree, species, source)
 
 
-def _species(values: dict[str, Any], root: YamlNode, source: str) -> Species:
+def species_of(values: dict[str, Any], root: YamlNode, source: str) -> Species:
+    """Return the table's species that checked values name, with the wood they give in place of the table's."""
     key = values.get("species", "broadleaf")
     try:
         species = species_named(key)

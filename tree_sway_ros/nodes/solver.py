@@ -9,10 +9,10 @@ from std_srvs.srv import SetBool, Trigger
 from tree_sway_ros.core.scene_demand import tell_demand, tell_pace
 from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulators import simulators_of
-from tree_sway_ros.core.species import species_named
 from tree_sway_ros.core.wind_averaging import WindAverage
 from tree_sway_ros.core.wind_gate import WindGate
 from tree_sway_ros.core.wind_profile import WindProfile
+from tree_sway_ros.importers.species_yaml import open_species
 from tree_sway_ros.importers.tree_source import open_scene
 from tree_sway_ros.ros.diagnostics import Status
 from tree_sway_ros.ros.node import TreeSwayNode
@@ -39,7 +39,7 @@ class SolverNode(TreeSwayNode):
         super().__init__("solver", **options)
         source = open_scene(self.values["tree"])
         if self.values["species"]:
-            source = source.of_species(species_named(self.values["species"]))
+            source = source.of_species(open_species(self.values["species"]))
         settings = SimulatorSettings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),

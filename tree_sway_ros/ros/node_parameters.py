@@ -147,7 +147,7 @@ WIND: Table = (
 
 SOLVER: Table = (
     Parameter("tree", "benjamina", "Built-in name, or file of a tree or a forest."),
-    Parameter("species", "", "Key of the wood; empty for the tree's own."),
+    Parameter("species", "", "Key of the wood, or a species file; empty for the tree's own."),
     Parameter("rate", 60.0, "Steps a second.", "Hz", 1.0, 1000.0),
     Parameter(
         "publish_every", 1, "Frames: one in so many steps is published.", "", 1, 1000, live=True

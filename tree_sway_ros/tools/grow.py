@@ -7,14 +7,15 @@ import argparse
 import numpy as np
 
 from tree_sway_ros.core.growth.grow import HABITS, grow
-from tree_sway_ros.core.species import species_keys, species_named
+from tree_sway_ros.core.species import species_keys
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.importers.species_yaml import open_species
 from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("--species", required=True, help=", ".join(species_keys()))
+    parser.add_argument("--species", required=True, help=f"{', '.join(species_keys())}, or a species file")
     parser.add_argument("--height", type=float, required=True, metavar="M", help="height [m]")
     parser.add_argument(
         "--diameter", type=float, metavar="M", help="at breast height [m]; from the height if left out"
@@ -28,12 +29,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Grow a tree and write it."""
     if arguments.seed < 0:
         raise ParameterError(f"{arguments.seed} is negative", where="--seed", cure="give 0 or more")
+    species = open_species(arguments.species)
     tree = grow(
-        arguments.species,
+        species.key,
         arguments.height,
         arguments.diameter,
         arguments.habit,
         rng=np.random.default_rng(arguments.seed),
     )
-    write_tree_file(arguments.output, tree, species_named(tree.species))
+    write_tree_file(arguments.output, tree, species)
     return 0

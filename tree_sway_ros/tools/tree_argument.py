@@ -9,10 +9,11 @@ import argparse
 import dataclasses
 from typing import Any
 
-from tree_sway_ros.core.species import species_keys, species_named
+from tree_sway_ros.core.species import species_keys
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.importers.forest_file import ForestFile
 from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.importers.species_yaml import open_species
 from tree_sway_ros.importers.tree_source import open_scene, open_tree
 
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
@@ -27,7 +28,7 @@ def add_tree_arguments(parser: argparse.ArgumentParser, *, forests: bool = False
 def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what can be said of the wood of a tree, and of how its file is to be read."""
     parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
-    parser.add_argument("--species", help=f"its wood, if not the tree's own: {', '.join(species_keys())}")
+    parser.add_argument("--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}")
     parser.add_argument("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")
     parser.add_argument("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
     parser.add_argument(
@@ -71,11 +72,11 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
             where=scene.source,
             cure="say --species, or give trees files with wood of their own",
         )
-    return scene.of_species(species_named(arguments.species)) if arguments.species else scene
+    return scene.of_species(open_species(arguments.species)) if arguments.species else scene
 
 
 def _of_wood(tree_file: TreeFile, arguments: argparse.Namespace) -> TreeFile:
-    species = species_named(arguments.species) if arguments.species else tree_file.species
+    species = open_species(arguments.species) if arguments.species else tree_file.species
     return tree_file.of_species(dataclasses.replace(species, **_wood(arguments)))
 
 
