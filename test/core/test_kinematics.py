@@ -30,7 +30,7 @@ class Puppet:
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bank, origin = self.bank, self.tree.start[0].copy()
-        place(bank.branches, bank.segments, bank.oscillators.work, np.array(x, float), origin, out)
+        place(bank.branches, bank.segments, bank.heads, bank.oscillators.work, np.array(x, float), origin, out)
         return out
 
     def nodes(self, x):

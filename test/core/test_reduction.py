@@ -14,7 +14,7 @@ import pytest
 from tree_sway_ros.core.branch_model import branch_models
 from tree_sway_ros.core.kinematics import place
 from tree_sway_ros.core.layout import BRANCH, WORK
-from tree_sway_ros.core.placing_records import fill_branch_geometry, segment_records
+from tree_sway_ros.core.placing_records import fill_branch_geometry, head_records, segment_records
 from tree_sway_ros.core.reduction import reduce_tree
 
 MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0
@@ -37,11 +37,12 @@ class Reduced:
         self.branches["coordinate"] = self.reduction.first[:-1]
         self.branches["twist"] = self.reduction.twist
         self.segments = segment_records(tree, self.models)
+        self.heads = head_records(self.branches, self.segments)
 
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         work = np.zeros(self.tree.n_branches, dtype=WORK)
-        place(self.branches, self.segments, work, x, self.tree.start[0], out)
+        place(self.branches, self.segments, self.heads, work, x, self.tree.start[0], out)
         return out
 
     def points(self, x):

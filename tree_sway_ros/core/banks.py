@@ -18,7 +18,7 @@ from tree_sway_ros.core.layout import WORK, branch_layout
 from tree_sway_ros.core.loads import even_wind_moments
 from tree_sway_ros.core.modal import ModalBank
 from tree_sway_ros.core.modes import Modes, most_driven, natural_modes, refuse_buckling
-from tree_sway_ros.core.placing_records import fill_branch_geometry, segment_records
+from tree_sway_ros.core.placing_records import fill_branch_geometry, head_records, segment_records
 from tree_sway_ros.core.reduction import Reduction, reduce_tree
 from tree_sway_ros.core.response import Responding
 from tree_sway_ros.core.rigid_placing import RigidParts
@@ -91,8 +91,8 @@ class Bank:
     ----------
     oscillators
         What moves.
-    branches, segments
-        Records of `BRANCH` (b,) and `SEGMENT` (n,).
+    branches, segments, heads
+        Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
     frequencies
         Natural frequencies of the model without air in [Hz], rising.
     n_solved
@@ -107,6 +107,7 @@ class Bank:
     oscillators: Oscillators
     branches: Any
     segments: Any
+    heads: Any
     frequencies: Floats
     n_solved: int
     mass: float
@@ -194,7 +195,9 @@ class CalibratedTree:
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
         solved = int((branches["source"] == np.arange(len(branches))).sum())
-        return Bank(oscillators, branches, layer.segments.copy(), frequencies, solved, layer.mass)
+        segments = layer.segments.copy()
+        heads = head_records(branches, segments)
+        return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
 
     def layer(self, rung: str) -> Layer:
         """Reduction that a rung starts from."""

@@ -6,7 +6,7 @@ kernel takes a record array as one argument, where each plain array costs a call
 
 Segments follow their branch and not each other, so those at the same place in sixteen branches are computed at once: a
 record holds sixteen lanes, one a branch, and distances within it are constants that let the compiler use vectors. The
-records of sixteen branches, from base to tip, make a block.
+records of sixteen branches, from base to tip, make a block; parents are in earlier blocks than their children.
 
 Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations in [rad].
 
@@ -76,21 +76,60 @@ LANES = 16
 
 @cache
 def segment_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
-    """All that placing needs to know of one segment of each of sixteen branches, and what it finds."""
+    """All that placing needs to know of one segment of each of sixteen branches."""
     return np.dtype(
         [
-            ("head", "i8"),  # first record of its block
-            ("in_plane", "i8"),  # whether no branch of its block has more than one shape
+            ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
             ("slope", "f8", (n_slopes, LANES)),  # of each shape, then of each twist
             ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
             ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
             ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
-            ("pose", "f8", (4, LANES)),  # orientation when placed, w x y z
-            ("ahead", "f8", (3, LANES)),  # its chord when placed
-            # Of the branch, in the first record of a block:
+        ]
+    )
+
+
+@cache
+def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+    """
+    What placing needs to know of the sixteen branches of a block, and finds.
+
+    All work in the last record, behind the last block's, so that it stays in the fastest cache.
+
+    """
+    return np.dtype(
+        [
+            ("block", "i8"),  # first record of their segments
+            ("n_records", "i8"),
+            ("n_lanes", "i8"),
+            ("is_plain", "i8"),  # whether none of them has more than one shape
+            # As in `BRANCH`:
+            ("branch", "i8", (LANES,)),
+            ("parent", "i8", (LANES,)),
+            ("rides_plain", "i8", (LANES,)),  # whether its parent has one shape
+            ("coordinate", "i8", (LANES,)),
+            ("seat", "i8", (LANES,)),
+            ("first", "i8", (LANES,)),
+            ("frame", "f8", (3, 3, LANES)),
+            ("skew", "f8", (LANES,)),
+            ("tip_skew", "f8", (LANES,)),
+            ("steepest", "f8", (LANES,)),
+            ("seat_slope", "f8", (LANES,)),
+            ("offset", "f8", (3, LANES)),
+            # Room to work in:
+            ("key", "f8", (2, LANES)),  # key rotation
+            ("below", "f8", (4, LANES)),  # orientation of the parent's base, from rest, w x y z
+            ("under", "f8", (7, LANES)),  # pose of the seat
+            ("seat_turn", "f8", (3, LANES)),  # half the rotation vector of the seat, from the parent's base
+            ("turn", "f8", (3, LANES)),  # half the rotation vector a unit of slope, as children see it
             ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
             ("way", "f8", (n_slopes, 3, LANES)),  # half the rotation vector a unit of each slope
+            ("square", "f8", (LANES,)),  # of the length of the first of these
+            ("swing", "f8", (4, LANES)),  # the first of these, then the base: what a sine is multiplied by
+            ("half_angle", "f8", (LANES,)),  # bound on the square of half of what segments turn by [rad^2]
+            ("at", "f8", (3, LANES)),  # where the segment starts
+            ("ahead", "f8", (3, LANES)),  # its chord when placed
+            ("pose", "f8", (4, LANES)),  # its orientation when placed, w x y z
         ]
     )
 
@@ -106,7 +145,7 @@ WORK = np.dtype(
         ("met", "f8", (3,)),  # the same, where the base has turned the branch to [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
-        ("half_angle", "f8"),  # bound on the square of half of what its segments turn by when placed [rad^2]
+        ("turn", "f8", (3,)),  # half the rotation vector a unit of slope, for who sits on a branch of one shape
     ]
 )
 """What a step computes on the way, kept from one step to the next."""

@@ -5,6 +5,7 @@ What placing knows of a tree, laid out for it: shapes of its branches, segments 
 
 from __future__ import annotations
 
+from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from tree_sway_ros.core.branch_beam import SlopeShape
 from tree_sway_ros.core.branch_model import BranchModel
 from tree_sway_ros.core.branch_shapes import N_SHAPES
-from tree_sway_ros.core.layout import LANES, segment_layout
+from tree_sway_ros.core.layout import LANES, head_layout, segment_layout
 from tree_sway_ros.core.rotation import quaternions_from_x, rotated
 from tree_sway_ros.core.tree import Floats, Tree
 
@@ -30,11 +31,7 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     block, lane, n_records = lanes(tree, models)
     is_plain = all(len(model.coordinates) == 2 for model in models)
     records = np.zeros(n_records, dtype=segment_layout(1) if is_plain else segment_layout())
-    records["rest"][:, 0] = records["base"][:, 0] = 1.0
-    records["head"] = np.maximum.accumulate(
-        np.where(np.isin(np.arange(n_records), block), np.arange(n_records), 0)
-    )
-    records["in_plane"] = 1
+    records["rest"][:, 0] = 1.0
     rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
     for branch, model in enumerate(models):
         here = tree.segments_of(branch)
@@ -46,14 +43,40 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
         for column, shape in _distinct_shapes(model):
             records["slope"][rows, column, own] = shape.segment_slope
         records["tip_slope"][rows, own] = _tip_load_slope(model)
-        if len(model.coordinates) > 2:
-            records["in_plane"][records["head"] == block[branch]] = 0
+        records["n_lanes"][rows] = np.maximum(records["n_lanes"][rows], own + 1)
     return records
+
+
+def head_records(branches: Any, segments: Any) -> Any:
+    """
+    Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
+
+    Returns
+    -------
+    ndarray
+        Of `head_layout`, one a block of `lanes` and one to work in.
+
+    """
+    first, block = np.unique(branches["block"], return_inverse=True)
+    lane, parent = branches["lane"], branches["parent"]
+    heads = np.zeros(len(first) + 1, dtype=head_layout(segments["slope"].shape[1]))
+    heads["block"] = [*first, len(segments)]
+    heads["n_records"][:-1] = np.diff(heads["block"])
+    heads["n_lanes"][:-1] = segments["n_lanes"][first]
+    heads["is_plain"] = 1
+    heads["is_plain"][block[branches["n_coordinates"] > 2]] = 0
+    heads["branch"][block, lane] = np.arange(len(branches))
+    heads["rides_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
+    for name in ("parent", "coordinate", "seat", "first", "frame", "skew", "tip_skew", "offset"):
+        heads[name][block, ..., lane] = branches[name]
+    for name in ("steepest", "seat_slope"):
+        heads[name][block, lane] = branches[name][:, 0]
+    return heads
 
 
 def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
     """
-    Give each branch a lane of a block: branches of a kind together, so that few lanes stay empty.
+    Give each branch a lane of a block: parents in earlier blocks, long branches together, so that few lanes stay empty.
 
     Returns
     -------
@@ -62,15 +85,19 @@ def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
 
     """
     size = np.diff(tree.branch_first)
-    enriched = np.array([len(model.coordinates) > 2 for model in models])
-    order = np.lexsort((np.arange(len(size)), -size, enriched))
+    children: list[list[int]] = [[] for _ in size]
+    for branch, parent in enumerate(tree.branch_parent[1:].tolist(), start=1):
+        children[parent].append(branch)
     block, lane = np.zeros((2, len(size)), dtype=np.int64)
-    lane[order] = np.arange(len(size)) % LANES
-    first = 0
-    for k in range(0, len(order), LANES):
-        together = order[k : k + LANES]
-        block[together] = first
-        first += int(size[together].max())
+    carried = (tree.subtree_end - np.arange(len(size))).tolist()
+    first, ready = 0, [(-int(size[0]), -carried[0], 0)]
+    while ready:
+        together = [heappop(ready)[-1] for _ in range(min(LANES, len(ready)))]
+        block[together], lane[together] = first, np.arange(len(together))
+        first += int(size[together[0]])
+        for branch in together:
+            for child in children[branch]:
+                heappush(ready, (-int(size[child]), -carried[child], child))
     return block, lane, first
 
 

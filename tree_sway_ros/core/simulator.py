@@ -205,7 +205,7 @@ class SwaySimulator:
         poses = self._poses if out is None else out
         bank, work = self._bank, self._bank.oscillators.work
         rotations = bank.oscillators.rotations()
-        place(bank.branches, bank.segments, work, rotations, self._origin, poses)
+        place(bank.branches, bank.segments, bank.heads, work, rotations, self._origin, poses)
         if bank.frozen is not None:
             bank.frozen.place(bank.branches, work, rotations, poses)
         if out is not None:

@@ -107,7 +107,7 @@ def _axis(tree: Tree, bank: Bank, shape: Floats) -> Floats:
     poses = np.zeros((tree.n_segments, 7))
     small = _SMALL_ANGLE / np.abs(shape).max() * shape
     work = bank.oscillators.work.copy()
-    place(bank.branches, bank.segments, work, small, tree.start[0], poses)
+    place(bank.branches, bank.segments, bank.heads, work, small, tree.start[0], poses)
     start, end = ends_of_poses(poses, tree.length)
     moved = (start + end - tree.start - tree.end) / (2.0 * _SMALL_ANGLE)
     _, axes = np.linalg.eigh(np.einsum("n,ni,nj->ij", tree.volume, moved, moved))
