@@ -81,7 +81,8 @@ def read_bag_wind(
         raise
     except Exception as error:
         raise FormatError(
-            f"not a bag that can be read: {type(error).__name__}: {error}"[:300], where=source
+            f"not a bag that can be read: {type(error).__name__}: {' '.join(str(error).split())}"[:300],
+            where=source,
         ) from error
     notes.append(f"topic {connection.topic}, {connection.msgtype}")
     if n_unstamped:
