@@ -1,6 +1,9 @@
-"""For all tests: Hypothesis draws the same cases in every run, and more of them when asked to."""
+"""For all tests: Hypothesis draws the same cases in every run, and more of them when asked to; one thread a test."""
 
 import os
+
+# Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the test beside.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from hypothesis import settings
 

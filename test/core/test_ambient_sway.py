@@ -38,7 +38,7 @@ def test_the_peak_is_that_of_an_oscillator():
 @pytest.mark.parametrize("damping", [0.03, 0.1])
 @pytest.mark.parametrize("colour", [0.0, -5.0 / 3.0, 2.0])
 def test_unbiased_and_as_uncertain_as_it_says(damping, colour):
-    found = [ambient_sway(driven(damping, seed, colour=colour), DT, 0.68) for seed in range(24)]
+    found = [ambient_sway(driven(damping, seed, colour=colour), DT, 0.68) for seed in range(16)]
     for name, truth in (("frequency", 0.7), ("damping", damping)):
         values = np.array([one.frequency if name == "frequency" else one.damping_ratio for one in found])
         error = np.mean([getattr(one, f"{name}_error") for one in found])
