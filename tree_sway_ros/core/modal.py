@@ -114,7 +114,7 @@ class ModalBank:
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
         eta = dynamic - (self._held.T @ moments)[:, :, None]
         rest = self._flexibility[:, None, None] * moments[:, :, None]
-        swinging = np.tensordot(self.shapes, eta, axes=(1, 0)) + rest
+        swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
         return np.asarray(swinging, dtype=np.complex128)
 
     def rotations(self) -> Floats:
