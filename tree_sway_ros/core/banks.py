@@ -48,6 +48,8 @@ class Oscillators(Responding, Protocol):
         """Go back to rest."""
 
 
+_COUPLED = ("modes", "coupled")
+
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
 
@@ -181,7 +183,7 @@ class CalibratedTree:
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if rung == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
-        elif layer is self.coupled:
+        elif rung in _COUPLED:
             modes = self._modes(rung, n_modes)
             oscillators = ModalBank(
                 branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
@@ -203,7 +205,7 @@ class CalibratedTree:
         """Reduction that a rung starts from."""
         if rung == "branch":
             return self.alone
-        return self.coupled if rung in ("modes", "coupled") else self.carried
+        return self.coupled if rung in _COUPLED else self.carried
 
     @cached_property
     def alone(self) -> Layer:
