@@ -137,17 +137,20 @@ def link_resources():
     index = VENV / "share" / "ament_index" / "resource_index" / "packages"
     share = VENV / "share" / "tree_sway_ros"
     executables = VENV / "lib" / "tree_sway_ros"
-    for folder in (index, share, executables):
-        folder.mkdir(parents=True, exist_ok=True)
+    for folder in (share, executables):  # what has gone from the checkout goes here too
+        shutil.rmtree(folder, ignore_errors=True)
     links = {index / "tree_sway_ros": ROOT / "resource" / "tree_sway_ros"}
-    links.update({share / name: ROOT / name for name in ("package.xml", "launch", "config")})
+    # File by file: `ros2 launch` looks for its files where os.walk goes, which passes linked folders by.
+    shared = [ROOT / "package.xml", *ROOT.glob("launch/*.py"), *ROOT.glob("config/*")]
+    links.update({share / path.relative_to(ROOT): path for path in shared})
     for entry_points in VENV.glob("lib/python*/site-packages/tree_sway_ros-*/entry_points.txt"):
         for line in entry_points.read_text().splitlines():
             if "= tree_sway_ros.nodes." in line:
                 name = line.split()[0]
                 links[executables / name] = VENV / "bin" / name
     for link, target in links.items():
-        if link.is_symlink() or link.exists():
+        link.parent.mkdir(parents=True, exist_ok=True)
+        if link.is_symlink():
             link.unlink()
         link.symlink_to(target)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -139,8 +140,9 @@ def test_it_sets_up_once_and_again_when_the_stamp_is_old(
     stamp.write_text(f"2.7 {root} another")
     script.make_ready({})
     assert done[0] == "venv"
-    for link in ("share/tree_sway_ros/package.xml", "share/tree_sway_ros/launch"):
-        assert (script.VENV / link).exists()
+    share = script.VENV / "share" / "tree_sway_ros"
+    files = {name for _, _, names in os.walk(share) for name in names}  # as `ros2 launch` looks
+    assert {"package.xml", "sway.launch.py", "solver.yaml", "tree_sway.rviz"} <= files
     assert (script.VENV / "share/ament_index/resource_index/packages/tree_sway_ros").exists()
 
 
