@@ -11,6 +11,7 @@ from pathlib import Path
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.tools.bench_cut import cut_table
 from tree_sway_ros.tools.bench_forest import forest_table
+from tree_sway_ros.tools.bench_setup import setup_table
 from tree_sway_ros.tools.bench_step import StepTiming, time_steps
 from tree_sway_ros.tools.bench_tree import bench_tree
 
@@ -19,9 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "what",
-        choices=("step", "cut", "forest"),
+        choices=("step", "cut", "forest", "setup"),
         help="step: solve and place one step of a tree of 121 branches; cut: solve it cut in 3 to 24 segments a "
-        "branch; forest: 20 trees of 10,200 segments at 60 Hz",
+        "branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees of 121 and 1,021 branches up",
     )
     parser.add_argument("--rounds", type=int, default=20, help="of 200 steps each (%(default)s)")
     parser.add_argument("--segments", type=int, default=6, help="a branch, for step (%(default)s)")
@@ -35,9 +36,11 @@ def run(arguments: argparse.Namespace) -> int:
             value = getattr(arguments, name)
             raise ParameterError(f"{value}", where=f"--{name}", cure=f"give {low} to {high}")
     if arguments.what != "step":
-        is_cut = arguments.what == "cut"
         print(f"one thread on {core_name()}")
-        print(cut_table(10 * arguments.rounds) if is_cut else forest_table())
+        if arguments.what == "cut":
+            print(cut_table(10 * arguments.rounds))
+        else:
+            print(forest_table() if arguments.what == "forest" else setup_table())
         return 0
     tree = bench_tree(arguments.segments)
     timings = [time_steps(tree, rung, arguments.rounds) for rung in ("branch", "subtree", "modes")]
