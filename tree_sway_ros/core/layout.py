@@ -168,6 +168,13 @@ AIR = np.dtype(
 
 SWAY = np.dtype(
     [
+        *((name, *AIR.fields[name][0].subdtype) for name in AIR.names or ()),  # type: ignore[index, misc]
+        ("centre", "f8", (3, LANES)),  # as in `BRANCH`, as are the next three, of the first shape
+        ("flow", "f8", (2, 3, LANES)),
+        ("lean", "f8", (2, 3, LANES)),  # its turn
+        ("push", "f8", (2, 3, LANES)),
+        ("along", "f8", (3, LANES)),  # its chord times its lever
+        ("velocity", "f8", (6, LANES)),  # of the base
         ("x", "f8", (2, LANES)),
         ("v", "f8", (2, LANES)),
         ("load", "f8", (3, LANES)),  # along b, e1, e2 [N m]
@@ -179,4 +186,4 @@ SWAY = np.dtype(
         ("is_solved", "i8", (LANES,)),  # whether it copies no other
     ]
 )
-"""Oscillators of sixteen branches that follow each other."""
+"""Oscillators of sixteen branches that follow each other, and what the wind meets on them."""

@@ -100,7 +100,7 @@ def blow(
             b = LANES * block + lane
             _expose(branches[b], work[b], air[block], lane, x, v)
     for block in range(len(air)):
-        _press(air[block], wx, wy, wz, per_speed_squared)
+        press(air[block], wx, wy, wz, per_speed_squared)
     for block in range(len(air)):
         for lane in range(min(LANES, n - LANES * block)):
             here, pressed = work[LANES * block + lane], air[block]
@@ -134,7 +134,7 @@ def _expose(branch: Any, work: Any, air: Any, lane: int, x: Floats, v: Floats) -
 
 
 @fused
-def _press(air: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
+def press(air: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
     """Find the force on sixteen branches, drag in the frame of each as it is turned."""
     speed, motion, turn, base, slip = air.speed, air.motion, air.turn, air.base, air.slip
     force, met, p = air.force, air.met, air.projector
@@ -199,8 +199,13 @@ def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: F
         for c in range(branch.n_coordinates):
             moment[i + c] = branch.push[c, 0] * fx + branch.push[c, 1] * fy + branch.push[c, 2] * fz
         pull[b] = branch.lever * (chord[0, 0] * fx + chord[0, 1] * fy + chord[0, 2] * fz)
-    if not carries:
-        return
+    if carries:
+        carried(branches, work, moment, pull)
+
+
+@fused
+def carried(branches: Any, work: Any, moment: Floats, pull: Floats) -> None:
+    """Add to moments and pulls, as of `generalised`, those of all that a branch carries."""
     for b in range(1, len(branches)):
         branch, wrench = branches[b], work[b].wrench
         parent = branches[branch.parent]
