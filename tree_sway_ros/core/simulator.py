@@ -98,8 +98,10 @@ class SwaySimulator:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self._bank: Bank = calibrated.bank(self.settings.rung, self.settings.n_modes)
         self._drag_law = self.species.drag_law(self.settings.in_leaf)
+        self._advance = self._bank.oscillators.advance
+        self._max_wind = self.settings.max_wind
         self._dt = 0.0
-        self._wind = np.zeros(3)
+        self._wind = (0.0, 0.0, 0.0)
         self._poses = np.zeros((tree.n_segments, 7))
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
@@ -129,7 +131,7 @@ class SwaySimulator:
     @property
     def wind(self) -> Floats:
         """Wind of the last step in [m/s], (3,)."""
-        return self._wind
+        return np.array(self._wind)
 
     @property
     def mass(self) -> float:
@@ -165,22 +167,18 @@ class SwaySimulator:
         """
         wx, wy, wz = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         status = OK
-        speed = (
-            math.sqrt(wx * wx + wy * wy + wz * wz)
-            if max(abs(wx), abs(wy), abs(wz)) < 1e9
-            else math.inf
-        )
-        if speed <= self.settings.max_wind:
-            self._wind[0], self._wind[1], self._wind[2] = wx, wy, wz
+        speed = math.hypot(wx, wy, wz)
+        if speed <= self._max_wind:
+            self._wind = wx, wy, wz
         else:
             status = WIND_REFUSED
             self.counts.refused += 1
-            wx, wy, wz = self._wind.tolist()
-            speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+            wx, wy, wz = self._wind
+            speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
         load = pressure(speed, *self._drag_law)
-        held = self._bank.oscillators.advance(wx, wy, wz, load)
+        held = self._advance(wx, wy, wz, load)
         if held:
             self.counts.held += held
             status |= LOAD_HELD
@@ -233,7 +231,7 @@ class SwaySimulator:
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self._bank.oscillators.reset()
-        self._wind[:] = 0.0
+        self._wind = (0.0, 0.0, 0.0)
         self.place()
 
     def _set_step(self, dt: float) -> None:
