@@ -17,7 +17,7 @@ from launch_ros.actions import Node
 
 PACKAGE = "tree_sway_ros"
 ARGUMENTS = (
-    ("tree", "", "benjamina, goldcrest, broadleaf, or a file of one tree or more; as configured if empty"),
+    ("tree", "", "benjamina, goldcrest, broadleaf, or a file of trees; as configured if empty"),
     ("source", "simulated", "where the wind comes from", ["simulated", "player", "live"]),
     ("file", "", "wind record for source:=player"),
     ("wind_topic", "wind", "topic of the wind for source:=live"),
