@@ -69,6 +69,7 @@ def test_a_forest_is_streamed_as_one(compose, observer, statuses, forest_file):
     observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
     values = {pair.key: pair.value for pair in statuses("solver: model").values}
     assert values["fidelity of oak"] == values["fidelity of elm"] == "modes"
+    assert "s late" in statuses("solver: gusts").message
 
 
 def test_each_tree_is_as_exact_as_its_distance_from_the_camera_asks(compose, observer, forest_file):

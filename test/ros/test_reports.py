@@ -5,8 +5,9 @@ pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402
 
+from tree_sway_ros.core.gust_travel import GustHistory  # noqa: E402
 from tree_sway_ros.core.wind_gate import WindGate  # noqa: E402
-from tree_sway_ros.ros import wind_report  # noqa: E402
+from tree_sway_ros.ros import sway_report, wind_report  # noqa: E402
 from tree_sway_ros.ros.diagnostics import OK, STALE, WARN, Status, status_array  # noqa: E402
 from tree_sway_ros.ros.pacer import Pace  # noqa: E402
 from tree_sway_ros.ros.sway_report import SwayReport  # noqa: E402
@@ -105,3 +106,12 @@ def test_every_state_of_the_wind_has_a_level(state, level):
     from tree_sway_ros.ros.sway_report import _wind
 
     assert _wind(state).level == level
+
+
+def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
+    for x, level in ((40.0, OK), (-40.0, WARN), (4000.0, WARN)):
+        history = GustHistory([[0.0, 0.0, 0.0], [x, 0.0, 0.0]], (0.0, 0.0, 0.0))
+        history.push((8.0, 0.0, 0.0), 1.0 / 60.0)
+        status = sway_report._gusts(history)
+        assert status.level == level
+    assert "too far downwind" in status.message

@@ -41,7 +41,9 @@ class SwayReport:
 
         """
         output = self._output(pacer.pace(), 1e9 / pacer.period, frames)
-        return [_wind(stepper.wind_state), output, _model(stepper.simulator)]
+        statuses = [_wind(stepper.wind_state), output, _model(stepper.simulator)]
+        gusts = getattr(stepper.simulator, "gusts", None)
+        return statuses if gusts is None else [*statuses, _gusts(gusts)]
 
     def _output(self, pace: Pace, rate: float, frames: int) -> Status:
         now = time.monotonic()
@@ -100,3 +102,19 @@ def _model(simulator: Any) -> Status:
             what = f"no model is within the tolerance; {nearest}"
             return Status("model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values)
     return Status("model", OK, simulator.rung, values)
+
+
+def _gusts(history: Any) -> Status:
+    """How late the trees of a forest feel the wind."""
+    values = {
+        "longest delay [s]": float(history.delay.max()),
+        "trees upwind of the anemometer": history.n_ahead,
+        "trees beyond the memory": history.n_forgotten,
+    }
+    if history.n_ahead:
+        what = f"{history.n_ahead} trees stand upwind of the anemometer and feel the wind at once"
+        return Status("gusts", WARN, what, values)
+    if history.n_forgotten:
+        what = f"{history.n_forgotten} trees stand too far downwind: they feel the oldest wind kept"
+        return Status("gusts", WARN, what, values)
+    return Status("gusts", OK, f"up to {values['longest delay [s]']:.1f} s late", values)
