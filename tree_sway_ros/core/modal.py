@@ -5,7 +5,7 @@ Rung 3, `modes`, steps the m slowest modes and takes what is left of the motion 
 diagonal of the flexibility, and E takes out of it what the modes already hold. Rung 4, `coupled`, steps all modes and leaves
 nothing. As in rungs 1 and 2 the load is found once a step, at the state half a step on.
 
-Symbols: Phi mode shapes (N, m), eta modal coordinates, Q moments on the key rotations, w circular frequencies.
+Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments on the key rotations, w circular frequencies.
 
 """
 
@@ -59,13 +59,15 @@ class ModalBank:
         """Make room for the coefficients and the state."""
         n, m = modes.shapes.shape
         self.branches = branches
-        self.shapes, self.integrator = modes.shapes, integrator
+        # One mode after another, so that a loop over coordinates is one of vectors.
+        self._shapes = np.ascontiguousarray(modes.shapes.T)
+        self.shapes, self.integrator = self._shapes.T, integrator
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
         self._flexibility = 1.0 / diagonal if m < n else np.zeros(n)
         held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
-        self._held = np.ascontiguousarray(held)
+        self._held = np.ascontiguousarray(held.T)
         self._limit = LOAD_MAX * diagonal
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
@@ -102,7 +104,7 @@ class ModalBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self._air, self.modal, self.state, self.shapes, self._held,
+                self.branches, self.work, self._air, self.modal, self.state, self._shapes, self._held,
                 self._flexibility, self._limit, self._whole, self._half, self._pull,
                 wx, wy, wz, per_speed_squared,
             )
@@ -112,14 +114,14 @@ class ModalBank:
         """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
-        eta = dynamic - (self._held.T @ moments)[:, :, None]
+        eta = dynamic - (self._held @ moments)[:, :, None]
         rest = self._flexibility[:, None, None] * moments[:, :, None]
         swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
         return np.asarray(swinging, dtype=np.complex128)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _expand(self.shapes, self._flexibility, self.modal, self.state)
+        _expand(self._shapes, self._flexibility, self.modal, self.state)
         rotations: Floats = self.state[3]
         return rotations
 
@@ -154,10 +156,11 @@ def _expand(shapes: Floats, flexibility: Floats, modal: Floats, state: Floats) -
     """Modes and static rest to key rotations."""
     eta, rest, moment, x = modal[0], modal[2], state[0], state[3]
     for i in range(len(x)):
-        total = flexibility[i] * moment[i]
-        for k in range(len(eta)):
-            total += shapes[i, k] * (eta[k] - rest[k])
-        x[i] = total
+        x[i] = flexibility[i] * moment[i]
+    for k in range(len(eta)):
+        amount = eta[k] - rest[k]
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * amount
 
 
 @fused
@@ -174,11 +177,12 @@ def _to_middle(
         middle_eta[k] = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * force[k] - rest[k]
         middle_rate[k] = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * force[k]
     for i in range(len(x)):
-        angle, turning = flexibility[i] * moment[i], 0.0
-        for k in range(len(eta)):
-            angle += shapes[i, k] * middle_eta[k]
-            turning += shapes[i, k] * middle_rate[k]
-        x[i], v[i] = angle, turning
+        x[i], v[i] = flexibility[i] * moment[i], 0.0
+    for k in range(len(eta)):
+        amount, pace = middle_eta[k], middle_rate[k]
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * amount
+            v[i] += shapes[k, i] * pace
 
 
 @fused
@@ -202,13 +206,12 @@ def _advance(
         if not abs(moment[i]) <= limit[i]:
             moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
             over += 1
-    force[:] = 0.0
-    rest[:] = 0.0
-    for i in range(len(moment)):
-        for k in range(len(eta)):
-            force[k] += shapes[i, k] * moment[i]
-            rest[k] += held[i, k] * moment[i]
     for k in range(len(eta)):
+        pushed, resting = 0.0, 0.0
+        for i in range(len(moment)):
+            pushed += shapes[k, i] * moment[i]
+            resting += held[k, i] * moment[i]
+        force[k], rest[k] = pushed, resting
         c, old = whole[k], eta[k]
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * force[k]
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * force[k]
