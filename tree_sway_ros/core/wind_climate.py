@@ -112,25 +112,30 @@ class ClimateTracker:
     def __init__(self, memory: float = 60.0) -> None:
         """Start with no wind."""
         self.memory = memory
-        self._weight = 0.0
-        self._mean, self._square, self._speed = np.zeros(2), np.zeros((2, 2)), 0.0
+        self._weight = self._speed = 0.0
+        self._x = self._y = self._xx = self._xy = self._yy = 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
-        """Take in the wind (3,) in [m/s] of a step of dt [s]."""
-        speed = math.hypot(wind[0], wind[1], wind[2])
-        load = speed * wind[:2]
+        """Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step."""
+        u, v, w = wind.tolist()
+        speed = math.sqrt(u * u + v * v + w * w)
+        x, y = speed * u, speed * v
         keep = math.exp(-dt / self.memory)
         self._weight = keep * self._weight + (1.0 - keep)
         new = (1.0 - keep) / self._weight
-        self._mean += new * (load - self._mean)
-        self._square += new * (np.outer(load, load) - self._square)
         self._speed += new * (speed - self._speed)
+        self._x += new * (x - self._x)
+        self._y += new * (y - self._y)
+        self._xx += new * (x * x - self._xx)
+        self._xy += new * (x * y - self._xy)
+        self._yy += new * (y * y - self._yy)
 
     @property
     def climate(self) -> WindClimate:
         """Statistics so far."""
-        covariance = self._square - np.outer(self._mean, self._mean)
-        return WindClimate(self._mean.copy(), covariance, self._speed)
+        mean = np.array([self._x, self._y])
+        square = np.array([[self._xx, self._xy], [self._xy, self._yy]])
+        return WindClimate(mean, square - np.outer(mean, mean), self._speed)
 
 
 def _integral_time(signal: Floats, rate: float) -> float:

@@ -16,13 +16,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tree_sway_ros.core.reference.measure import record_tips, tip_error
+from tree_sway_ros.core.adaptive import AdaptiveSimulator
+from tree_sway_ros.core.reference.measure import Swaying, record_tips, tip_error
+from tree_sway_ros.core.settings import SimulatorSettings
 from tree_sway_ros.core.simulator import SwaySimulator
 from tree_sway_ros.core.species import Species
 from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.wind_climate import WindClimate
 from tree_sway_ros.tools.mujoco_tree import MujocoTree
 
 FRAME = 1.0 / 60.0
+AUTO = 0.05
+"""Error over motion that a model may say it has, where the cheapest is asked for; both root mean square."""
+
 _BLOCK = 20
 
 
@@ -103,7 +109,7 @@ def compare_with_mujoco(
     wind
         Mean of each frame of 1/60 s in [m/s], (t, 3).
     rung
-        Of ours.
+        Of ours; ``auto`` is the cheapest that says of itself that it errs by no more than `AUTO` of the motion.
     damping_ratio
         In [-].
     steps
@@ -121,12 +127,19 @@ def compare_with_mujoco(
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
     quick = MujocoTree(tree, wood, damping_ratio, even=False)
-    ours = SwaySimulator(
-        tree, wood, rung=rung, damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0
-    )
-    tips = record_tips(ours, tree, wind, FRAME)
-    at_60, cost, mujoco_cost = _race(quick, ours, wind)
+    settings = SimulatorSettings(damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0)
     rest = tree.end[tree.branch_first[1:] - 1]
+    ours: SwaySimulator | AdaptiveSimulator
+    if rung == "auto":
+        motion = float(np.sqrt(np.square(truth - rest).sum(axis=2).mean()))
+        expected = WindClimate.of_samples(wind, 1.0 / FRAME)
+        ours = AdaptiveSimulator(tree, wood, settings, tolerance=AUTO * motion, expected=expected)
+        rung = ours.choice.name
+    else:
+        ours = SwaySimulator(tree, wood, settings, rung=rung)
+    tips = record_tips(ours, tree, wind, FRAME)
+    ours.reset()
+    at_60, cost, mujoco_cost = _race(quick, ours, wind)
     return Comparison(
         n_branches=tree.n_branches,
         n_segments=tree.n_segments,
@@ -153,12 +166,11 @@ def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
     return tips
 
 
-def _race(model: MujocoTree, ours: SwaySimulator, wind: Floats) -> tuple[Floats, float, float]:
+def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float, float]:
     """MuJoCo's tips at one step a frame, and CPU time a simulated second of both, in turn by blocks of frames."""
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     poses = np.empty((model.tree.n_segments, 7))
     spent, spent_there = np.empty((2, len(wind)))
-    ours.reset()
     for first in range(0, len(wind), _BLOCK):
         block = range(first, min(first + _BLOCK, len(wind)))
         for frame in block:
