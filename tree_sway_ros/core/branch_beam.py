@@ -131,15 +131,15 @@ class BranchBeam:
             The integral up to each point (m, 5, ...), each node (m + 1, ...) and each child (c, ...).
 
         """
-        over_segments = np.einsum("sg,sg...->s...", self.weight, values)
-        nodes = np.zeros((len(values) + 1, *values.shape[2:]))
-        np.cumsum(over_segments, axis=0, out=nodes[1:])
-        points = nodes[:-1, None] + np.einsum("s,pg,sg...->sp...", self.length, _TO_POINTS, values)
+        tail = values.shape[2:]
+        flat = values.reshape(*values.shape[:2], -1)
+        nodes = np.zeros((len(flat) + 1, flat.shape[2]))
+        np.cumsum((self.weight[:, None, :] @ flat)[:, 0], axis=0, out=nodes[1:])
+        points = nodes[:-1, None] + self.length[:, None, None] * (_TO_POINTS @ flat)
         segment = self.children.segment
-        within = np.einsum(
-            "c,cg,cg...->c...", self.length[segment], self._child_rows, values[segment]
-        )
-        return points, nodes, nodes[segment] + within
+        within = (self._child_rows[:, None, :] @ flat[segment])[:, 0]
+        children = nodes[segment] + self.length[segment, None] * within
+        return points.reshape(values.shape), nodes.reshape(-1, *tail), children.reshape(-1, *tail)
 
     def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """

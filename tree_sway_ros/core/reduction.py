@@ -109,9 +109,11 @@ def reduce_tree(
         own = slice(int(first[branch]), int(first[branch + 1]))
         fields, twists = _motions(model)
         dm = model.mass * model.beam.weight
-        own_mass = np.einsum("sg,isgk,jsgk->ij", dm, fields, fields)
-        momentum[own, :3] = np.einsum("sg,isgk->ik", dm, fields)
-        momentum[own, 3:] = np.einsum("sg,isgk->ik", dm, np.cross(model.beam.point, fields))
+        moved = dm[..., None] * fields
+        own_mass = moved.reshape(len(fields), -1) @ fields.reshape(len(fields), -1).T
+        momentum[own, :3] = moved.sum(axis=(1, 2))
+        lever = model.beam.point.reshape(-1, 3).T @ moved.reshape(len(fields), -1, 3)
+        momentum[own, 3:] = (lever - lever.transpose(0, 2, 1))[:, [1, 2, 0], [2, 0, 1]]
         own_weight = gravity * _own_geometric(model, body[model.children])
         for number, child in enumerate(model.children):
             rides = twists[:, number]
@@ -144,13 +146,15 @@ class _Blocks:
         self.values: list[Floats] = []
 
     def add(self, rows: slice, columns: slice, values: Floats) -> None:
-        r, c = np.mgrid[rows, columns]
-        self.rows.append(r.ravel())
-        self.columns.append(c.ravel())
+        height, width = values.shape
+        r = np.arange(rows.start, rows.stop).repeat(width)
+        c = np.arange(columns.start, columns.stop)[None].repeat(height, axis=0).ravel()
+        self.rows.append(r)
+        self.columns.append(c)
         self.values.append(values.ravel())
         if rows != columns:
-            self.rows.append(c.ravel())
-            self.columns.append(r.ravel())
+            self.rows.append(c)
+            self.columns.append(r)
             self.values.append(values.ravel())
 
     def symmetric(self, shape: tuple[int, int]) -> Any:
