@@ -11,7 +11,14 @@ from scipy.spatial.transform import Rotation
 from tree_sway_ros.core.growth import builtin
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.leaf_traits import LeafTraits, leaf_traits
-from tree_sway_ros.core.leaves import MAX_LEAF_AREA_INDEX, foliage_of, leaf_clusters, leafy_length
+from tree_sway_ros.core.leaves import (
+    MAX_LEAF_AREA_INDEX,
+    foliage_of,
+    joined_clusters,
+    leaf_clusters,
+    leafy_length,
+    no_clusters,
+)
 from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.species import species_keys
 from tree_sway_ros.core.tree import Tree
@@ -147,3 +154,13 @@ def test_same_seed_same_leaves() -> None:
 def test_no_clusters_are_refused() -> None:
     with pytest.raises(ParameterError, match="0 leaf clusters"):
         leaf_clusters(builtin_tree("goldcrest"), rng(), count=0)
+
+
+def test_joined_clusters_ride_on_the_segments_of_their_own_trees(fork):
+    tree = fork()
+    own = leaf_clusters(tree, np.random.default_rng(0), count=12)
+    both = joined_clusters([own, no_clusters(), own], [tree.n_segments] * 3)
+    assert both.segment.tolist() == [*own.segment, *(own.segment + 2 * tree.n_segments)]
+    for name in ("offset", "orientation", "size", "frequency", "phase"):
+        part = getattr(own, name)
+        assert (getattr(both, name) == np.concatenate([part, part])).all()

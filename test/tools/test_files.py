@@ -11,6 +11,7 @@ from tree_sway_ros.importers.tree_source import open_tree
 from tree_sway_ros.tools import cli
 
 PNG = b"\x89PNG\r\n\x1a\n"
+SEEDLING = str(Path(__file__).parents[1] / "importers" / "data" / "seedling.yaml")
 
 
 @pytest.fixture
@@ -31,7 +32,7 @@ def test_plot_draws_wind_and_tip(
     assert capsys.readouterr().out == f"{picture}\n"
 
 
-@pytest.mark.parametrize("arguments", [["--tree", "goldcrest"], ["goldcrest", "--tree"]])
+@pytest.mark.parametrize("arguments", [["--tree", "goldcrest"], [SEEDLING, "--tree"]])
 def test_plot_tree_draws_the_tree(tmp_path: Path, arguments: list[str]) -> None:
     picture = tmp_path / "tree.png"
     assert cli.main(["plot", *arguments, "--leaves", "on", "-o", str(picture)]) == 0
@@ -43,14 +44,15 @@ def test_plot_refuses_a_wind_too_short_to_draw(
 ) -> None:
     path = tmp_path / "wind.csv"
     path.write_text("time,u,v,w\n0,1,0,0\n0.01,1,0,0\n")
-    assert cli.main(["plot", "--wind", str(path), "-o", str(tmp_path / "x.png")]) == 2
+    arguments = ["plot", SEEDLING, "--wind", str(path), "-o", str(tmp_path / "x.png")]
+    assert cli.main(arguments) == 2
     assert "wind.csv: too short a wind" in capsys.readouterr().err
 
 
 def test_plot_refuses_a_format_it_cannot_draw(
     tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    arguments = ["plot", "goldcrest", "--wind", str(wind_file), "-o", str(tmp_path / "x.doc")]
+    arguments = ["plot", SEEDLING, "--wind", str(wind_file), "-o", str(tmp_path / "x.doc")]
     assert cli.main(arguments) == 2
     assert "'.doc' is no picture format" in capsys.readouterr().err
 
