@@ -114,7 +114,8 @@ class BranchBeam:
 
     def integral(self, values: Floats) -> Floats:
         """Integral over the branch of values at the points, (m, 5, ...)."""
-        return np.tensordot(self.weight, values, axes=((0, 1), (0, 1)))
+        total: Floats = self.weight.ravel() @ values.reshape(self.weight.size, -1)
+        return total.reshape(values.shape[2:])
 
     def from_base(self, values: Floats) -> tuple[Floats, Floats, Floats]:
         """

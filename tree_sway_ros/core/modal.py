@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tree_sway_ros.core.branch_beam import cross_matrix
 from tree_sway_ros.core.integrators.registry import DEFAULT, fill_steps
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.layout import WORK
@@ -145,7 +146,7 @@ def _participation(branches: Any, shapes: Floats) -> Floats:
             k = parent["n_coordinates"]
             ways = shapes[parent["coordinate"] : parent["coordinate"] + k]
             motion[b] = motion[branch["parent"]] + branch["twist"][:k].T @ ways
-        at = motion[b, :3] + np.cross(motion[b, 3:], branch["centre"], axis=0)
+        at = motion[b, :3] - cross_matrix(branch["centre"]) @ motion[b, 3:]
         at += branch["flow"][: branch["n_coordinates"]].T @ shapes[own]
         out[b] = np.square(at).sum(axis=0) / 2.0
     return out

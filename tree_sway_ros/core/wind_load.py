@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.branch_beam import cross_matrix
 from tree_sway_ros.core.branch_model import BranchModel
 from tree_sway_ros.core.kernel import inlined
 from tree_sway_ros.core.reduction import Reduction
@@ -84,7 +85,7 @@ def _fill_axial_levers(tree: Tree, records: Any) -> None:
     for b in range(tree.n_branches - 1, 0, -1):
         twist, across = records[b]["twist"][:2], records[tree.branch_parent[b]]["frame"][1:]
         centre = moment[b] / area[b] if area[b] > 0.0 else records[b]["centre"]
-        way = twist[:, :3] + np.cross(twist[:, 3:], centre)
+        way = twist[:, :3] + twist[:, 3:] @ cross_matrix(centre)
         records[b]["axial_lever"] = 0.5 * float((way * across).sum())
         area[tree.branch_parent[b]] += area[b]
         moment[tree.branch_parent[b]] += moment[b]
