@@ -106,7 +106,7 @@ def seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, floa
     return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
 
 
-@fused
+@inlined
 def _half_seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float]:
     """Half the rotation vector of a place on a branch, as `seat_turn`."""
     i, pairs, frame = parent.coordinate, parent.n_pairs, parent.frame
