@@ -137,7 +137,7 @@ WIND: Table = (
     Parameter(
         "timeout",
         2.0,
-        "Without a good sample for so long: WARN; ten times: STALE.",
+        "Without a good sample for so long: WARN; five times: STALE.",
         "s",
         0.1,
         60.0,
