@@ -88,8 +88,14 @@ def test_a_second_process_receives_every_pose_of_a_recorded_wind(environment: di
 def test_ctrl_c_ends_it_with_a_summary(
     environment: dict[str, str], signals: list[signal.Signals]
 ) -> None:
+    """And while it runs, a second one in its domain is refused."""
     process = start(environment, "demo", "--tree", "goldcrest")
     assert any("| poses " in line for line in lines_until(process, "| poses "))
+    if len(signals) > 1:
+        second = start(environment, "demo", "--tree", "goldcrest", "--seconds", "1")
+        _, err = second.communicate(timeout=DEADLINE)
+        assert second.returncode == 2
+        assert "another program publishes 'wind' in this ROS domain; end it, or set" in err
     for one in signals:
         process.send_signal(one)
     out, err = process.communicate(timeout=DEADLINE)

@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     tree = open_scene(arguments.tree).tree
     print(f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)", flush=True)
     try:
-        with interrupted_once(), Composition(_nodes(arguments)) as nodes:
+        with interrupted_once(), Composition({}) as nodes:
             monitor = StreamMonitor(nodes.context, tree)
 
             def goes_on() -> bool:
@@ -60,6 +60,9 @@ def run(arguments: argparse.Namespace) -> int:
                 return not nodes.is_done
 
             try:
+                monitor.expect_silence()
+                for name, values in _nodes(arguments).items():
+                    nodes.add(name, values)
                 begin = watch(monitor, seconds, goes_on)
             finally:
                 monitor.close()

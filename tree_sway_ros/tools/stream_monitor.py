@@ -14,10 +14,12 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.tree import Floats, Tree
-from tree_sway_ros.ros.topics import SEGMENT_POSES, WIND_FILTERED, message_class, qos_profile
+from tree_sway_ros.errors import TransportError
+from tree_sway_ros.ros.topics import SEGMENT_POSES, WIND, WIND_FILTERED, message_class, qos_profile
 from tree_sway_ros.view.projection import ends_of_poses
 
 _POSE = 7 * 8
+_LOOK_AROUND = 0.6  # [s]: how long programs that run already take to be seen
 
 
 @dataclass
@@ -122,6 +124,24 @@ class StreamMonitor:
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0.0:
             self._executor.spin_once(timeout_sec=left)
+
+    def expect_silence(self) -> None:
+        """
+        Look around before publishing: a second wind or tree on the same topics would mix with ours.
+
+        Raises
+        ------
+        TransportError
+            If somebody publishes there already.
+
+        """
+        self.wait(_LOOK_AROUND)
+        for topic in (WIND, SEGMENT_POSES):
+            if self._node.count_publishers(topic.name):
+                raise TransportError(
+                    f"another program publishes '{topic.name}' in this ROS domain",
+                    cure="end it, or set ROS_DOMAIN_ID to another number up to 101",
+                )
 
     def close(self) -> None:
         """Leave the graph."""
