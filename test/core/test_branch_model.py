@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.branch_model import branch_models
+from tree_sway_ros.core.branch_model import branch_models, enriched_branches
+from tree_sway_ros.core.reference.example_trees import forked_tree
 from tree_sway_ros.core.tree_building import tree_from_segments
 
 
@@ -69,3 +70,16 @@ def test_the_model_does_not_care_where_the_tree_stands(fork):
         assert one.beam.point == pytest.approx(other.beam.point, abs=1e-11)
         slope = one.coordinates[0].shape.slope
         assert slope == pytest.approx(other.coordinates[0].shape.slope, rel=1e-9)
+
+
+def test_what_is_enriched():
+    tree = forked_tree(0.5, 0.6)
+    carriers = {0, *tree.branch_parent[1:].tolist()}
+    limbs = enriched_branches(tree, "limbs")
+    assert enriched_branches(tree, "none") == set()
+    assert enriched_branches(tree, "stem") == {0} < limbs
+    assert limbs < enriched_branches(tree, "carriers") == carriers
+    assert enriched_branches(tree, "all") == set(range(tree.n_branches))
+    for branch in carriers:
+        carried = np.flatnonzero(tree.branch_parent == branch)
+        assert (branch in limbs) == (branch == 0 or bool(carriers & set(carried.tolist())))

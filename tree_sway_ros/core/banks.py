@@ -12,7 +12,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.branch_model import BranchModel, branch_models
+from tree_sway_ros.core.branch_model import BranchModel, branch_models, enriched_branches
 from tree_sway_ros.core.carried_inertia import carried_inertia
 from tree_sway_ros.core.layout import WORK, branch_layout
 from tree_sway_ros.core.loads import even_wind_moments
@@ -220,7 +220,7 @@ class CalibratedTree:
     @cached_property
     def coupled(self) -> Layer:
         """Branches that carry their children, those of the enriched ones with further shapes."""
-        return self._reduced(carries=True, enriched=_enriched(self.tree, self.settings.enrich))
+        return self._reduced(carries=True, enriched=enriched_branches(self.tree, self.settings.enrich))
 
     def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
         tree, species, settings = self.tree, self.species, self.settings
@@ -279,14 +279,6 @@ class CalibratedTree:
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
         return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
-
-
-def _enriched(tree: Tree, enrich: str) -> frozenset[int]:
-    if enrich == "all":
-        return frozenset(range(tree.n_branches))
-    if enrich == "carriers":
-        return frozenset([0, *tree.branch_parent[1:].tolist()])
-    return frozenset([0]) if enrich == "stem" else frozenset()
 
 
 def _share_frames(branches: Any) -> None:

@@ -12,6 +12,7 @@ Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per l
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -170,3 +171,24 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
     """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
     return shape.stiffness(shape, 1.0) / float(beam.integral(mass * shape.deflection**2))
+
+
+def enriched_branches(tree: Tree, choice: str) -> frozenset[int]:
+    """
+    Choose the branches that get further shapes and twists.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    choice
+        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with branches), all ``carriers``
+        of others, or ``all``.
+
+    """
+    carriers = {0, *tree.branch_parent[1:].tolist()}
+    limbs = {0, *(int(tree.branch_parent[branch]) for branch in carriers if branch > 0)}
+    chosen: dict[str, Iterable[int]] = {
+        "none": (), "stem": (0,), "limbs": limbs, "carriers": carriers, "all": range(tree.n_branches)
+    }  # fmt: skip
+    return frozenset(chosen[choice])

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tree_sway_ros.core.branch_model import branch_models
+from tree_sway_ros.core.branch_model import branch_models, enriched_branches
 from tree_sway_ros.core.modes import buckling_factor, natural_modes
 from tree_sway_ros.core.reduction import reduce_tree
 from tree_sway_ros.core.settings import SimulatorSettings
@@ -141,7 +141,7 @@ class _ScaledTree:
             tree,
             species.density,
             carries=True,
-            enriched=frozenset([0, *tree.branch_parent[1:].tolist()]),
+            enriched=enriched_branches(tree, settings.enrich),
             speed_profile=settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2])),
             leaf_mass=settings.leaf_mass,
             leaf_area=settings.leaf_area,

@@ -51,8 +51,8 @@ class SimulatorSettings:
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
-        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``: ``none``, ``stem``, those
-        that carry others (``carriers``) or ``all``.
+        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``: ``none``, the ``stem``, the
+        ``limbs`` (stem and all branches that carry branches with branches), all ``carriers`` of others, or ``all``.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,).
     max_wind
@@ -72,7 +72,7 @@ class SimulatorSettings:
     profile: WindProfile = field(default_factory=WindProfile)
     integrator: str = DEFAULT
     twig_tolerance: float = 0.05
-    enrich: str = "carriers"
+    enrich: str = "limbs"
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
     max_wind: float = 150.0
@@ -83,7 +83,7 @@ class SimulatorSettings:
         _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)
-        _one_of("enrich", self.enrich, ("none", "stem", "carriers", "all"))
+        _one_of("enrich", self.enrich, ("none", "stem", "limbs", "carriers", "all"))
         if self.stiffness == "volume_rule" and self.rung in ("modes", "coupled"):
             raise ParameterError(
                 f"the volume rule on rung '{self.rung}'",
