@@ -1,7 +1,8 @@
 """
 What a frame costs, from counts: known before a model is run, so that a budget can choose among models.
 
-Prices are those that `tree-sway chart cost` measured on one core of a server of 2020; `pace` scales them to the machine at hand.
+Prices are fits to trees of 31 to 261 branches in 3 to 12 segments each, timed on one core of a server of 2020; `pace` scales them to
+the machine at hand.
 
 """
 
@@ -12,13 +13,13 @@ import numpy as np
 from tree_sway_ros.core.banks import Bank
 from tree_sway_ros.core.tree import Tree
 
-_CALL = 4.5
+_CALL = 4.0
 """Of a step, and of placing, however small the tree in [us]."""
 
-_STEP_ALONE, _STEP_CARRIED, _STEP_ENRICHED = 0.085, 0.14, 0.26
+_STEP_ALONE, _STEP_CARRIED, _STEP_ENRICHED = 0.06, 0.13, 0.15
 """Of stepping a branch: alone, one that carries or is carried, and what further shapes add."""
 
-_PLACE_BRANCH, _PLACE_ENRICHED, _PLACE_SEGMENT, _PLACE_RIGID = 0.06, 0.22, 0.014, 0.012
+_PLACE_BRANCH, _PLACE_ENRICHED, _PLACE_SEGMENT, _PLACE_RIGID = 0.03, 0.12, 0.013, 0.012
 """Of placing: a branch, what further shapes add, a segment that bends, one that is frozen."""
 
 _MODE_OF_COORDINATE = 1.5e-3
