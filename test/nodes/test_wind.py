@@ -4,7 +4,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES  # noqa: E402
+from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree  # noqa: E402
 from tree_sway_ros.ros.diagnostics import OK, STALE, WARN  # noqa: E402
 from tree_sway_ros.ros.node_parameters import WIND_TYPE_NAMES  # noqa: E402
 from tree_sway_ros.ros.topics import FORCE_PLANE, SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402
@@ -60,10 +60,11 @@ def test_a_westerly_bends_the_tree_to_the_east(compose, observer, tree_file, typ
 
 @pytest.mark.parametrize("tree", BUILTIN_TREES)
 def test_a_westerly_bends_every_tree_to_the_east(compose, observer, tree):
-    nodes = compose(solver={"tree": tree}, wind={}, anemometer={"turbulence": "none"})
+    compose(solver={"tree": tree}, wind={}, anemometer={"turbulence": "none"})
     frames = observer.listen(SEGMENT_POSES)
-    highest = int(np.argmax(nodes["solver"].tree.start[:, 2]))
-    rest = nodes["solver"].tree.start[highest]
+    start = builtin_tree(tree).start
+    highest = int(np.argmax(start[:, 2]))
+    rest = start[highest]
 
     def sway():
         position = frames[-1].poses[highest].position
@@ -149,6 +150,13 @@ def test_a_silent_sensor_goes_from_warn_to_stale(compose, observer, statuses, le
     mast = Mast(observer)
     observer.until(lambda: mast.say(3.0) and level("wind: wind") == OK, "OK")
     observer.until(lambda: level("wind: wind") == STALE, "STALE")
+
+
+def test_a_sensor_of_another_type_is_named(compose, observer, statuses):
+    compose(wind={"input_type": "geometry_msgs/TwistStamped"})
+    observer.node.create_publisher(STAMPED, WIND.name, 10)
+    named = "set input_type to read geometry_msgs/Vector3Stamped"
+    observer.until(lambda: named in getattr(statuses("wind: wind"), "message", ""), "the type")
 
 
 def test_a_message_without_a_stamp_takes_its_arrival(compose, observer):

@@ -43,7 +43,8 @@ class WindNode(TreeSwayNode):
         self._attitude: Any = None
         self._filtered = self.publisher(WIND_FILTERED)
         self._plane = self.publisher(FORCE_PLANE)
-        self.subscription(WIND, self._receive, wind_class(self.values["input_type"]))
+        kind = wind_class(self.values["input_type"])
+        self._topic = self.subscription(WIND, self._receive, kind).topic_name
         self.report_with("wind", self._statuses)
         self.get_logger().info(self._convention.describe())
 
@@ -71,4 +72,10 @@ class WindNode(TreeSwayNode):
         self._plane.publish(plane_message(time, frame_id, self._attitude))
 
     def _statuses(self) -> list[Status]:
-        return [self._report.status(self.values["timeout"], self._gate)]
+        return [self._report.status(self.values["timeout"], self._gate, self._types_not_read())]
+
+    def _types_not_read(self) -> list[str]:
+        """Types other than `input_type` that somebody publishes on the topic."""
+        offered = self.get_publishers_info_by_topic(self._topic)
+        names = {publisher.topic_type.replace("/msg/", "/") for publisher in offered}
+        return sorted(names - {self.values["input_type"]})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import asdict
 
 from tree_sway_ros.core.wind_gate import WindGate
@@ -42,7 +43,9 @@ class WindReport:
             return 0.0
         return (len(recent) - 1) / max(1e-9, recent[-1] - recent[0])
 
-    def status(self, timeout: float, gate: WindGate) -> Status:
+    def status(
+        self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()
+    ) -> Status:
         """
         Report.
 
@@ -52,6 +55,8 @@ class WindReport:
             Age of the last good sample from which on the wind counts as lost [s].
         gate
             Which counted what was refused or odd.
+        types_not_read
+            Message types on the topic that the node is not set to read.
 
         """
         age = self.age
@@ -63,7 +68,8 @@ class WindReport:
         }
         if age is None:
             refused = f"; {gate.counts.refused} samples refused" if gate.counts.refused else ""
-            return Status("wind", WARN, f"no wind yet{refused}", values)
+            others = f"; set input_type to read {', '.join(types_not_read)}" if types_not_read else ""
+            return Status("wind", WARN, f"no wind yet{refused}{others}", values)
         if age > STALE_AFTER * timeout:
             return Status("wind", STALE, f"no wind for {age:.0f} s", values)
         if age > timeout:
