@@ -10,8 +10,8 @@ os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 DEADLINE = 10.0
-# Tests that run side by side take their domains from different halves of 1 .. 98.
-_HALF = 49 * (int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]) % 2)
+# Tests that run side by side take their domains from different halves of 1 .. 80.
+_HALF = 40 * (int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]) % 2)
 _domains = itertools.count(os.getpid() * 7)
 
 TREE = """\
@@ -103,7 +103,7 @@ class Observer:
 def domain():
     """A ROS domain for one test alone."""
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-    return 1 + _HALF + next(_domains) % 49
+    return 1 + _HALF + next(_domains) % 40
 
 
 @pytest.fixture

@@ -114,11 +114,14 @@ def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
     settled = begin + 8 * 10**9
 
     def late(messages):
-        poses = {stamp_to_ns(m.header.stamp): m.poses[2].position for m in list(messages)}
-        return {stamp: pose for stamp, pose in poses.items() if stamp > settled}
+        poses = {stamp_to_ns(m.header.stamp): m.poses[2].position.x for m in list(messages)}
+        return {stamp: x for stamp, x in poses.items() if stamp > settled}
 
-    observer.until(lambda: len(set(late(frames)) & set(late(steady))) > 10, "both", deadline=20.0)
-    ours, theirs = late(frames), late(steady)
-    for stamp in set(ours) & set(theirs):
-        assert ours[stamp].x == pytest.approx(theirs[stamp].x, abs=1e-7)
-    assert max(pose.x for pose in ours.values()) > 1e-3
+    def agree():
+        """In the last half second: a wind that came too late on a busy machine is forgotten, too."""
+        ours, theirs = late(frames), late(steady)
+        last = sorted(set(ours) & set(theirs))[-30:]
+        return len(last) == 30 and all(abs(ours[stamp] - theirs[stamp]) < 1e-7 for stamp in last)
+
+    observer.until(agree, "both to sway alike", deadline=40.0)
+    assert max(late(frames).values()) > 1e-3

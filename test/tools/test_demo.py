@@ -21,21 +21,30 @@ ROOT = Path(__file__).resolve().parents[2]
 SONIC = ROOT / ".." / "shared" / "data" / "wind" / "sonic_20hz_1245.toa5.dat"
 
 
-@pytest.fixture
-def environment() -> dict[str, str]:
-    """A ROS domain for one test alone, on this machine alone."""
-    domain = 101 + os.getpid() % 100
-    return {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-
-
 Started = subprocess.Popen[str]
+_started: list[Started] = []
+
+
+@pytest.fixture
+def environment() -> Iterator[dict[str, str]]:
+    """A ROS domain for one test alone, on this machine alone; no process outlives it."""
+    # The tests of the nodes take 1 to 80; beyond 101 the ports are those that the system hands out.
+    domain = 81 + os.getpid() % 21
+    yield {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    while _started:
+        process = _started.pop()
+        process.kill()
+        process.wait()
 
 
 def start(environment: dict[str, str], *arguments: str) -> Started:
     """Start a command; standard output is no terminal there."""
     command = [sys.executable, "-m", "tree_sway_ros.tools.cli", *arguments]
     pipe = subprocess.PIPE
-    return subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True, cwd=ROOT)
+    _started.append(
+        subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True, cwd=ROOT)
+    )
+    return _started[-1]
 
 
 def lines_until(process: Started, sign: str) -> Iterator[str]:
@@ -92,8 +101,11 @@ def test_ctrl_c_ends_it_with_a_summary(
     process = start(environment, "demo", "--tree", "goldcrest")
     assert any("| poses " in line for line in lines_until(process, "| poses "))
     if len(signals) > 1:
-        second = start(environment, "demo", "--tree", "goldcrest", "--seconds", "1")
-        _, err = second.communicate(timeout=DEADLINE)
+        for _ in range(3):  # On a machine as busy as this it may take longer to be seen.
+            second = start(environment, "demo", "--tree", "goldcrest", "--seconds", "1")
+            _, err = second.communicate(timeout=DEADLINE)
+            if second.returncode != 0:
+                break
         assert second.returncode == 2
         assert "another program publishes 'wind' in this ROS domain; end it, or set" in err
     for one in signals:

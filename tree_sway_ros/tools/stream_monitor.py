@@ -19,7 +19,7 @@ from tree_sway_ros.ros.topics import SEGMENT_POSES, WIND, WIND_FILTERED, message
 from tree_sway_ros.view.projection import ends_of_poses
 
 _POSE = 7 * 8
-_LOOK_AROUND = 0.6  # [s]: how long programs that run already take to be seen
+_LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
 
 
 @dataclass
