@@ -46,7 +46,7 @@ class Observer:
 
     def listen(self, topic, kind=None, name=None, raw=False):
         """A list that fills with the messages of a topic of the table."""
-        from tree_sway_ros.ros.topics import message_class, qos_profile
+        from tree_sway_ros.ros.process.topics import message_class, qos_profile
 
         messages = []
 
@@ -62,7 +62,7 @@ class Observer:
 
     def publisher(self, topic, kind=None, name=None):
         """A publisher on a topic of the table, once somebody listens to it."""
-        from tree_sway_ros.ros.topics import message_class, qos_profile
+        from tree_sway_ros.ros.process.topics import message_class, qos_profile
 
         made = self.node.create_publisher(
             kind or message_class(topic), name or topic.name, qos_profile(topic)
@@ -116,7 +116,7 @@ def observer(domain):
 @pytest.fixture
 def compose(domain):
     """Start nodes in this process: ``compose(solver={...})``."""
-    from tree_sway_ros.ros.composition import Composition
+    from tree_sway_ros.ros.process.composition import Composition
 
     made = []
 
@@ -140,7 +140,7 @@ def tree_file(tmp_path):
 @pytest.fixture
 def statuses(observer):
     """Newest status of each name on /diagnostics: ``statuses("solver: wind")``."""
-    from tree_sway_ros.ros.topics import DIAGNOSTICS
+    from tree_sway_ros.ros.process.topics import DIAGNOSTICS
 
     arrays = observer.listen(DIAGNOSTICS)
 

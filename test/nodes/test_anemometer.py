@@ -6,9 +6,9 @@ pytestmark = pytest.mark.ros
 
 from rclpy.parameter import Parameter  # noqa: E402
 
-from tree_sway_ros.core.anemometer_model import AnemometerModel  # noqa: E402
+from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel  # noqa: E402
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.ros.topics import WIND  # noqa: E402
+from tree_sway_ros.ros.process.topics import WIND  # noqa: E402
 
 
 def test_samples_come_at_the_rate_and_are_the_models(compose, observer):

@@ -6,8 +6,8 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.ros.composition import Composition  # noqa: E402
-from tree_sway_ros.ros.topics import WIND_FILTERED  # noqa: E402
+from tree_sway_ros.ros.process.composition import Composition  # noqa: E402
+from tree_sway_ros.ros.process.topics import WIND_FILTERED  # noqa: E402
 
 
 def test_it_closes_twice_and_leaves_no_thread(domain):

@@ -8,8 +8,8 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.topics import SEGMENT_POSES  # noqa: E402
-from tree_sway_ros.ros.wind_messages import stamp_to_ns  # noqa: E402
+from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 START = "from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())"
 WITHOUT_ROS = "import sys; sys.modules['rclpy'] = None; "

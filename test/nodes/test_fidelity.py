@@ -9,8 +9,8 @@ pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import PoseStamped  # noqa: E402
 
-from tree_sway_ros.ros.diagnostics import WARN  # noqa: E402
-from tree_sway_ros.ros.topics import CAMERA, SEGMENT_POSES, TREE_DESCRIPTION  # noqa: E402
+from tree_sway_ros.ros.process.topics import CAMERA, SEGMENT_POSES, TREE_DESCRIPTION  # noqa: E402
+from tree_sway_ros.ros.reports.diagnostics import WARN  # noqa: E402
 
 
 def told(status):

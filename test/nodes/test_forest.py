@@ -10,15 +10,15 @@ from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.importers.tree_source import open_scene  # noqa: E402
-from tree_sway_ros.ros.topics import (  # noqa: E402
+from tree_sway_ros.files.trees.source import open_scene  # noqa: E402
+from tree_sway_ros.ros.process.topics import (  # noqa: E402
     CAMERA,
     MARKERS,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
     WIND_FILTERED,
 )
-from tree_sway_ros.ros.wind_messages import WindSample, wind_to_message  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import WindSample, wind_to_message  # noqa: E402
 
 
 @pytest.fixture

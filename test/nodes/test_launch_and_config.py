@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from tree_sway_ros.ros.topics import TOPICS
+from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
 

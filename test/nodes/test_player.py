@@ -5,9 +5,9 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.importers.wind_file import read_wind  # noqa: E402
-from tree_sway_ros.ros.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
-from tree_sway_ros.ros.wind_messages import stamp_to_ns  # noqa: E402
+from tree_sway_ros.files.wind.wind_file import read_wind  # noqa: E402
+from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
-from tree_sway_ros.ros.wind_messages import (  # noqa: E402
+from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
     WindSample,
     clock_message,
     stamp_to_ns,

@@ -13,18 +13,18 @@ from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
-from tree_sway_ros.core.simulator import SwaySimulator  # noqa: E402
+from tree_sway_ros.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway_ros.errors import MissingDependencyError, ParameterError, TreeSwayError  # noqa: E402
-from tree_sway_ros.importers.tree_source import open_tree  # noqa: E402
-from tree_sway_ros.ros.diagnostics import OK, STALE, WARN  # noqa: E402
-from tree_sway_ros.ros.topics import (  # noqa: E402
+from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
+from tree_sway_ros.ros.process.topics import (  # noqa: E402
     MARKERS,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
     WIND_FILTERED,
     qos_profile,
 )
-from tree_sway_ros.ros.wind_messages import WindSample, wind_to_message  # noqa: E402
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import WindSample, wind_to_message  # noqa: E402
 
 
 def block(message):

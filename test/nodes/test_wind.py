@@ -5,10 +5,10 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree  # noqa: E402
-from tree_sway_ros.ros.diagnostics import OK, STALE, WARN  # noqa: E402
-from tree_sway_ros.ros.node_parameters import WIND_TYPE_NAMES  # noqa: E402
-from tree_sway_ros.ros.topics import FORCE_PLANE, SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402
-from tree_sway_ros.ros.wind_messages import (  # noqa: E402
+from tree_sway_ros.ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
+from tree_sway_ros.ros.process.topics import FORCE_PLANE, SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
     WindSample,
     stamp_to_ns,
     wind_class,

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.simulator import SwaySimulator
-from tree_sway_ros.core.turbulence import simulate_turbulence
-from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools import cli
 
 TREE = """

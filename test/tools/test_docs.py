@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.core.species import species_keys
+from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools import cli
 from tree_sway_ros.tools.docs import PAGES, markdown_tables, species_table, with_tables
 

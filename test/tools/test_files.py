@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.importers.tree_source import open_tree
+from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools import cli
 
 PNG = b"\x89PNG\r\n\x1a\n"
-SEEDLING = str(Path(__file__).parents[1] / "importers" / "data" / "seedling.yaml")
+SEEDLING = str(Path(__file__).parents[1] / "files" / "data" / "seedling.yaml")
 
 
 @pytest.fixture

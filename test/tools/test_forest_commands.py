@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.importers.tree_source import open_scene
+from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.tools import cli
 
-SEEDLING = Path(__file__).parents[1] / "importers" / "data" / "seedling.yaml"
+SEEDLING = Path(__file__).parents[1] / "files" / "data" / "seedling.yaml"
 SCAN = SEEDLING.parent / "fork.treeqsm23.txt"
 
 

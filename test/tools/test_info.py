@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.tree_building import tree_from_segments
-from tree_sway_ros.importers.tree_export import write_tree
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.files.export.tree_export import write_tree
+from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.tools import cli
-from tree_sway_ros.tools.bench_tree import bench_tree
 
 MODULUS, DENSITY = 8e9, 900.0
 

@@ -7,10 +7,10 @@ import itertools
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.anemometer_model import AnemometerModel
-from tree_sway_ros.core.simulator import SwaySimulator
-from tree_sway_ros.importers.wind_record import WindRecord
-from tree_sway_ros.tools.bench_tree import bench_tree
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway_ros.files.wind.record import WindRecord
+from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.tools.ride import recorded, ride, simulated
 
 WESTERLY = np.array([5.0, 0.0, 0.0])

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
-from tree_sway_ros.core.leaves import leaf_clusters
-from tree_sway_ros.core.standing_tree import StandingTree, joined
-from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.core.tree_building import tree_from_segments
+from tree_sway_ros.core.leaves.foliage import leaf_clusters
+from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway_ros.view.animation import animate_poses
 from tree_sway_ros.view.pictures import picture_at_rest, picture_in_wind

@@ -1,1 +1,7 @@
-"""The numeric core: numpy, scipy and numba only, no ROS, files, clock or logging."""
+"""
+The numeric core: trees, wind, reduced equations, poses.
+
+Arrays in, arrays out; numpy, scipy and, where it is there, numba.
+No ROS, no files, no clock, no logging, no randomness without an ``rng`` argument.
+
+"""

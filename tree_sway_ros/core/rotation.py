@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused, inlined
-from tree_sway_ros.core.tree import Floats
 
 SERIES_LIMIT = 2.25
 """Square of half an angle in [rad^2] up to which `half_angle_series` holds: 1.5 rad."""

@@ -1,1 +1,7 @@
-"""The four ROS 2 executables: anemometer, wind, solver, player."""
+"""
+rclpy entry points: one node class per file.
+
+A node converts, calls and publishes.
+No arithmetic beyond units.
+
+"""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway_ros.core.anemometer_model import AnemometerModel
-from tree_sway_ros.core.gust_event import GustEvent
-from tree_sway_ros.ros.diagnostics import OK, Status
-from tree_sway_ros.ros.node import TreeSwayNode
-from tree_sway_ros.ros.pacer import Pacer, Tick
-from tree_sway_ros.ros.topics import WIND
-from tree_sway_ros.ros.wind_messages import WindWriter
+from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway_ros.core.wind.simulated.gust_event import GustEvent
+from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.topics import WIND
+from tree_sway_ros.ros.reports.diagnostics import OK, Status
+from tree_sway_ros.ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.ros.wire.wind_messages import WindWriter
 
 
 class AnemometerNode(TreeSwayNode):

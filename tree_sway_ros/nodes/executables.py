@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tree_sway_ros.ros.spin import run
+from tree_sway_ros.ros.process.spin import run
 
 
 def anemometer(args: Sequence[str] | None = None) -> int:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.importers.wind_file import read_wind
-from tree_sway_ros.ros.diagnostics import OK, Status
-from tree_sway_ros.ros.node import TreeSwayNode
-from tree_sway_ros.ros.playback import Playback
-from tree_sway_ros.ros.playback_thread import PlaybackThread
-from tree_sway_ros.ros.topics import CLOCK, WIND
-from tree_sway_ros.ros.wind_messages import WindWriter, clock_message
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.topics import CLOCK, WIND
+from tree_sway_ros.ros.reports.diagnostics import OK, Status
+from tree_sway_ros.ros.timing.playback import Playback
+from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
+from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
 
 
 class PlayerNode(TreeSwayNode):

@@ -6,22 +6,22 @@ from typing import Any
 
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway_ros.core.scene_demand import tell_demand, tell_pace
-from tree_sway_ros.core.settings import SimulatorSettings
-from tree_sway_ros.core.simulators import simulators_of
-from tree_sway_ros.core.wind_averaging import WindAverage
-from tree_sway_ros.core.wind_gate import WindGate
-from tree_sway_ros.core.wind_profile import WindProfile
-from tree_sway_ros.importers.species_yaml import open_species
-from tree_sway_ros.importers.tree_source import open_scene
-from tree_sway_ros.ros.diagnostics import Status
-from tree_sway_ros.ros.node import TreeSwayNode
-from tree_sway_ros.ros.pacer import Pacer, Tick
-from tree_sway_ros.ros.pose_stream import PoseStream
-from tree_sway_ros.ros.stepping import Stepper
-from tree_sway_ros.ros.sway_report import SwayReport
-from tree_sway_ros.ros.topics import CAMERA, WIND_FILTERED
-from tree_sway_ros.ros.wind_messages import wind_from_message
+from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
+from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.wind.averaging import WindAverage
+from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
+from tree_sway_ros.ros.reports.diagnostics import Status
+from tree_sway_ros.ros.reports.sway_report import SwayReport
+from tree_sway_ros.ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.ros.timing.stepping import Stepper
+from tree_sway_ros.ros.wire.pose_stream import PoseStream
+from tree_sway_ros.ros.wire.wind_messages import wind_from_message
 
 
 class SolverNode(TreeSwayNode):

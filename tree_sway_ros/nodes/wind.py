@@ -6,19 +6,19 @@ from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
 
-from tree_sway_ros.core.wind_convention import WindConvention
-from tree_sway_ros.core.wind_gate import WindGate
-from tree_sway_ros.ros.diagnostics import Status
-from tree_sway_ros.ros.node import TreeSwayNode
-from tree_sway_ros.ros.topics import FORCE_PLANE, WIND, WIND_FILTERED
-from tree_sway_ros.ros.wind_messages import (
+from tree_sway_ros.core.wind.convention import WindConvention
+from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
+from tree_sway_ros.ros.reports.diagnostics import Status
+from tree_sway_ros.ros.reports.wind_report import WindReport
+from tree_sway_ros.ros.wire.wind_messages import (
     WindSample,
     plane_message,
     wind_class,
     wind_from_message,
     wind_to_message,
 )
-from tree_sway_ros.ros.wind_report import WindReport
 
 _CONVENTION = ("direction_convention", "speed_scale", "yaw_offset", "plane_normal")
 _GATE = ("max_speed", "max_rate", "longest_refusal", "frozen_after")

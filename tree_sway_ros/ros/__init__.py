@@ -1,1 +1,7 @@
-"""Between arrays and ROS messages: topics, parameters, bytes."""
+"""
+Arrays to messages and back, parameters, timing, reports.
+
+What nodes share, in one room per concern.
+Nothing here solves anything.
+
+"""

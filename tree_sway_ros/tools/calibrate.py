@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tree_sway_ros.core.calibration import Calibration, calibrate
-from tree_sway_ros.core.settings import SimulatorSettings
-from tree_sway_ros.core.species import Species, species_keys, species_named
-from tree_sway_ros.core.sway_record import KINDS, SwayEstimate, estimate_sway
-from tree_sway_ros.core.valid_range import within
+from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.identification.calibration import Calibration, calibrate
+from tree_sway_ros.core.identification.sway_record import KINDS, SwayEstimate, estimate_sway
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.importers.sway_csv import read_csv_sway
+from tree_sway_ros.files.wind.sway_table import read_csv_sway
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaf_settings
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
 from tree_sway_ros.tools.tree_output import write_tree_file

@@ -32,8 +32,8 @@ COMMANDS: dict[str, str] = {
     "docs": "write the tables of topics and parameters into the README",
 }
 
-#: Commands whose module has another name than theirs.
-_MODULES = {"battery": "battery_command"}
+#: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
+_STUDIES = ("bench", "battery", "chart", "compare")
 _FAILURE = 2
 _INTERRUPTED = 130
 
@@ -90,7 +90,8 @@ def _fail(command: str, text: str) -> int:
 
 
 def _module(command: str) -> Any:
-    return importlib.import_module(f"tree_sway_ros.tools.{_MODULES.get(command, command)}")
+    where = f"study.{command}.command" if command in _STUDIES else f"tools.{command}"
+    return importlib.import_module(f"tree_sway_ros.{where}")
 
 
 def _parser(chosen: str) -> argparse.ArgumentParser:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
 

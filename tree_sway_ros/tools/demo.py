@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.importers.tree_source import open_scene
-from tree_sway_ros.ros.composition import Composition
-from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.ros.parameters import Value
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.parameters.parameter import Value
+from tree_sway_ros.ros.process.composition import Composition
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary

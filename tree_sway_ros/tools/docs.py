@@ -12,11 +12,12 @@ import argparse
 import re
 from pathlib import Path
 
-from tree_sway_ros.core.leaf_traits import leaf_traits
-from tree_sway_ros.core.species import species_keys, species_named
+from tree_sway_ros.core.leaves.traits import leaf_traits
+from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.ros import parameters, topics
-from tree_sway_ros.ros.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.parameters import parameter as parameters
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.process import topics
 
 PAGES = ("README.md", "doc/trees.md")
 """Pages with tables."""

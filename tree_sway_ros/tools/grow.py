@@ -7,9 +7,9 @@ import argparse
 import numpy as np
 
 from tree_sway_ros.core.growth.grow import HABITS, grow
-from tree_sway_ros.core.species import species_keys
+from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.importers.species_yaml import open_species
+from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
 
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.banks import build_bank
-from tree_sway_ros.core.season import in_season
-from tree_sway_ros.core.settings import RUNGS, SimulatorSettings
+from tree_sway_ros.core.simulator.assembly import build_bank
+from tree_sway_ros.core.simulator.season import in_season
+from tree_sway_ros.core.simulator.settings import RUNGS, SimulatorSettings
 from tree_sway_ros.errors import ParameterError, TreeError
-from tree_sway_ros.importers.forest_file import ForestFile
-from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.tools.info_forest import forest_facts, forest_text
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table

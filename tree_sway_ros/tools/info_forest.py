@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from tree_sway_ros.core.species import species_named
-from tree_sway_ros.importers.forest_file import ForestFile
-from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
 _SUMS = ("branches", "segments", "volume", "mass")
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from tree_sway_ros.core.leaves import LeafClusters, foliage_of
-from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.importers.forest_file import ForestFile
-from tree_sway_ros.importers.imported_tree import TreeFile
+from tree_sway_ros.core.leaves.foliage import LeafClusters, foliage_of
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
 _DRAWN = 1500
 

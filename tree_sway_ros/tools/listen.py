@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway_ros.ros.spin import init, require_rclpy
+from tree_sway_ros.ros.process.spin import init, require_rclpy
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary
 from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tree_sway_ros.core.banks import Bank
-from tree_sway_ros.core.kinematics import place
-from tree_sway_ros.core.modal import ModalBank
-from tree_sway_ros.core.tree import Floats, Tree
-from tree_sway_ros.core.uncoupled import UncoupledBank
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.placing import place
+from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.projection import ends_of_poses
 
 _SMALL_ANGLE = 1e-4

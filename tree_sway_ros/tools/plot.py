@@ -12,18 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.anemometer_model import AnemometerModel
-from tree_sway_ros.core.settings import RUNGS
-from tree_sway_ros.core.simulators import Simulator, simulators_of
+from tree_sway_ros.core.scene.make import Simulator, simulators_of
+from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
-from tree_sway_ros.importers.forest_file import ForestFile
-from tree_sway_ros.importers.imported_tree import TreeFile
-from tree_sway_ros.importers.wind_file import read_wind
-from tree_sway_ros.tools.leaves_argument import (
-    add_leaves_argument,
-    drawn_leaves,
-    leaves_are_on,
-)
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, leaves_are_on
 from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
 from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_scene
 from tree_sway_ros.view.pictures import picture_in_wind

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tree_sway_ros.core.anemometer_model import AnemometerModel
-from tree_sway_ros.core.simulators import Simulator
-from tree_sway_ros.core.tree import Floats
-from tree_sway_ros.core.wind_averaging import WindAverage
-from tree_sway_ros.importers.wind_record import WindRecord
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.scene.make import Simulator
+from tree_sway_ros.core.wind.averaging import WindAverage
+from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway_ros.files.wind.record import WindRecord
 
 Samples = Iterator[tuple[float, Floats]]
 

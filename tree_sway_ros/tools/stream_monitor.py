@@ -13,9 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TransportError
-from tree_sway_ros.ros.topics import SEGMENT_POSES, WIND, WIND_FILTERED, message_class, qos_profile
+from tree_sway_ros.ros.process.topics import (
+    SEGMENT_POSES,
+    WIND,
+    WIND_FILTERED,
+    message_class,
+    qos_profile,
+)
 from tree_sway_ros.view.projection import ends_of_poses
 
 _POSE = 7 * 8

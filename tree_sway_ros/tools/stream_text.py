@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.tools.stream_monitor import StreamRecord
 
 _COMPASS = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")

@@ -9,12 +9,12 @@ import argparse
 import dataclasses
 from typing import Any
 
-from tree_sway_ros.core.species import species_keys
+from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.importers.forest_file import ForestFile
-from tree_sway_ros.importers.imported_tree import TreeFile
-from tree_sway_ros.importers.species_yaml import open_species
-from tree_sway_ros.importers.tree_source import open_scene, open_tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.source import open_scene, open_tree
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tree_sway_ros.core.species import Species
-from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.importers.tree_export import write_tree
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.files.export.tree_export import write_tree
 
 OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
 

@@ -1,1 +1,7 @@
-"""What is drawn: pictures of a tree and of its motion."""
+"""
+Pictures and films of trees with matplotlib.
+
+Projection, bark, leaves, plots.
+Nothing here is needed to solve or stream.
+
+"""

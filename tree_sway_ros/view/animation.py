@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway_ros.core.leaf_flutter import air_speed, flutter_angle, leaf_poses
-from tree_sway_ros.core.leaves import LeafClusters
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.leaves.flutter import air_speed, flutter_angle, leaf_poses
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway_ros.view.plotting import new_figure
 from tree_sway_ros.view.projection import Camera, ends_of_poses

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.view.projection import Camera
 
 

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.leaf_flutter import flutter_angle, leaf_poses
-from tree_sway_ros.core.leaves import LeafClusters
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.leaves.flutter import flutter_angle, leaf_poses
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.plotting import new_figure, save_figure
 from tree_sway_ros.view.projection import Camera, ends_of_poses, rest_poses
 from tree_sway_ros.view.tree_drawing import (

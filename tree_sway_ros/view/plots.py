@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.view.plotting import new_figure, save_figure
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.rotation import quaternions_from_x
-from tree_sway_ros.core.tree import Floats
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.leaf_drawing import leaf_blades, leaf_colors
 from tree_sway_ros.view.projection import Camera
 

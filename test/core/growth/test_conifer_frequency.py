@@ -13,13 +13,13 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.banks import build_bank
 from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.season import in_season
-from tree_sway_ros.core.settings import SimulatorSettings
-from tree_sway_ros.core.species import species_named
-from tree_sway_ros.core.tree import Tree
-from tree_sway_ros.core.tree_building import tree_from_segments
+from tree_sway_ros.core.simulator.assembly import build_bank
+from tree_sway_ros.core.simulator.season import in_season
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.core.tree.tree import Tree
 
 SUBTREE = SimulatorSettings(rung="subtree")
 FEW = (("spruce", 6.0, 55.0), ("pine", 12.0, 55.0), ("sitka", 24.0, 60.0))

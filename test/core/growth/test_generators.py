@@ -13,8 +13,8 @@ from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
 from tree_sway_ros.core.growth.grow import greenhill_length
-from tree_sway_ros.core.species import species_named
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.core.tree.tree import Tree
 
 Generator = Callable[[np.random.Generator], Tree]
 GENERATORS: list[Generator] = [grow_benjamina, grow_goldcrest, grow_broadleaf, grow_conifer]

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tree_sway_ros.core.growth.grow import HABITS, greenhill_length, grow, habit_of
-from tree_sway_ros.core.species import species_keys, species_named
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.species import species_keys, species_named
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, SpeciesError
 
 

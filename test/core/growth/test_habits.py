@@ -5,7 +5,7 @@ import pytest
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.growth.conifer import grow_conifer
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
 SEEDS = range(3)

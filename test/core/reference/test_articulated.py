@@ -10,23 +10,18 @@ from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
 from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
 from tree_sway_ros.core.reference.articulated_step import respond, room_of
-from tree_sway_ros.core.reference.example_trees import (
+from tree_sway_ros.core.reference.measure import frame_means, record_tips, tip_error, tips_of_poses
+from tree_sway_ros.core.reference.refinement import place_on_parent, refined
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.errors import TreeError
+from tree_sway_ros.study.example_trees import (
     EXAMPLE_DENSITY,
     EXAMPLE_MODULUS,
     RATIOS,
     forked_tree,
     tapered_stem,
 )
-from tree_sway_ros.core.reference.frame import frame_model
-from tree_sway_ros.core.reference.measure import (
-    frame_means,
-    record_tips,
-    tip_error,
-    tips_of_poses,
-)
-from tree_sway_ros.core.reference.refinement import place_on_parent, refined
-from tree_sway_ros.core.tree_building import tree_from_segments
-from tree_sway_ros.errors import TreeError
+from tree_sway_ros.study.frame.frame import frame_model
 
 E, RHO = EXAMPLE_MODULUS, EXAMPLE_DENSITY
 UNDAMPED = (0.0, 0.0)

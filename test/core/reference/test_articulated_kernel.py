@@ -21,9 +21,9 @@ from tree_sway_ros.core.reference.articulated_modes import (
     joint_stiffness,
 )
 from tree_sway_ros.core.reference.articulated_step import respond, room_of
-from tree_sway_ros.core.reference.example_trees import tapered_stem
 from tree_sway_ros.core.reference.rotation_kernel import turn_on
-from tree_sway_ros.core.tree_building import tree_from_segments
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.study.example_trees import tapered_stem
 
 E, RHO, G = 3.0e8, 900.0, 9.81
 

@@ -5,7 +5,7 @@ import pytest
 
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.articulated_step import GAMMA, Laws, drag
-from tree_sway_ros.core.reference.example_trees import forked_tree, tapered_stem
+from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 
 E, RHO = 8.0e9, 900.0
 

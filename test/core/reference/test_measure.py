@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import trapezoid
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.reference.example_trees import forked_tree, tapered_stem
 from tree_sway_ros.core.reference.measure import frame_means, record_tips, tip_error, tips_of_poses
+from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 
 
 class Turning:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.reference.example_trees import forked_tree
-from tree_sway_ros.core.reference.frame import frame_model
 from tree_sway_ros.core.reference.refinement import place_on_parent, refined
-from tree_sway_ros.core.tree_building import tree_from_segments
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.study.example_trees import forked_tree
+from tree_sway_ros.study.frame.frame import frame_model
 
 
 def with_arms(*places):

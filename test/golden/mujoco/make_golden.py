@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway_ros.core.reference.example_trees import forked_tree
 from tree_sway_ros.core.reference.measure import tip_error
-from tree_sway_ros.core.species import Species
-from tree_sway_ros.tools.mujoco_tree import MujocoTree
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
+from tree_sway_ros.study.example_trees import forked_tree
 
 FRAME, STEPS = 1.0 / 60.0, 32
 SPECIES = Species("forked", "no twist", 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)

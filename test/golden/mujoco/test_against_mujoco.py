@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tree_sway_ros.core.motion.drag import AIR_DENSITY
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.reference.example_trees import forked_tree
 from tree_sway_ros.core.reference.measure import record_tips, tip_error
-from tree_sway_ros.core.simulator import SwaySimulator
-from tree_sway_ros.core.species import Species
-from tree_sway_ros.core.wind_load import AIR_DENSITY
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.study.example_trees import forked_tree
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05
 SPECIES = Species("forked", "no twist", 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)
@@ -60,8 +60,8 @@ def test_uncoupled_branches_are_caught(golden, tree):
 
 def test_live_engine_repeats_the_golden_tips(golden, tree):
     pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
-    from tree_sway_ros.tools.compare_mujoco import mujoco_tips
-    from tree_sway_ros.tools.mujoco_tree import MujocoTree
+    from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
+    from tree_sway_ros.study.compare.with_mujoco import mujoco_tips
 
     frames = 6
     model = MujocoTree(tree, SPECIES, DAMPING)

@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
-from tree_sway_ros.core.simulator import SwaySimulator
-from tree_sway_ros.core.turbulence import simulate_turbulence
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 
 FOLDER = Path(__file__).resolve().parent
 MODELS = ("branch", "subtree", "modes", "coupled")

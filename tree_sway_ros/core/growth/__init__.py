@@ -1,1 +1,7 @@
-"""Seeded generators of plausible trees: pot plants of the paper, broadleaves and conifers."""
+"""
+Trees grown from a species, a height and a seed.
+
+Habits, thickness, twigs; the built-in trees by name.
+Nothing here knows of wind or files.
+
+"""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Floats
+from tree_sway_ros.core.arrays import Floats
 
 GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 """Angle between successive shoots in spiral phyllotaxis in [rad]."""

@@ -14,7 +14,7 @@ from tree_sway_ros.core.growth.axis import GOLDEN_ANGLE, aim, grow_axis, heading
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.tree import Tree
 
 N_STEMS = 5
 _UPRIGHT = np.pi / 2.0

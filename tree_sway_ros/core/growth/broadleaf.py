@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.growth.axis import GOLDEN_ANGLE, aim, direction_of, grow_axis, heading_of
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import BREAST_HEIGHT, node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.tree.tree import Tree
 
 # The crown, in units of the tree's height: centre and half-axes of an ellipsoid.
 _CENTRE = np.array([0.0, 0.0, 0.58])

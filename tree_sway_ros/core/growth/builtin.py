@@ -11,7 +11,7 @@ import numpy as np
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
 _GENERATORS: MappingProxyType[str, Callable[[np.random.Generator], Tree]] = MappingProxyType(

@@ -14,7 +14,7 @@ from tree_sway_ros.core.growth.axis import grow_axis
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import BREAST_HEIGHT, node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.tree import Tree
 
 _UPRIGHT = np.pi / 2.0
 _N_NODES = 24

@@ -17,8 +17,8 @@ from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
-from tree_sway_ros.core.species import Species, species_named
-from tree_sway_ros.core.tree import Tree
+from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
 Habit = Literal["conifer", "broadleaf", "pot"]

@@ -13,8 +13,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Floats, Tree
-from tree_sway_ros.core.tree_building import tree_from_segments
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.tree import Tree
 
 
 @dataclass

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.growth.skeleton import Shoot, Skeleton
-from tree_sway_ros.core.tree import Floats
 from tree_sway_ros.errors import ParameterError
 
 BREAST_HEIGHT = 1.3

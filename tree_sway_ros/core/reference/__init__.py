@@ -1,1 +1,7 @@
-"""Slow and plain models that the reduced tree is measured against."""
+"""
+Every segment solved in 3D: the truth that reduced models are measured against.
+
+Also the model `segments` of the simulator.
+Nothing here is reduced.
+
+"""

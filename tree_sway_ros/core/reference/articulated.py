@@ -14,6 +14,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
 from tree_sway_ros.core.reference.articulated_modes import (
@@ -25,8 +27,7 @@ from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_blo
 from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.rotation import quaternions_from_x
-from tree_sway_ros.core.tree import Floats, Tree
-from tree_sway_ros.core.wind_load import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
+from tree_sway_ros.core.tree.tree import Tree
 
 RIGID_TWIST = 1e3
 """Stiffness in twist over that in bending by which joints hardly twist."""

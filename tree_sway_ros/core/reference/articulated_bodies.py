@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.reference.refinement import place_on_parent
-from tree_sway_ros.core.tree import Floats, Ints, Tree
+from tree_sway_ros.core.tree.tree import Tree
 
 
 class Bodies(NamedTuple):

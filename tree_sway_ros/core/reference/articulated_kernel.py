@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.rotation_kernel import (
@@ -30,7 +31,6 @@ from tree_sway_ros.core.reference.rotation_kernel import (
     times_transposed,
     write,
 )
-from tree_sway_ros.core.tree import Floats
 
 
 class Motion(NamedTuple):

@@ -13,8 +13,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
-from tree_sway_ros.core.tree import Floats, Ints
 from tree_sway_ros.errors import TreeError
 
 

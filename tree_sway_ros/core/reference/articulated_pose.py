@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.rotation_kernel import (
@@ -17,7 +18,6 @@ from tree_sway_ros.core.reference.rotation_kernel import (
     turn_on,
     write,
 )
-from tree_sway_ros.core.tree import Floats
 
 
 @kernel

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.articulated_kernel import (
@@ -40,7 +41,6 @@ from tree_sway_ros.core.reference.rotation_kernel import (
     twist_of,
     write,
 )
-from tree_sway_ros.core.tree import Floats
 
 GAMMA = 1.0 - math.sqrt(0.5)
 

@@ -12,7 +12,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.tree import Tree
 
 
 class Swaying(Protocol):

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tree_sway_ros.core.tree import Floats, Tree
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.tree import Tree
 
 
 def refined(tree: Tree, pieces: int) -> Tree:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
-from tree_sway_ros.core.tree import Floats
 
 Vector = tuple[float, float, float]
 

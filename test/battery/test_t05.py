@@ -1,9 +1,0 @@
-"""T5: where Newton's iteration starts."""
-
-from __future__ import annotations
-
-from tree_sway_ros.tools.battery import t05_predictor as case
-
-
-def test_every_row_is_as_it_should_be():
-    assert [row for row in case.run() if not row.good] == []

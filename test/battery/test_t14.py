@@ -1,9 +1,0 @@
-"""T14: a redundant constraint."""
-
-from __future__ import annotations
-
-from tree_sway_ros.tools.battery import t14_redundant_pin as case
-
-
-def test_every_row_is_as_it_should_be():
-    assert [row for row in case.run() if not row.good] == []

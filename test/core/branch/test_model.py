@@ -1,0 +1,85 @@
+"""What a branch knows: where its children sit, its mass, its load and its leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.branch.model import branch_models, enriched_branches
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.study.example_trees import forked_tree
+
+
+def test_models_stand_in_the_order_of_branches(fork):
+    tree = fork()
+    models = branch_models(tree, 900.0, carries=True)
+    assert [len(m.beam.length) for m in models] == np.diff(tree.branch_first).tolist()
+    assert [m.children.tolist() for m in models] == [[1, 3], [2], [], []]
+    for b, model in enumerate(models):
+        assert model.beam.point[0, 0] == pytest.approx(tree.start[tree.segments_of(b)][0], abs=0.05)
+
+
+def test_a_child_sits_at_the_foot_of_its_perpendicular():
+    start = [[0, 0, 0], [0.1, 0, 0.3], [0.1, 0, 1.2], [-0.1, 0, -0.4]]
+    end = [[0, 0, 1], [1, 0, 0.3], [1, 0, 1.2], [-1, 0, -0.4]]
+    tree = tree_from_segments(start, end, [0.1, 0.02, 0.02, 0.02], parent=[-1, 0, 0, 0], branch=range(4))
+    stem = branch_models(tree, 900.0, carries=True)[0]
+    place = dict(zip(tree.source_index[1:], stem.beam.child_place, strict=True))
+    assert place == {1: pytest.approx(0.3), 2: pytest.approx(1.0), 3: pytest.approx(0.0)}
+
+
+def test_mass_and_drag_area_are_the_woods_and_the_leaves(fork):
+    tree = fork()
+    leaf_mass, leaf_area = np.array([0.0, 0.1, 0.2, 0.3]), np.array([0.0, 1.0, 2.0, 3.0])
+    models = branch_models(tree, 800.0, carries=True, leaf_mass=leaf_mass, leaf_area=leaf_area)
+    frontal = 0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length
+    for b, model in enumerate(models):
+        own = tree.segments_of(b)
+        wood = 800.0 * tree.volume[own].sum()
+        assert model.beam.integral(model.mass) == pytest.approx(wood + leaf_mass[b])
+        area = frontal[own].sum() + leaf_area[b]
+        assert model.beam.integral(model.drag_area) == pytest.approx(area)
+
+
+def test_the_profile_weighs_area_by_the_square_of_speed(fork):
+    tree = fork()
+    speed = np.linspace(0.5, 1.5, tree.n_segments)
+    frontal = 0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length
+    models = branch_models(tree, 800.0, carries=True, speed_profile=speed)
+    for b, model in enumerate(models):
+        own = tree.segments_of(b)
+        weighted = (frontal * speed**2)[own].sum()
+        assert model.beam.integral(model.drag_area) == pytest.approx(weighted)
+
+
+def test_the_model_does_not_care_where_the_tree_stands(fork):
+    tree = fork()
+    away = np.array([100.0, -50.0, 7.0])
+    moved = tree_from_segments(
+        tree.start + away,
+        tree.end + away,
+        np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
+        parent=tree.segment_parent,
+        branch=tree.branch_of_segment,
+    )
+    for one, other in zip(
+        branch_models(tree, 900.0, carries=True),
+        branch_models(moved, 900.0, carries=True),
+        strict=True,
+    ):
+        assert one.beam.point == pytest.approx(other.beam.point, abs=1e-11)
+        slope = one.coordinates[0].shape.slope
+        assert slope == pytest.approx(other.coordinates[0].shape.slope, rel=1e-9)
+
+
+def test_what_is_enriched():
+    tree = forked_tree(0.5, 0.6)
+    carriers = {0, *tree.branch_parent[1:].tolist()}
+    limbs = enriched_branches(tree, "limbs")
+    assert enriched_branches(tree, "none") == set()
+    assert enriched_branches(tree, "stem") == {0} < limbs
+    assert limbs < enriched_branches(tree, "carriers") == carriers
+    assert enriched_branches(tree, "all") == set(range(tree.n_branches))
+    for branch in carriers:
+        carried = np.flatnonzero(tree.branch_parent == branch)
+        assert (branch in limbs) == (branch == 0 or bool(carriers & set(carried.tolist())))

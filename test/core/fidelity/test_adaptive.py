@@ -1,0 +1,136 @@
+"""Models that change unseen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.fidelity.adaptive import CROSS_FADE, REVIEW, RUN_IN, AdaptiveSimulator
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.study.example_trees import forked_tree
+
+DT = 1.0 / 60.0
+WOOD = Species("example", "example", 8e9, 900.0, damping_bare=0.08)
+
+
+@pytest.fixture(scope="module")
+def made():
+    return AdaptiveSimulator(forked_tree(0.5, 0.6), WOOD, SimulatorSettings(gravity=0.0))
+
+
+@pytest.fixture
+def adaptive(made):
+    """The one simulator, as new, with other demands."""
+
+    def asked(tolerance, budget=0.0):
+        made.tolerance, made.budget, made.pace = tolerance, budget, 1.0
+        made.counts.refused = 0
+        made.reset()
+        return made
+
+    return asked
+
+
+def test_a_far_tree_stands_still_and_a_near_one_is_solved(adaptive):
+    assert adaptive(10.0).rung == "frozen"
+    assert adaptive(0.01).rung in ("modes", "coupled")
+
+
+def test_within_a_loose_tolerance_branches_are_frozen(adaptive):
+    sim = adaptive(0.02)
+    assert 0 < sim.n_frozen < 39
+    assert sim.n_solved + sim.n_copied + sim.n_frozen == 40
+    assert sim.choice.error <= 0.02
+
+
+def test_a_budget_comes_before_the_tolerance(adaptive):
+    free = adaptive(1e-9).choice
+    tight = adaptive(1e-9, budget=0.5 * free.cost).choice
+    assert tight.cost <= 0.5 * free.cost
+    assert free.error < tight.error < free.motion
+    assert adaptive(0.1, budget=free.cost).choice.cost < tight.cost
+    assert adaptive(1e-9, budget=1e-3).rung == "frozen"
+
+
+def test_a_slower_machine_can_afford_less(adaptive):
+    sim = adaptive(1e-9, budget=30.0)
+    before = sim.choice
+    sim.pace = 2.0
+    sim.reset()
+    assert sim.frame_cost <= 30.0
+    assert sim.choice.error > before.error
+
+
+def test_a_smaller_budget_changes_the_model_without_a_step(adaptive):
+    sim = adaptive(1e-9)
+    for _ in range(300):
+        sim.step((5.0, 1.0, 0.0), DT)
+    sim.budget = budget = 0.5 * sim.frame_cost
+    frames = []
+    for _ in range(int((REVIEW + RUN_IN + CROSS_FADE) / DT) + 2):
+        sim.step((5.0, 1.0, 0.0), DT)
+        frames.append(sim.place()[:, :3].copy())
+    assert sim.choice.cost <= budget
+    assert not sim.is_changing
+    assert sim.n_frozen > 0
+    assert np.linalg.norm(np.diff(frames, axis=0), axis=2).max() < 1e-3
+
+
+def test_a_tolerance_nobody_can_meet_takes_the_best(adaptive):
+    assert adaptive(1e-9).rung == "coupled"
+
+
+def test_coming_nearer_changes_the_model_without_a_step(adaptive):
+    sim = adaptive(10.0)
+    wind = simulate_turbulence(5.0, rate=60, duration=40, rng=np.random.default_rng(3), height=10.0)
+    frames, changed_at = [], None
+    for i, w in enumerate(wind):
+        if i == 1200:
+            sim.tolerance = 0.004
+        sim.step(w, DT)
+        frames.append(sim.place().copy())
+        if changed_at is None and sim.rung != "frozen":
+            changed_at = i
+    assert changed_at is not None
+    waited = (changed_at - 1200) * DT
+    assert RUN_IN + CROSS_FADE <= waited + 2 * DT <= RUN_IN + CROSS_FADE + REVIEW + 2 * DT
+    moves = np.linalg.norm(np.diff(np.array(frames)[:, :, :3], axis=0), axis=2).max(axis=1)
+    fading = moves[changed_at - int(CROSS_FADE / DT) - 2 : changed_at + 1]
+    afterwards = moves[changed_at + 1 :]
+    swing = np.abs(frames[changed_at + 1][:, :3] - frames[0][:, :3]).max()
+    assert fading.max() <= 2.0 * swing * DT / CROSS_FADE + afterwards.max()
+    assert moves[changed_at - 1 : changed_at + 1].max() <= 2.0 * afterwards.max()
+
+
+def test_poses_stay_rotations_while_they_fade(adaptive):
+    sim = adaptive(10.0)
+    sim.tolerance = 0.004
+    for _ in range(int((REVIEW + RUN_IN + 0.5 * CROSS_FADE) / DT)):
+        sim.step((6.0, 1.0, 0.0), DT)
+    assert sim.is_changing
+    np.testing.assert_allclose(np.linalg.norm(sim.place()[:, 3:], axis=1), 1.0, atol=1e-12)
+
+
+def test_a_wind_on_the_border_does_not_flicker(adaptive):
+    sim = adaptive(0.01)
+    rng = np.random.default_rng(4)
+    changes, before = 0, sim.choice.name
+    for _ in range(60):
+        for _ in range(60):
+            sim.step((6.0 + 0.3 * rng.standard_normal(), 0.0, 0.0), DT)
+        changes += sim.choice.name != before
+        before = sim.choice.name
+    assert changes <= 2
+
+
+def test_reset_and_bad_wind_as_in_one_simulator(adaptive):
+    sim = adaptive(0.05)
+    rest = sim.place().copy()
+    assert sim.step((np.nan, 0.0, 0.0), DT) == 1
+    assert sim.counts.refused == 1
+    for _ in range(60):
+        sim.step((5.0, 0.0, 0.0), DT)
+    sim.reset()
+    np.testing.assert_array_equal(sim.place(), rest)

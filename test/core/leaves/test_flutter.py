@@ -1,0 +1,123 @@
+"""The law of flutter, and leaves that ride on their segments."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from tree_sway_ros.core.leaves.flutter import (
+    AIR_VISCOSITY,
+    LARGEST_ANGLE,
+    air_speed,
+    flutter_amplitude,
+    flutter_angle,
+    leaf_list,
+    leaf_poses,
+)
+from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
+from tree_sway_ros.core.rotation import quaternions_from_x
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.tree import Tree
+
+
+def twig() -> Tree:
+    return tree_from_segments([[0, 0, 1.0]], [[0.3, 0.4, 1.2]], [0.004])
+
+
+def poses_at_rest(tree: Tree) -> np.ndarray:
+    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    return np.hstack([tree.start, rest[:, [1, 2, 3, 0]]])
+
+
+def leaves_of(tree: Tree, count: int = 20) -> LeafClusters:
+    return leaf_clusters(tree, np.random.default_rng(3), count=count)
+
+
+@pytest.mark.parametrize("size", [0.03, 0.1])
+def test_in_light_wind_the_edge_moves_at_the_measured_speed(size: float) -> None:
+    speed, frequency = 1.5, 5.0
+    measured = (speed / 740.0) ** 2 * size / AIR_VISCOSITY
+    rms_angle = flutter_amplitude(speed, frequency) / np.sqrt(2.0)
+    assert 2.0 * np.pi * frequency * rms_angle * 0.5 * size == pytest.approx(measured, rel=1e-2)
+
+
+@given(st.floats(0.0, 100.0), st.floats(0.0, 100.0), st.floats(0.5, 15.0))
+def test_more_wind_never_flutters_less_and_all_is_bounded(
+    one: float, other: float, frequency: float
+) -> None:
+    low, high = np.sort(flutter_amplitude([one, other], frequency))
+    assert 0.0 <= low <= high <= LARGEST_ANGLE
+    assert flutter_amplitude(min(one, other), frequency) == low
+
+
+def test_no_wind_no_flutter() -> None:
+    assert flutter_amplitude(0.0, 5.0) == 0.0
+
+
+def test_the_angle_swings_at_the_leaf_own_frequency() -> None:
+    leaves = leaves_of(twig(), 1)
+    period = 1.0 / leaves.frequency[0]
+    times = np.arange(200) / 200.0 * period
+    angles = np.array([flutter_angle(leaves, 4.0, time)[0] for time in times])
+    amplitude = flutter_amplitude(4.0, leaves.frequency[0])
+    assert angles.max() == pytest.approx(amplitude, rel=1e-3)
+    assert angles.mean() == pytest.approx(0.0, abs=1e-12)
+    assert flutter_angle(leaves, 4.0, period)[0] == pytest.approx(angles[0], abs=1e-12)
+
+
+def test_leaves_at_rest_are_where_they_were_put() -> None:
+    tree = twig()
+    leaves = leaves_of(tree)
+    block = leaf_poses(leaves, poses_at_rest(tree))
+    along = (block[:, :3] - tree.start[0]) @ (tree.end - tree.start)[0] / tree.length[0]
+    np.testing.assert_allclose(along, leaves.offset[:, 0], atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(block[:, 3:], axis=1), 1.0)
+
+
+def test_leaves_ride_on_the_segment_as_a_rigid_body() -> None:
+    tree = twig()
+    leaves, rest = leaves_of(tree), poses_at_rest(tree)
+    turn, shift = Rotation.from_rotvec([0.3, -0.8, 0.5]), np.array([1.0, -2.0, 0.5])
+    moved = np.hstack(
+        [turn.apply(rest[:, :3]) + shift, (turn * Rotation.from_quat(rest[:, 3:])).as_quat()]
+    )
+    before, after = leaf_poses(leaves, rest), leaf_poses(leaves, moved)
+    np.testing.assert_allclose(after[:, :3], turn.apply(before[:, :3]) + shift, atol=1e-12)
+    expected = (turn * Rotation.from_quat(before[:, 3:])).as_matrix()
+    np.testing.assert_allclose(Rotation.from_quat(after[:, 3:]).as_matrix(), expected, atol=1e-12)
+
+
+def test_flutter_turns_a_leaf_about_its_stalk_alone() -> None:
+    tree = twig()
+    leaves, rest = leaves_of(tree), poses_at_rest(tree)
+    still, turned = leaf_poses(leaves, rest), leaf_poses(leaves, rest, 0.4)
+    np.testing.assert_array_equal(still[:, :3], turned[:, :3])
+    before, after = (Rotation.from_quat(block[:, 3:]) for block in (still, turned))
+    np.testing.assert_allclose(before.apply([1, 0, 0]), after.apply([1, 0, 0]), atol=1e-12)
+    np.testing.assert_allclose((before.inv() * after).magnitude(), 0.4, rtol=1e-9)
+
+
+def test_a_leaf_that_goes_with_the_wind_feels_none() -> None:
+    before = np.zeros((2, 3))
+    after = np.array([[0.1, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(air_speed(after, before, 0.05, [2.0, 0.0, 0.0]), [0.0, 2.0])
+    each = [[2.0, 0.0, 3.0], [0.0, 4.0, 3.0]]
+    np.testing.assert_allclose(air_speed(after, before, 0.05, each), [3.0, 5.0])
+
+
+def test_the_list_alone_is_enough_to_draw_them() -> None:
+    """As a viewer would that has only the text and the poses."""
+    tree = twig()
+    leaves = leaves_of(tree)
+    told = json.loads(json.dumps(leaf_list(leaves)))
+    gain, largest = told["flutter"]["gain"], told["flutter"]["largest_angle"]
+    frequency, phase = np.array(told["frequency"]), np.array(told["phase"])
+    angle = largest * np.tanh(gain * 3.0**2 / (frequency * largest))
+    angle *= np.sin(2.0 * np.pi * frequency * 0.7 + phase)
+    np.testing.assert_allclose(angle, flutter_angle(leaves, 3.0, 0.7), atol=1e-3)
+    carrier = Rotation.from_quat(poses_at_rest(tree)[told["segment"], 3:])
+    centre = tree.start[told["segment"]] + carrier.apply(told["offset"])
+    np.testing.assert_allclose(centre, leaf_poses(leaves, poses_at_rest(tree))[:, :3], atol=2e-4)

@@ -1,0 +1,136 @@
+"""How branches ride and hand on loads: virtual work, balance of forces, and momentum of a rigid ride."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.motion.tree_passes import air_records, blow, gather, generalised, ride
+from tree_sway_ros.core.simulator.assembly import build_bank
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import species_named
+
+DRAG = 0.5 * 1.225 * 1.2
+
+
+class Loaded:
+    """A tree with its records, forces and rates at hand."""
+
+    def __init__(self, tree, enrich="none"):
+        chosen = SimulatorSettings(rung="coupled", enrich=enrich, gravity=0.0)
+        bank = build_bank(tree, species_named("broadleaf"), chosen)
+        bank.oscillators.set_step(1 / 60)
+        self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
+        self.n = len(bank.oscillators.rotations())
+
+    def handed(self, force):
+        """Moments on the key rotations, and pulls, of forces at the load centres, at rest."""
+        self.work["rotation"] = 0.0
+        self.work["force"] = self.work["met"] = force
+        moment, pull = np.zeros(self.n), np.zeros(len(self.branches))
+        gather(self.branches, self.work)
+        generalised(self.branches, self.work, True, moment, pull)
+        return moment, pull
+
+    def velocity_of_centres(self, v):
+        ride(self.branches, self.work, np.zeros(self.n), v)
+        out = []
+        for branch, work in zip(self.branches, self.work, strict=True):
+            base = work["velocity"]
+            at = base[:3] + np.cross(base[3:], branch["centre"])
+            own = slice(branch["coordinate"], branch["coordinate"] + branch["n_coordinates"])
+            out.append(at + v[own] @ branch["push"][: branch["n_coordinates"]])
+        return np.array(out)
+
+
+@pytest.fixture(scope="module", params=["none", "all"])
+def loaded(fork, request):
+    return Loaded(fork(), request.param)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_moments_do_the_work_of_the_forces(loaded, seed):
+    rng = np.random.default_rng(seed)
+    force, v = rng.normal(size=(4, 3)), rng.normal(size=loaded.n)
+    power = (force * loaded.velocity_of_centres(v)).sum()
+    moment, _ = loaded.handed(force)
+    assert moment @ v == pytest.approx(power, rel=1e-10)
+
+
+def test_the_stem_feels_all_force_and_moment(loaded):
+    force = np.random.default_rng(1).normal(size=(4, 3))
+    loaded.handed(force)
+    centre = loaded.branches["centre"]
+    total = np.concatenate([force.sum(axis=0), np.cross(centre, force).sum(axis=0)])
+    assert loaded.work["wrench"][0] == pytest.approx(total, abs=1e-12)
+    one = np.concatenate([force[2], np.cross(centre[2], force[2])])
+    assert loaded.work["wrench"][2] == pytest.approx(one, abs=1e-12)
+
+
+def test_a_child_takes_over_the_turn_of_its_parent(loaded):
+    v = np.zeros(loaded.n)
+    v[:2] = 0.3, -0.2
+    ride(loaded.branches, loaded.work, v, v)
+    for child in (1, 3):
+        twist = loaded.branches["twist"][child, :2, 3:]
+        assert loaded.work["rotation"][child] == pytest.approx(v[:2] @ twist)
+        assert loaded.work["velocity"][child, 3:] == pytest.approx(v[:2] @ twist)
+    # The twig on a stiff limb goes along as one body.
+    assert loaded.work["velocity"][2] == pytest.approx(loaded.work["velocity"][1])
+    assert not loaded.work["rotation"][0].any()
+
+
+def test_pull_is_along_the_chord_times_how_far_up_it_acts(stem):
+    tree = stem(length=2.0, base=0.02, cuts=4)
+    upright = Loaded(tree)
+    moment, pull = upright.handed(np.array([[0.0, 0.0, 3.0]]))
+    assert moment == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert pull[0] == pytest.approx(3.0 * 0.8)
+
+
+def test_what_is_carried_pulls_at_its_own_height(sketch):
+    drawn = sketch()
+    drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.02, 4)
+    drawn.add(0, 4, (1, 0, 0), 0.4, 0.01, 0.01, 2)
+    drawn.add(0, 4, (0, 1, 1), 1.0, 0.01, 0.01, 2)
+    tree = Loaded(drawn.tree())
+    slope = tree.branches["twist"][1, 0, 3:]
+    turn = np.linalg.norm(slope)
+    # A level child swings with the tip; one that rises by h further by its parent's slope there times h.
+    assert tree.branches["axial_lever"][1] == pytest.approx(1.0, rel=1e-9)
+    rise = tree.branches["centre"][2, 2] - 1.0
+    assert tree.branches["axial_lever"][2] == pytest.approx(1.0 + turn * rise, rel=1e-9)
+
+
+def test_still_branches_feel_the_wind_of_the_books(loaded):
+    loaded.work["velocity"], loaded.work["rotation"] = 0.0, 0.0
+    rest, branches = np.zeros(loaded.n), loaded.branches.copy()
+    branches["compliance"] = 0.0
+    blow(branches, loaded.work, air_records(branches), rest, rest, 6.0, 2.0, 1.0, DRAG)
+    wind = np.array([6.0, 2.0, 1.0])
+    tree = loaded.tree
+    for b in (3,):
+        own = tree.segments_of(b)
+        along = (tree.end[own] - tree.start[own])[0] / tree.length[own][0]
+        across = wind - (wind @ along) * along
+        area = (0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length)[own].sum()
+        expected = DRAG * area * np.linalg.norm(across) * across
+        assert loaded.work["force"][b] == pytest.approx(expected)
+
+
+def test_a_branch_that_goes_with_the_wind_feels_none(stem):
+    tree = Loaded(stem())
+    tree.work["velocity"][0] = [6.0, 2.0, 0.0, 0.0, 0.0, 0.0]
+    rest = np.zeros(tree.n)
+    blow(tree.branches, tree.work, air_records(tree.branches), rest, rest, 6.0, 2.0, 0.0, DRAG)
+    assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
+    """Laid flat into the wind by its base, an upright stem feels nothing."""
+    tree = Loaded(stem())
+    # Cayley's map turns by twice the arc tangent of half the vector.
+    tree.work["rotation"][0] = [0.0, 2.0 * np.tan(np.pi / 4), 0.0]
+    rest = np.zeros(tree.n)
+    blow(tree.branches, tree.work, air_records(tree.branches), rest, rest, 6.0, 0.0, 0.0, DRAG)
+    assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)

@@ -1,0 +1,102 @@
+"""Every branch an oscillator of its own: the exact propagator at work, carried loads, the paper's equation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX
+from tree_sway_ros.core.simulator.assembly import build_bank
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import species_named
+
+WOOD = species_named("broadleaf")
+DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
+
+
+def oscillators(tree, dt=1 / 60, **changes):
+    chosen = dict(rung="branch", gravity=0.0, twig_tolerance=-1.0) | changes
+    bank = build_bank(tree, WOOD, SimulatorSettings(**chosen)).oscillators
+    bank.set_step(dt)
+    return bank
+
+
+def test_a_planar_sway_is_the_papers_equation(stem):
+    """I theta'' + k2 theta' + k1 theta = c (Py cos - Px sin), the drag met as the branch now stands."""
+    bank = oscillators(stem(length=1.0, base=0.003, cuts=4), dt=1 / 480, damping_ratio=0.1)
+    branch = bank.branches[0]
+    inertia, damping, stiffness = bank.inertia[0], bank.damping[0], bank.stiffness[0]
+    push = np.linalg.norm(branch["push"][0])
+    flow, turn = np.linalg.norm(branch["flow"][0]), np.linalg.norm(branch["turn"][0])
+
+    def wind(t):
+        return 4.0 + 1.5 * np.sin(5.0 * t)
+
+    def rate(t, state):
+        angle, speed = state
+        # The wind sees the branch turned by Cayley's map of its mean slope; only what crosses it pushes.
+        seen = 2.0 * np.arctan(turn * angle / 2.0)
+        across = (wind(t) - flow * speed) * np.cos(seen)
+        force = DRAG * branch["area"] * abs(across) * across
+        px, pz = force * np.cos(seen), -force * np.sin(seen)
+        moment = push * (px * np.cos(angle) - pz * np.sin(angle))
+        return speed, (moment - damping * speed - stiffness * angle) / inertia
+
+    truth = solve_ivp(rate, (0.0, 2.0), (0.0, 0.0), rtol=1e-9, atol=1e-11, dense_output=True)
+    path = []
+    for k in range(960):
+        mean = 4.0 + 1.5 * (np.cos(5 * k / 480) - np.cos(5 * (k + 1) / 480)) * 96.0
+        assert bank.advance(mean, 0.0, 0.0, DRAG) == 0
+        path.append(bank.rotations().copy())
+    angle = truth.sol(np.arange(1, 961) / 480)[0]
+    assert np.abs(angle).max() > 0.1
+    assert np.array(path)[:, 0] == pytest.approx(angle, abs=2e-3 * np.abs(angle).max())
+    assert np.abs(np.array(path)[:, 1]).max() == 0.0
+
+
+@pytest.mark.parametrize("dt", [1 / 240, 1 / 60, 1 / 15])
+def test_still_air_takes_energy_and_never_gives(stem, dt):
+    bank = oscillators(stem(length=1.0, base=0.004, cuts=4), dt, damping_ratio=0.0)
+    bank.state[:2, :] = [[0.2, -0.1], [1.0, 3.0]]
+    energy = []
+    for _ in range(300):
+        bank.advance(0.0, 0.0, 0.0, DRAG)
+        x, v = bank.state[0], bank.state[1]
+        energy.append(bank.stiffness[0] * x @ x + bank.inertia[0] * v @ v)
+    assert energy[-1] < 0.95 * energy[0]
+    assert np.diff(energy).max() < 0.02 * energy[0]
+
+
+def test_what_is_carried_loads_the_stem_only_if_it_carries(fork):
+    for rung, carries in (("branch", False), ("subtree", True)):
+        bank = oscillators(fork(), rung=rung)
+        bank.advance(5.0, 0.0, 0.0, DRAG)
+        every = bank.moment.reshape(-1, 2)[0].copy()
+        own = bank.work["force"][0] @ bank.branches["push"][0, :2].T
+        assert bank.carries == carries
+        assert np.allclose(every, own) != carries
+
+
+def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
+    bank = oscillators(fork(), rung="subtree")
+    assert bank.advance(5.0, 0.0, 0.0, DRAG) == 0
+    # However heavy the air, at first a branch does no more than go along with it.
+    assert bank.advance(5.0, 0.0, 0.0, 1e12) == 0
+    held = [bank.advance(5.0, 0.0, 0.0, 1e12) for _ in range(500)]
+    assert max(held) > 0
+    # The most that a bounded moment can do, turned over at every swing; the margin is that of the whole moment.
+    z = WOOD.damping_bare
+    most = 1.5 * LOAD_MAX / np.tanh(np.pi * z / (2.0 * np.sqrt(1.0 - z * z)))
+    assert np.linalg.norm(bank.rotations().reshape(-1, 2), axis=1).max() < most
+
+
+def test_reset_forgets_everything(fork):
+    bank, fresh = (oscillators(fork(), rung="subtree") for _ in range(2))
+    for k in range(20):
+        bank.advance(9.0, 1.0 * k, 0.0, DRAG)
+    bank.reset()
+    for _ in range(5):
+        for one in (bank, fresh):
+            one.advance(3.0, 1.0, 0.0, DRAG)
+    assert bank.rotations().tobytes() == fresh.rotations().tobytes()

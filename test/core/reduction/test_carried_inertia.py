@@ -1,0 +1,46 @@
+"""Inertia with a subtree that gives way: between stiff riders and the coupled tree's own pace."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.branch.model import branch_models
+from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
+from tree_sway_ros.core.reduction.matrices import reduce_tree
+from tree_sway_ros.core.reduction.modes import natural_modes
+
+
+def reduced(tree):
+    return reduce_tree(tree, branch_models(tree, 900.0, carries=True), 9e9, 3.5e9, 0.0)
+
+
+def test_a_twig_that_carries_nothing_keeps_its_own(fork):
+    tree = fork()
+    matrices = reduced(tree)
+    inertia, alone = carried_inertia(tree, matrices), matrices.mass.diagonal()
+    assert inertia[4:] == pytest.approx(alone[4:])
+    assert (inertia >= alone * (1 - 1e-12)).all()
+
+
+def test_it_brings_the_stem_nearer_to_the_coupled_trees_pace(sketch):
+    drawn = sketch()
+    drawn.add(None, 0, (0, 0, 1), 2.0, 0.02, 0.012, 6)
+    for side in (1.0, -1.0):
+        drawn.add(0, 4, (side, 0.3, 0.5), 1.0, 0.010, 0.005, 4)
+    tree = drawn.tree()
+    matrices = reduced(tree)
+    truth = natural_modes(tree, matrices, 1).circular[0]
+    stiff = matrices.stiffness.diagonal()[:2].mean()
+    rigid = np.sqrt(stiff / matrices.mass.diagonal()[:2].mean())
+    giving = np.sqrt(stiff / carried_inertia(tree, matrices)[:2].mean())
+    assert abs(giving / truth - 1.0) < 0.5 * abs(rigid / truth - 1.0)
+
+
+def test_stiff_branches_give_no_way(sketch):
+    drawn = sketch()
+    drawn.add(None, 0, (0, 0, 1), 2.0, 0.01, 0.01, 4)
+    drawn.add(0, 4, (1, 0, 0), 0.1, 0.1, 0.1, 1)
+    tree = drawn.tree()
+    matrices = reduced(tree)
+    assert carried_inertia(tree, matrices) == pytest.approx(matrices.mass.diagonal(), rel=1e-3)

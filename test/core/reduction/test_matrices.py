@@ -1,0 +1,188 @@
+"""
+Matrices of the key rotations, against differences of placed segments.
+
+Placing knows nothing of mass or weight, and the matrices nothing of quaternions: the kinetic energy of the placed
+segments and the second variation of their height must be what the matrices say.
+
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.branch.model import branch_models
+from tree_sway_ros.core.motion.fill_records import (
+    fill_branch_geometry,
+    head_records,
+    segment_records,
+)
+from tree_sway_ros.core.motion.placing import place
+from tree_sway_ros.core.motion.records import BRANCH, WORK
+from tree_sway_ros.core.reduction.matrices import reduce_tree
+
+MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0
+_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(5)
+
+
+class Reduced:
+    """A tree with its matrices and the way to place it."""
+
+    def __init__(self, tree, gravity=9.81, enriched=(), carries=True, **leaves):
+        self.tree = tree
+        self.models = branch_models(
+            tree, DENSITY, carries=carries, enriched=frozenset(enriched), **leaves
+        )
+        self.reduction = reduce_tree(
+            tree, self.models, MODULUS, SHEAR, gravity, carries=carries
+        )
+        self.branches = np.zeros(tree.n_branches, dtype=BRANCH)
+        fill_branch_geometry(tree, self.models, self.branches)
+        self.branches["coordinate"] = self.reduction.first[:-1]
+        self.branches["twist"] = self.reduction.twist
+        self.segments = segment_records(tree, self.models)
+        self.heads = head_records(self.branches, self.segments)
+
+    def poses(self, x):
+        out = np.empty((self.tree.n_segments, 7))
+        work = np.zeros(self.tree.n_branches, dtype=WORK)
+        place(self.branches, self.segments, self.heads, work, x, self.tree.start[0], out)
+        return out
+
+    def points(self, x):
+        """Five points of each segment, (n, 5, 3)."""
+        out = self.poses(x)
+        qx, qy, qz, qw = out[:, 3:].T
+        ahead = np.stack(
+            [1 - 2 * (qy**2 + qz**2), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw)], axis=1
+        )
+        reach = (0.5 + 0.5 * _GAUSS)[:, None] * self.tree.length[:, None, None]
+        return out[:, None, :3] + reach * ahead[:, None, :]
+
+    @property
+    def weights(self):
+        """Mass at each of those points in [kg], (n, 5)."""
+        u = 0.5 + 0.5 * _GAUSS
+        tree = self.tree
+        d = tree.base_diameter[:, None] * (1 - u) + tree.tip_diameter[:, None] * u
+        return DENSITY * np.pi / 4.0 * d**2 * tree.length[:, None] * 0.5 * _WEIGHT
+
+
+def mass_by_differences(reduced, differences):
+    x0 = np.zeros(reduced.reduction.n_coordinates)
+    moved = differences(reduced.points, x0)
+    return np.einsum("sg,sgki,sgkj->ij", reduced.weights, moved, moved)
+
+
+def weight_by_differences(reduced, differences):
+    def pull(x):
+        """Gradient of potential energy."""
+
+        def energy(at):
+            return np.array([9.81 * (reduced.weights * reduced.points(at)[..., 2]).sum()])
+
+        return differences(energy, x, 5e-3)[0]
+
+    return differences(pull, np.zeros(reduced.reduction.n_coordinates), 5e-3)
+
+
+def relative(one, other):
+    """Largest difference of two matrices, each entry over its row's and column's diagonal."""
+    scale = np.sqrt(np.abs(np.diag(other)))
+    return np.abs((one - other) / np.outer(scale, scale)).max()
+
+
+@pytest.mark.parametrize(("enriched", "bound"), [((), 2e-3), ((0, 1), 0.015)])
+def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences, enriched, bound):
+    error = []
+    for fine in (4, 8):
+        reduced = Reduced(fork(fine), enriched=enriched)
+        matrix = reduced.reduction.mass.toarray()
+        error.append(relative(matrix, mass_by_differences(reduced, differences)))
+    assert error[1] < bound
+    # Straight segments stand for a curve: second order.
+    assert np.log2(error[0] / error[1]) == pytest.approx(2.0, abs=0.1)
+
+
+def test_weight_is_the_second_variation_of_height(fork, differences):
+    error = []
+    for fine in (2, 4):
+        reduced = Reduced(fork(fine))
+        matrix = reduced.reduction.gravity.toarray()
+        found = weight_by_differences(reduced, differences)
+        scale = np.abs(np.diag(matrix)).max()
+        error.append(np.abs(matrix - found).max() / scale)
+    assert error[1] < 2e-3
+    assert np.log2(error[0] / error[1]) == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("enriched", [(), (0,), (0, 1, 2, 3)])
+def test_mass_is_symmetric_and_positive(fork, enriched):
+    reduction = Reduced(fork(), enriched=enriched).reduction
+    mass = reduction.mass.toarray()
+    assert np.array_equal(mass, mass.T) or np.abs(mass - mass.T).max() < 1e-15 * np.abs(mass).max()
+    scale = 1.0 / np.sqrt(np.diag(mass))
+    assert np.linalg.eigvalsh(mass * np.outer(scale, scale))[0] > 1e-6
+    gravity = reduction.gravity.toarray()
+    assert np.abs(gravity - gravity.T).max() <= 1e-15 * np.abs(gravity).max()
+    assert (reduction.elastic > 0).all()
+
+
+def test_total_mass_rides_on_the_tree(fork):
+    # A stiff turn of the stem alone would move all; the mass matrix must see all of it too.
+    reduced = Reduced(fork())
+    tree = reduced.tree
+    total = DENSITY * tree.volume.sum()
+    assert reduced.weights.sum() == pytest.approx(total, rel=1e-12)
+    assert sum(m.beam.integral(m.mass) for m in reduced.models) == pytest.approx(total, rel=1e-12)
+
+
+def test_without_gravity_there_is_no_weight(fork):
+    reduction = Reduced(fork(), gravity=0.0).reduction
+    assert abs(reduction.gravity).max() == 0.0
+    assert reduction.stiffness.diagonal() == pytest.approx(reduction.elastic)
+
+
+def test_alone_branches_do_not_feel_each_other(fork):
+    reduction = Reduced(fork(), carries=False).reduction
+    mass = reduction.mass.toarray()
+    for b in range(4):
+        mass[2 * b : 2 * b + 2, 2 * b : 2 * b + 2] = 0.0
+    assert not mass.any()
+
+
+def test_only_ancestors_couple(fork):
+    mass = Reduced(fork()).reduction.mass.toarray()
+    # Branch 3 sits on the stem, as branch 1 with its twig 2 does.
+    assert not mass[6:, 2:6].any()
+    assert np.abs(mass[2:4, 4:6]).max() > 0.0
+
+
+def test_leaves_add_their_mass(fork):
+    leaves = np.array([0.0, 0.3, 0.1, 0.2])
+    with_leaves = Reduced(fork(), leaf_mass=leaves)
+    total = sum(m.beam.integral(m.mass) for m in with_leaves.models)
+    assert total == pytest.approx(Reduced(fork()).weights.sum() + 0.6)
+    heavier = with_leaves.reduction.mass.diagonal() - Reduced(fork()).reduction.mass.diagonal()
+    assert (heavier > 0.0).all()
+
+
+def test_an_upright_tree_is_softened_and_a_hanging_one_stiffened(stem):
+    upright = Reduced(stem(direction=(0, 0, 1))).reduction.gravity.diagonal()
+    hanging = Reduced(stem(direction=(0, 0, -1))).reduction.gravity.diagonal()
+    assert (upright < 0.0).all()
+    assert hanging == pytest.approx(-upright)
+    level = Reduced(stem(direction=(1, 0, 0))).reduction.gravity.toarray()
+    assert np.abs(level).max() < 1e-12 * hanging[0]
+
+
+def test_the_twist_of_a_child_is_the_motion_of_its_base(fork, differences):
+    reduced = Reduced(fork(8), enriched=(0,))
+    moved = differences(reduced.poses, np.zeros(reduced.reduction.n_coordinates))
+    first = reduced.tree.branch_first
+    for child, parent in ((1, 0), (2, 1), (3, 0)):
+        own = slice(*reduced.reduction.first[parent : parent + 2])
+        twist = reduced.reduction.twist[child, : own.stop - own.start]
+        base = reduced.tree.start[first[child]]
+        motion = twist[:, :3] + np.cross(twist[:, 3:], base)
+        assert moved[first[child], :3, own].T == pytest.approx(motion, abs=2e-3)

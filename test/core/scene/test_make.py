@@ -1,0 +1,67 @@
+"""Every model of a tree behind one face, and every segment solved as one of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
+
+DT = 1.0 / 60.0
+WOOD = Species("example", "example", 8e9, 900.0, damping_bare=0.1)
+
+
+@pytest.fixture(scope="module")
+def stem():
+    return tapered_stem(4.0, np.linspace(0.06, 0.03, 13))
+
+
+@pytest.mark.parametrize("fidelity", FIDELITIES)
+def test_every_model_leans_with_the_wind_and_goes_back_to_rest(stem, fidelity):
+    sim = make_simulator(stem, WOOD, fidelity=fidelity, tolerance=1e-4)
+    rest = sim.place().copy()
+    for _ in range(240):
+        assert sim.step((8.0, 0.0, 0.0), DT) == 0
+    sim.place()
+    if fidelity != "frozen":
+        assert sim.tip_displacement[0] > 0.01
+        assert abs(sim.tip_displacement[1]) < 1e-9
+    assert sim.step((np.inf, 0.0, 0.0), DT) == 1
+    assert sim.counts.refused == 1
+    sim.reset()
+    np.testing.assert_allclose(sim.place(), rest, atol=1e-12)
+
+
+def test_a_stem_leans_as_far_in_every_model(stem):
+    lean = {}
+    for fidelity in ("branch", "subtree", "coupled", "segments"):
+        sim = make_simulator(stem, WOOD, fidelity=fidelity, damping_ratio=0.5)
+        for _ in range(600):
+            sim.step((6.0, 0.0, 0.0), DT)
+        sim.place()
+        lean[fidelity] = sim.tip_displacement[0]
+    for fidelity, x in lean.items():
+        assert x == pytest.approx(lean["segments"], rel=0.02), fidelity
+
+
+def test_long_steps_of_every_segment_are_cut():
+    tree = forked_tree(0.5, 0.6)
+    one, many = (make_simulator(tree, WOOD, fidelity="segments") for _ in range(2))
+    one.step((5.0, 1.0, 0.0), 8 * DT)
+    for _ in range(8):
+        many.step((5.0, 1.0, 0.0), DT)
+    np.testing.assert_allclose(one.place(), many.place(), atol=1e-12)
+
+
+def test_what_a_model_does_not_know_is_refused(stem):
+    with pytest.raises(ParameterError, match=r"unknown fidelity 'best'.*auto"):
+        make_simulator(stem, WOOD, fidelity="best")
+    leaves = SimulatorSettings(leaf_mass=np.ones(1))
+    with pytest.raises(ParameterError, match="leaves on rung 'segments'"):
+        make_simulator(stem, WOOD, leaves, fidelity="segments")
+    with pytest.raises(ParameterError, match="volume_rule"):
+        make_simulator(stem, WOOD, fidelity="segments", stiffness="volume_rule")

@@ -1,0 +1,46 @@
+"""Settings: each one out of range is refused by name, with what to give instead."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from tree_sway_ros.core.simulator.settings import RUNGS, SimulatorSettings
+from tree_sway_ros.errors import ParameterError
+
+
+def test_the_defaults_stand():
+    chosen = SimulatorSettings()
+    assert chosen.rung in RUNGS
+    assert chosen.damping_ratio is None
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        chosen.rung = "frozen"
+
+
+@pytest.mark.parametrize("rung", RUNGS)
+def test_every_rung_can_be_asked_for(rung):
+    assert SimulatorSettings(rung=rung).rung == rung
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (dict(rung="fast"), "unknown rung 'fast'; use one of: frozen, branch, subtree"),
+        (dict(stiffness="felt"), "unknown stiffness 'felt'; use one of: beam, volume_rule"),
+        (dict(enrich="some"), "unknown enrich 'some'; use one of: none"),
+        (dict(stiffness="volume_rule", rung="modes"), "stiffness: the volume rule on rung 'modes'"),
+        (dict(stiffness="volume_rule", rung="coupled"), "use it on 'branch' or 'subtree'"),
+        (dict(damping_ratio=-0.1), "damping ratio -0.1; give 0 or more"),
+        (dict(damping_ratio=float("nan")), "damping ratio nan"),
+        (dict(n_modes=0), "n_modes: 0 modes; ask for 1 or more"),
+        (dict(volume_stiffness=0.0), "volume_stiffness 0.0; give a finite number above 0"),
+        (dict(volume_damping=float("inf")), "volume_damping inf"),
+        (dict(max_wind=float("nan")), "max_wind nan"),
+        (dict(gravity=-9.81), r"gravity -9.81 m/s\^2; give 0 or more"),
+        (dict(gravity=float("nan")), "gravity nan"),
+    ],
+)
+def test_what_is_out_of_range_is_refused(given, message):
+    with pytest.raises(ParameterError, match=message):
+        SimulatorSettings(**given)

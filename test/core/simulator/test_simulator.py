@@ -1,0 +1,215 @@
+"""The tree in the wind: laws that hold for every rung."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.errors import ParameterError, SpeciesError
+
+MOVING = [rung for rung in RUNGS if rung != "frozen"]
+DT = 1.0 / 60.0
+
+
+def gusts(n, seed=3):
+    rng = np.random.default_rng(seed)
+    return np.array([6.0, 2.0, 0.5]) + np.cumsum(rng.normal(0.0, 0.6, (n, 3)), axis=0)
+
+
+def run(sim, winds, dt=DT):
+    """Poses after each wind, (k, n, 7)."""
+    frames = []
+    for wind in winds:
+        sim.step(wind, dt)
+        frames.append(sim.place().copy())
+    return np.array(frames)
+
+
+@pytest.fixture(params=MOVING)
+def rung(request):
+    return request.param
+
+
+def swaying(tree, rung, **changes):
+    return SwaySimulator(tree, rung=rung, **({"n_modes": 4} | changes))
+
+
+def test_the_same_wind_gives_the_same_bits(fork, rung):
+    winds = gusts(100)
+    one, other = (run(swaying(fork(), rung), winds) for _ in range(2))
+    assert one.tobytes() == other.tobytes()
+
+
+def test_without_wind_a_tree_stands_exactly_at_rest(fork, rung):
+    sim = swaying(fork(), rung)
+    rest = sim.place().copy()
+    frames = run(sim, np.zeros((50, 3)))
+    assert (frames == rest).all()
+    # The tip is found from its pose, to rounding.
+    assert sim.tip_displacement == pytest.approx(np.zeros(3), abs=1e-14)
+
+
+@pytest.mark.parametrize("name", BUILTIN_TREES)
+def test_a_westerly_bends_every_tree_to_the_east(name):
+    bends_east(builtin_tree(name), "subtree")
+
+
+@pytest.mark.parametrize("rung", RUNGS)
+def test_a_westerly_bends_the_tree_of_every_rung_to_the_east(fork, rung):
+    bends_east(fork(), rung, n_modes=4)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", BUILTIN_TREES)
+@pytest.mark.parametrize("rung", ["frozen", "branch", "modes", "coupled"])
+def test_a_westerly_bends_every_tree_on_every_rung_to_the_east(name, rung):
+    bends_east(builtin_tree(name), rung)
+
+
+def bends_east(tree, rung, **changes):
+    sim = SwaySimulator(tree, rung=rung, damping_ratio=0.5, **changes)
+    rest = sim.place()[:, :3].copy()
+    for _ in range(240):
+        sim.step([6.0, 0.0, 0.0], DT)
+    moved = sim.place()[:, :3] - rest
+    if rung == "frozen":
+        assert not moved.any()
+        return
+    assert sim.tip_displacement[0] > 1e-5
+    mean = (moved * tree.length[:, None]).mean(axis=0)
+    assert mean[0] > 5.0 * abs(mean[1])
+
+
+def test_mirrored_wind_gives_mirrored_motion(mirror_fork, rung):
+    tree, partner = mirror_fork()
+    mirror = np.array([1.0, -1.0, 1.0])
+    winds = gusts(150)
+    one = run(swaying(tree, rung, n_modes=12), winds)
+    other = run(swaying(tree, rung, n_modes=12), winds * mirror)
+    assert np.abs(one[-1] - one[0]).max() > 1e-3
+    assert other[:, partner, :3] == pytest.approx(one[:, :, :3] * mirror, abs=1e-9)
+
+
+@pytest.mark.parametrize("heading", [0.7, np.pi])
+@pytest.mark.parametrize(
+    ("rung", "within", "gravity"),
+    # What is left: the inertia a branch gives way with, and the static rest under weight, go by each axis.
+    [("branch", 1e-12, 9.81), ("subtree", 1e-5, 9.81), ("modes", 1e-12, 0.0), ("coupled", 1e-12, 9.81)],
+)
+def test_a_turned_tree_in_turned_wind_moves_alike(fork, rung, within, gravity, heading):
+    tree = fork()
+    c, s = np.cos(heading), np.sin(heading)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    turned = tree_from_segments(
+        tree.start @ turn,
+        tree.end @ turn,
+        np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
+        parent=tree.segment_parent,
+        branch=tree.branch_of_segment,
+    )
+    winds = gusts(60)
+    one, other = (swaying(t, rung, n_modes=8, gravity=gravity) for t in (tree, turned))
+    moved = run(one, winds)[:, :, :3]
+    assert np.ptp(moved, axis=0).max() > 5e-3
+    assert run(other, winds @ turn)[:, :, :3] == pytest.approx(moved @ turn, abs=within)
+
+
+@pytest.mark.parametrize("rung", RUNGS)
+def test_a_step_allocates_nothing(fork, rung):
+    sim = swaying(fork(), rung)
+    wind, out = np.array([5.0, 1.0, 0.0]), np.zeros((sim.tree.n_segments, 7))
+    for _ in range(3):
+        sim.step(wind, DT)
+        sim.place(out)
+    tracemalloc.start()
+    try:
+        sim.step(wind, DT)
+        sim.place(out)
+        before, _ = tracemalloc.get_traced_memory()
+        tracemalloc.reset_peak()
+        for _ in range(500):
+            sim.step(wind, DT)
+            sim.place(out)
+        after, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    # A few Python numbers come and go; no array does.
+    assert after - before < 512
+    assert peak - before < 2048
+
+
+@pytest.mark.parametrize("taper", [0.0, 0.6])
+def test_static_deflection_is_the_beams(stem, rung, taper):
+    length, base, wind = 1.2, 0.012, 5.0
+    tree = stem(length, base, base * (1 - taper), cuts=8)
+    sim = swaying(tree, rung, gravity=0.0, damping_ratio=1.0, n_modes=1)
+    for _ in range(1200):
+        sim.step([wind, 0.0, 0.0], DT)
+    sim.place()
+
+    def moment(x):
+        return quad(lambda s: (s - x) * (1 - taper * s), x, 1)[0]
+
+    unit = quad(lambda x: moment(x) * (1 - x) / (1 - taper * x) ** 4, 0, 1)[0]
+    load = 0.5 * 1.225 * sim.species.bare_drag_coefficient * wind**2 * base
+    tip = unit * load * length**4 / (sim.species.modulus * np.pi / 64 * base**4)
+    assert sim.tip_displacement[0] == pytest.approx(tip, rel=2e-3)
+    assert abs(sim.tip_displacement[1]) < 1e-9
+
+
+def test_the_step_is_of_second_order(fork, rung):
+    def tip_after(n):
+        sim = swaying(fork(), rung, n_modes=8, gravity=0.0)
+        h = 1.0 / n
+        for k in range(n):
+            # Mean over the step of 5 + 3 sin 4t.
+            mean = 5.0 + 3.0 * (np.cos(4 * k * h) - np.cos(4 * (k + 1) * h)) / (4 * h)
+            sim.step([mean, 0.0, 0.0], h)
+        sim.place()
+        return sim.tip_displacement.copy()
+
+    truth = tip_after(4096)
+    error = [np.abs(tip_after(n) - truth).max() for n in (128, 256)]
+    assert np.log2(error[0] / error[1]) == pytest.approx(2.0, abs=0.35)
+
+
+def test_place_writes_where_it_is_told(fork):
+    sim = swaying(fork(), "subtree")
+    sim.step([8.0, 0.0, 0.0], DT)
+    out = np.zeros((sim.tree.n_segments, 7))
+    assert sim.place(out) is out
+    tip = sim.tip_displacement.copy()
+    assert (sim.place() == out).all()
+    assert (sim.tip_displacement == tip).all()
+
+
+def test_what_it_says_of_the_tree(fork):
+    sim = swaying(fork(), "coupled", leaf_mass=np.array([0.0, 0.1, 0.1, 0.1]))
+    assert sim.rung == "coupled"
+    assert sim.mass == pytest.approx(900.0 * sim.tree.volume.sum() + 0.3)
+    assert sim.n_solved + sim.n_copied == sim.tree.n_branches
+    assert (np.diff(sim.frequencies()) >= 0).all()
+    assert len(sim.frequencies(3)) == 3
+    assert len(swaying(fork(), "frozen").frequencies()) == 0
+
+
+def test_errors_of_a_simulator(fork):
+    with pytest.raises(SpeciesError, match="unknown species 'plastic'"):
+        SwaySimulator(plastic(fork()))
+    with pytest.raises(ParameterError, match="100 modes of a tree that has"):
+        SwaySimulator(fork(), rung="modes", n_modes=100)
+    with pytest.raises(TypeError, match="no_such_setting"):
+        SwaySimulator(fork(), no_such_setting=1)
+
+
+def plastic(tree):
+    return tree_from_segments(
+        tree.start, tree.end, tree.base_diameter, parent=tree.segment_parent, species="plastic"
+    )

@@ -1,0 +1,57 @@
+"""The table of woods: complete, physical, and clear about what it does not know."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from tree_sway_ros.core.tree.species import species_keys, species_named
+from tree_sway_ros.errors import SpeciesError
+
+
+@pytest.mark.parametrize("key", species_keys())
+def test_every_wood_is_green_wood(key):
+    wood = species_named(key)
+    assert wood.key == key
+    assert wood.title
+    # Green wood lies between balsa and boxwood (Forest Products Laboratory, Wood Handbook, 2010).
+    assert 3e9 < wood.modulus < 16e9
+    assert 500.0 < wood.density < 1300.0
+    assert 0.02 <= wood.damping_bare <= 0.10
+    assert 0.05 <= wood.damping_in_leaf <= 0.24
+    assert 0.0 <= wood.drag_exponent < 1.0
+    # Wood sounds at some 2-5 km/s along the grain.
+    assert 1.9e3 < (wood.modulus / wood.density) ** 0.5 < 5e3
+
+
+def test_drag_at_ten_metres_a_second_is_that_of_a_crown():
+    for key in species_keys():
+        wood = species_named(key)
+        assert 0.2 < wood.drag_coefficient * 10.0**-wood.drag_exponent < 1.3
+
+
+def test_an_unknown_species_is_refused_with_those_that_exist():
+    with pytest.raises(SpeciesError, match=r"unknown species 'mahogany'; use one of: ash, .*walnut"):
+        species_named("mahogany")
+
+
+def test_guesses_are_marked():
+    guesses = {key for key in species_keys() if species_named(key).is_estimate}
+    assert guesses == {"benjamina", "goldcrest", "broadleaf"}
+
+
+def test_a_species_cannot_be_changed_by_accident():
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        species_named("oak").modulus = 1.0
+
+
+def test_without_leaves_a_tree_does_not_streamline():
+    oak = species_named("oak")
+    assert oak.drag_law(in_leaf=True) == (oak.drag_coefficient, oak.drag_exponent)
+    assert oak.drag_law(in_leaf=False) == (oak.bare_drag_coefficient, 0.0)
+
+
+def test_every_crown_in_leaf_streamlines():
+    for key in species_keys():
+        assert species_named(key).drag_law(in_leaf=True)[1] > 0.3

@@ -1,0 +1,205 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tree_sway_ros.core.wind.averaging import WindAverage
+from tree_sway_ros.errors import ParameterError
+
+FRAME = 1.0 / 60.0
+PERIOD = 0.05
+WIND = st.tuples(*[st.floats(-40.0, 40.0)] * 3)
+
+
+def smooth(t):
+    return np.array([5.0 + 2.0 * math.sin(1.3 * t), 1.5 * math.cos(2.1 * t), 0.0])
+
+
+def run(average, duration, *, source=smooth, period=PERIOD, latency=0.0, hears=lambda t: True, since=0.0):
+    """Feed samples as they arrive to a 60 Hz solver; return ends of the steps and means."""
+    means, ends, k = [], [], 0
+    for frame in range(round(duration / FRAME)):
+        start, end = since + frame * FRAME, since + (frame + 1) * FRAME
+        while since + k * period + latency <= end:
+            time = since + k * period
+            if hears(time):
+                assert average.add(time, source(time))
+            k += 1
+        ends.append(end)
+        means.append(average.mean(start, end))
+    return np.array(ends), np.array(means)
+
+
+def delayed_mean(source, ends, delay, period=PERIOD):
+    """Mean over each frame of the samples joined by lines and delayed, by brute force."""
+    grid = np.arange(-1, int(ends[-1] / period) + 3) * period
+    values = np.array([source(t) for t in grid])
+    inner = (np.arange(40) + 0.5) / 40 * FRAME
+    times = ends[:, np.newaxis] - FRAME + inner - delay
+    return np.stack([np.interp(times, grid, c).mean(axis=1) for c in values.T], axis=1)
+
+
+def test_linear_is_the_mean_of_straight_lines_one_period_late():
+    ends, means = run(WindAverage(), 5.0)
+    live = ends > 0.3
+    expected = delayed_mean(smooth, ends, PERIOD)
+    np.testing.assert_allclose(means[live], expected[live], atol=1e-4)
+
+
+def test_a_sensor_slower_than_the_timeout_is_known_from_its_second_sample():
+    _, means = run(WindAverage(), 60.0, source=lambda t: np.array([4.0, 0.0, 0.0]), period=10.0)
+    assert means[round(9.9 / FRAME), 0] < 0.4  # with one sample no period is known: it decays
+    np.testing.assert_allclose(means[round(11.0 / FRAME) :, 0], 4.0, rtol=1e-12)
+
+
+def test_hold_is_the_mean_of_a_staircase():
+    average = WindAverage("hold")
+    average.add(0.0, (1.0, 0.0, 0.0))
+    average.add(0.05, (3.0, 0.0, 0.0))
+    np.testing.assert_allclose(average.mean(0.04, 0.08), (2.5, 0.0, 0.0))
+    np.testing.assert_allclose(average.mean(0.08, 0.09), (3.0, 0.0, 0.0))
+
+
+def test_linear_has_no_staircase_and_hold_has():
+    def roughness(interpolation):
+        _, means = run(WindAverage(interpolation), 5.0)
+        return np.abs(np.diff(means[60:], n=2, axis=0)).max()
+
+    assert roughness("linear") < 0.25 * roughness("hold")
+
+
+@pytest.mark.parametrize("latency", [0.003, 0.03, 0.2, 1.5])
+def test_samples_that_arrive_late_only_delay_the_curve(latency):
+    average = WindAverage()
+    ends, means = run(average, 6.0, latency=latency)
+    live = ends > 4.0
+    errors = [
+        np.abs(means - delayed_mean(smooth, ends, PERIOD + delay))[live].max()
+        for delay in np.linspace(latency - FRAME, latency + FRAME, 21)
+    ]
+    assert min(errors) < 0.02
+    assert np.abs(np.diff(means[120:], axis=0)).max() < 1.2 * 4.1 * FRAME  # no faster than the wind
+    assert average.state(6.0) == "live"
+
+
+def test_jitter_of_stamps_makes_no_jumps():
+    rng = np.random.default_rng(3)
+    average = WindAverage()
+    means, newest, k = [], -1.0, 0
+    for frame in range(1200):
+        end = (frame + 1) * FRAME
+        while k * PERIOD + 0.04 <= end:
+            newest = max(newest + 1e-3, k * PERIOD + rng.uniform(0.0, 0.04))
+            assert average.add(newest, smooth(newest))
+            k += 1
+        means.append(average.mean(frame * FRAME, end))
+    assert np.abs(np.diff(means[120:], axis=0)).max() < 0.2
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "hold"])
+@pytest.mark.parametrize("period", [0.01, 0.05, 1.0, 1.9])
+def test_the_mean_of_a_constant_is_the_constant(interpolation, period):
+    constant = np.array([3.0, -2.0, 0.5])
+    average = WindAverage(interpolation)
+    _, means = run(average, 8.0, source=lambda t: constant, period=period)
+    np.testing.assert_allclose(means, np.tile(constant, (len(means), 1)), rtol=1e-13)
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.02, 0.08), WIND), min_size=1, max_size=10),
+    st.floats(-0.2, 1.0),
+    st.floats(1e-3, 0.5),
+    st.floats(1e-3, 6.0),
+    st.sampled_from(["linear", "hold"]),
+)
+def test_means_are_additive(samples, start, first, second, interpolation):
+    average = WindAverage(interpolation)
+    time = 0.0
+    for gap, wind in samples:
+        time += gap
+        average.add(time, wind)
+    middle, end = start + first, start + first + second
+    parts = first * average.mean(start, middle) + second * average.mean(middle, end)
+    np.testing.assert_allclose((end - start) * average.mean(start, end), parts, atol=1e-8)
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.01, 4.0), WIND), min_size=1, max_size=15),
+    st.floats(0.1, 5.0),
+    st.sampled_from(["linear", "hold"]),
+)
+def test_mirrored_and_scaled_wind_gives_mirrored_and_scaled_means(samples, k, interpolation):
+    plain, mirrored = WindAverage(interpolation), WindAverage(interpolation)
+    time = 0.0
+    for gap, wind in samples:
+        start, time = time, time + gap
+        wind = np.array(wind)
+        plain.add(time, wind)
+        mirrored.add(time, -k * wind)
+        expected = -k * plain.mean(start, time)
+        np.testing.assert_allclose(mirrored.mean(start, time), expected, atol=1e-9)
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.0, 3.0), WIND, st.booleans()), max_size=30),
+    st.sampled_from(["linear", "hold"]),
+)
+def test_the_mean_stays_within_the_largest_sample(samples, interpolation):
+    average = WindAverage(interpolation)
+    time, largest = 0.0, 0.0
+    for wait, wind, is_heard in samples:
+        if is_heard and average.add(time + 0.5 * wait, wind):
+            largest = max(largest, *map(abs, wind))
+        mean = average.mean(time, time + wait)
+        time += wait
+        assert np.abs(mean).max() <= largest * (1.0 + 1e-9)
+
+
+class TestRefusals:
+    @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+    def test_not_finite_leaves_no_trace(self, bad):
+        average, untouched = WindAverage(), WindAverage()
+        for a in (average, untouched):
+            run(a, 1.0)
+        assert not average.add(1.01, (bad, 0.0, 0.0))
+        assert not average.add(bad, (1.0, 0.0, 0.0))
+        assert average.refused == 2
+        np.testing.assert_array_equal(average.mean(1.0, 1.1), untouched.mean(1.0, 1.1))
+
+    def test_out_of_order_is_refused_and_counted(self):
+        average = WindAverage()
+        average.add(1.0, (1.0, 0.0, 0.0))
+        assert not average.add(1.0, (2.0, 0.0, 0.0))
+        assert not average.add(0.9, (2.0, 0.0, 0.0))
+        assert average.refused == 2
+
+    @pytest.mark.parametrize("step", [(1.0, 0.9), (math.nan, 1.0), (0.0, math.inf)])
+    def test_a_step_that_cannot_be(self, step):
+        with pytest.raises(ParameterError, match="no step from"):
+            WindAverage().mean(*step)
+
+    def test_a_step_of_no_length_gives_the_value(self):
+        average = WindAverage()
+        run(average, 1.0)
+        np.testing.assert_allclose(average.mean(0.97, 0.97), average.mean(0.97 - 1e-7, 0.97 + 1e-7))
+
+    @pytest.mark.parametrize(
+        "options",
+        [{"timeout": 0.0}, {"decay": -1.0}, {"blend": math.nan}, {"capacity": 2}],
+    )
+    def test_parameters_out_of_range(self, options):
+        with pytest.raises(ParameterError, match=f"{next(iter(options))}: .* out of range"):
+            WindAverage(**options)
+
+    def test_unknown_interpolation(self):
+        with pytest.raises(ParameterError, match=r"'cubic'.*linear, hold"):
+            WindAverage("cubic")
+
+
+def test_memory_is_bounded():
+    average = WindAverage(capacity=64)
+    for i in range(5000):
+        average.add(i * 0.01, (1.0, 0.0, 0.0))
+    assert len(average._curve) == 64

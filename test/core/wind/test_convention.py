@@ -1,0 +1,156 @@
+import math
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from tree_sway_ros.core.wind.convention import CALM_SPEED, WindConvention
+from tree_sway_ros.errors import ParameterError
+
+speeds = st.floats(-40.0, 40.0)
+angles = st.floats(-math.pi, math.pi)
+normals = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda n: np.linalg.norm(n) > 0.01)
+
+
+def axes_of(quaternion):
+    return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix().T
+
+
+def test_a_westerly_blows_to_the_east_from_every_kind_of_source():
+    east = (5.0, 0.0, 0.0)
+    np.testing.assert_allclose(WindConvention("to").vector(5.0, 0.0, 0.0), east)
+    np.testing.assert_allclose(WindConvention("from").vector(-5.0, 0.0, 0.0), east)
+    for convention in (WindConvention("to"), WindConvention("from")):
+        wind = convention.from_speed_and_bearing(5.0, 270.0)
+        np.testing.assert_allclose(wind, east, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("bearing", "blows_to"),
+    [(0.0, (0, -1, 0)), (90.0, (-1, 0, 0)), (180.0, (0, 1, 0)), (270.0, (1, 0, 0)), (360.0, (0, -1, 0))],
+)
+def test_meteorological_bearings(bearing, blows_to):
+    wind = WindConvention().from_speed_and_bearing(1.0, bearing)
+    np.testing.assert_allclose(wind, blows_to, atol=1e-14)
+
+
+@pytest.mark.parametrize(("scale", "kmh"), [(0.514444, 1.852), (0.277778, 1.0)])
+def test_units(scale, kmh):
+    wind = WindConvention(speed_scale=scale).vector(10.0, 0.0, 0.0)
+    assert wind[0] == pytest.approx(10.0 * kmh / 3.6, rel=1e-5)
+    wind = WindConvention(speed_scale=scale).from_speed_and_bearing(10.0, 270.0)
+    assert wind[0] == pytest.approx(10.0 * kmh / 3.6, rel=1e-5)
+
+
+def test_a_mast_turned_to_the_left_reads_an_easterly_component_on_its_axes():
+    # The x axis of the mast points north: wind along it blows north.
+    convention = WindConvention(yaw_offset=0.5 * math.pi)
+    np.testing.assert_allclose(convention.vector(3.0, 0.0, 0.0), (0.0, 3.0, 0.0), atol=1e-14)
+    np.testing.assert_allclose(convention.vector(0.0, 3.0, 0.0), (-3.0, 0.0, 0.0), atol=1e-14)
+
+
+def test_the_vertical_is_projected_out_but_kept_in_the_velocity():
+    convention = WindConvention()
+    np.testing.assert_array_equal(convention.vector(1.0, 2.0, 3.0), (1.0, 2.0, 0.0))
+    np.testing.assert_array_equal(convention.velocity(1.0, 2.0, 3.0), (1.0, 2.0, 3.0))
+
+
+@given(u=speeds, v=speeds, w=speeds, yaw=angles, normal=normals)
+def test_the_vector_lies_in_the_plane_and_projecting_twice_changes_nothing(u, v, w, yaw, normal):
+    convention = WindConvention("from", 0.5, yaw, normal)
+    wind = convention.vector(u, v, w)
+    assert abs(wind @ convention.normal) < 1e-13 * 40
+    np.testing.assert_allclose(convention.project(wind), wind, atol=1e-13 * 40)
+
+
+@given(u=speeds, v=speeds, w=speeds, yaw=angles, normal=normals, k=st.floats(0.1, 10.0))
+def test_linear_and_mirrored_by_the_other_convention(u, v, w, yaw, normal, k):
+    to, other = WindConvention("to", k, yaw, normal), WindConvention("from", k, yaw, normal)
+    wind = to.vector(u, v, w)
+    np.testing.assert_allclose(other.vector(u, v, w), -wind, atol=1e-10)
+    np.testing.assert_allclose(other.vector(-u, -v, -w), wind, atol=1e-10)
+    unit = WindConvention("to", 1.0, yaw, normal)
+    np.testing.assert_allclose(k * unit.vector(u, v, w), wind, atol=1e-10)
+
+
+@given(u=speeds, v=speeds, w=speeds, yaw=angles)
+def test_velocity_keeps_its_magnitude(u, v, w, yaw):
+    velocity = WindConvention(yaw_offset=yaw).velocity(u, v, w)
+    assert np.linalg.norm(velocity) == pytest.approx(math.hypot(u, v, w), abs=1e-12)
+
+
+@given(u=speeds, v=speeds, w=speeds, normal=normals)
+def test_force_plane_is_a_right_handed_frame_with_x_along_the_wind(u, v, w, normal):
+    convention = WindConvention(plane_normal=normal)
+    wind = convention.vector(u, v, w)
+    x, y, z = axes_of(convention.force_plane_quaternion(wind))
+    np.testing.assert_allclose(z, convention.normal, atol=1e-12)
+    np.testing.assert_allclose(np.cross(x, y), z, atol=1e-12)
+    if np.linalg.norm(wind) >= CALM_SPEED:
+        np.testing.assert_allclose(x, wind / np.linalg.norm(wind), atol=1e-11)
+
+
+def test_quaternion_is_w_first():
+    quaternion = WindConvention().force_plane_quaternion(np.array([0.0, 2.0, 0.0]))
+    half = math.sqrt(0.5)
+    np.testing.assert_allclose(np.abs(quaternion), (half, 0.0, 0.0, half), atol=1e-15)
+
+
+def test_calm_keeps_the_last_direction_or_takes_east():
+    convention = WindConvention()
+    north = convention.force_plane_quaternion(np.array([0.0, 2.0, 0.0]))
+    calm = np.array([0.03, 0.0, 0.0])
+    np.testing.assert_array_equal(convention.force_plane_quaternion(calm, north), north)
+    np.testing.assert_allclose(axes_of(convention.force_plane_quaternion(calm))[0], (1, 0, 0))
+
+
+def test_calm_on_a_plane_across_east_takes_north():
+    convention = WindConvention(plane_normal=(2.0, 0.0, 0.0))
+    quaternion = convention.force_plane_quaternion(np.zeros(3))
+    np.testing.assert_allclose(axes_of(quaternion)[0], (0, 1, 0), atol=1e-15)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_bad_number_comes_out_as_not_finite_and_without_a_warning(bad):
+    convention = WindConvention(yaw_offset=0.3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert not np.isfinite(convention.vector(1.0, bad, 0.0)).all()
+        assert not np.isfinite(convention.velocity(1.0, 0.0, bad)).all()
+        assert not np.isfinite(convention.from_speed_and_bearing(1.0, bad)).all()
+        assert not np.isfinite(convention.from_speed_and_bearing(bad, 10.0)).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"direction_convention": "towards"}, "unknown convention 'towards'.*'to'.*'from'"),
+        ({"speed_scale": 0.0}, "speed_scale"),
+        ({"speed_scale": -1.0}, "speed_scale"),
+        ({"speed_scale": math.nan}, "speed_scale"),
+        ({"yaw_offset": math.inf}, "yaw_offset"),
+        ({"plane_normal": (0.0, 0.0, 0.0)}, "plane_normal.*no direction"),
+        ({"plane_normal": (0.0, math.nan, 1.0)}, "plane_normal"),
+        ({"plane_normal": (0.0, 1.0)}, "plane_normal"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(options, match):
+    with pytest.raises(ParameterError, match=match):
+        WindConvention(**options)
+
+
+def test_a_normal_of_any_length_will_do():
+    for length in (1e-11, 1.0, 1e200):
+        np.testing.assert_allclose(WindConvention(plane_normal=(0, length, 0)).normal, (0, 1, 0))
+
+
+def test_describe_says_it_in_one_line():
+    assert WindConvention().describe() == "reading wind as: blows TO, ENU, m/s"
+    text = WindConvention("from", 0.514444, math.radians(10.0), (0.0, 1.0, 0.0)).describe()
+    assert text == (
+        "reading wind as: comes FROM, ENU, 0.514444 m/s a unit, turned by 10 degrees, "
+        "on the plane across (0, 1, 0)"
+    )

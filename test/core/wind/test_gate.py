@@ -1,0 +1,271 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tree_sway_ros.core.wind.gate import Reason, WindGate
+from tree_sway_ros.core.wind.simulated.gust_shapes import one_minus_cos
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.errors import ParameterError
+
+PERIOD = 0.05
+
+
+def offer_all(gate, winds, period=PERIOD):
+    return np.array([gate.offer((i + 1) * period, wind).accepted for i, wind in enumerate(winds)])
+
+
+def warmed_up(wind=(3.0, 0.0, 0.0), **options):
+    """Return a gate that has seen a second of steady wind, up to t = 1."""
+    gate = WindGate(**options)
+    assert offer_all(gate, [wind] * 20).all()
+    return gate
+
+
+def record_with_spikes_and_gusts(seed, mean_speed):
+    rng = np.random.default_rng(seed)
+    wind = simulate_turbulence(mean_speed, rate=20.0, duration=1800.0, rng=rng)
+    n = len(wind)
+    time = np.arange(n) / 20.0
+    for start in 10.0 + 45.0 * np.arange(40):
+        duration, amplitude = rng.uniform(1.5, 6.0), rng.uniform(4.0, 12.0)
+        wind[:, 0] += one_minus_cos(time, amplitude, duration, start)
+    at = 20 * rng.choice(n // 20, 180, replace=False) + rng.integers(0, 10, 180)
+    direction = rng.normal(size=(180, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    wind[at] += rng.uniform(5.0, 30.0, (180, 1)) * direction
+    is_spike = np.zeros(n, dtype=bool)
+    is_spike[at] = True
+    return wind, is_spike
+
+
+@pytest.mark.parametrize("mean_speed", [2.0, 5.0, 8.0])
+def test_half_an_hour_all_spikes_caught_and_no_gust_refused(mean_speed):
+    wind, is_spike = record_with_spikes_and_gusts(1, mean_speed)
+    gate = WindGate()
+    accepted = offer_all(gate, wind)
+    np.testing.assert_array_equal(accepted, ~is_spike)
+    assert gate.counts.refused == 180
+    assert gate.counts.forced == 0
+
+
+def test_a_rate_alone_refuses_good_samples_of_a_fast_sensor_in_a_strong_wind():
+    rng = np.random.default_rng(1)
+    wind = simulate_turbulence(12.0, rate=20.0, duration=300.0, rng=rng)
+    rate_only = offer_all(WindGate(jump_floor=0.0, jump_fraction=0.0), wind)
+    assert 1.0 - rate_only.mean() > 0.2  # the failure that the allowance for eddies is there for
+    assert offer_all(WindGate(), wind).all()
+
+
+@pytest.mark.parametrize("rate", [1.0, 4.0, 20.0, 100.0])
+@pytest.mark.parametrize("mean_speed", [3.0, 20.0])
+def test_plain_turbulence_is_never_refused(rate, mean_speed):
+    rng = np.random.default_rng(2)
+    wind = simulate_turbulence(mean_speed, rate=rate, duration=60.0, rng=rng)
+    assert offer_all(WindGate(), wind, 1.0 / rate).all()
+
+
+@pytest.mark.parametrize(
+    ("bad", "reason"),
+    [
+        ((math.nan, 0.0, 0.0), Reason.NOT_FINITE),
+        ((0.0, math.inf, 0.0), Reason.NOT_FINITE),
+        ((0.0, 0.0, -math.inf), Reason.NOT_FINITE),
+        ((1e300, 1e300, 0.0), Reason.TOO_FAST),
+        ((1e6, 0.0, 0.0), Reason.TOO_FAST),
+        ((40.1, 0.0, 0.0), Reason.TOO_FAST),
+        ((999.99, 0.0, 0.0), Reason.SENTINEL),
+        ((3.0, 0.0, 999.99), Reason.SENTINEL),
+        ((-9999.0, -9999.0, 0.0), Reason.SENTINEL),
+        ((-32768.0, 0.0, 0.0), Reason.SENTINEL),
+        ((-327.68, -327.68, -327.68), Reason.SENTINEL),
+        ((20.0, 0.0, 0.0), Reason.SPIKE),
+        ((-3.0, 0.0, 0.0), Reason.SPIKE),
+    ],
+)
+def test_a_fault_is_refused_counted_and_leaves_no_trace(bad, reason):
+    gate, untouched = warmed_up(), warmed_up()
+    verdict = gate.offer(1.05, bad)
+    assert (verdict.accepted, verdict.reason) == (False, reason)
+    assert getattr(gate.counts, reason.value) == gate.counts.refused == 1
+    for i in range(2, 20):
+        wind = (3.0 + 0.3 * i, 0.1 * i, 0.0)
+        assert gate.offer(1.0 + i * PERIOD, wind) == untouched.offer(1.0 + i * PERIOD, wind)
+
+
+@pytest.mark.parametrize("change", [8.0, 12.0, 30.0])
+def test_a_true_step_passes_after_half_a_second_at_most(change):
+    gate = warmed_up()
+    accepted = offer_all_from(gate, 1.0, [(3.0 + change, 0.0, 0.0)] * 30)
+    first = int(np.argmax(accepted))
+    assert 0 < first <= 10  # refused at once, in after .5 s
+    assert accepted[first:].all()
+    assert gate.counts.spike == first
+
+
+def offer_all_from(gate, start, winds):
+    return np.array([gate.offer(start + (i + 1) * PERIOD, w).accepted for i, w in enumerate(winds)])
+
+
+def test_a_step_above_the_rate_is_let_in_by_patience():
+    gate = warmed_up(max_rate=5.0)
+    accepted = offer_all_from(gate, 1.0, [(23.0, 0.0, 0.0)] * 30)
+    assert int(np.argmax(accepted)) == 10
+    assert gate.counts.forced == 1
+
+
+def test_too_fast_never_gets_in_however_long_it_lasts():
+    gate = warmed_up()
+    assert not offer_all_from(gate, 1.0, [(41.0, 0.0, 0.0)] * 200).any()
+    assert gate.offer(20.0, (3.0, 0.0, 0.0)).accepted
+
+
+def test_a_frozen_sensor_is_flagged_after_ten_seconds_and_recovers():
+    gate = WindGate()
+    for i in range(400):
+        assert gate.offer(1.0 + i * PERIOD, (3.0, 1.0, 0.2)).accepted
+        assert gate.is_frozen == (i * PERIOD >= 10.0 - 1e-9)
+    assert gate.counts.frozen == 1
+    gate.offer(21.0, (3.01, 1.0, 0.2))
+    assert not gate.is_frozen
+
+
+def test_a_calm_of_zeros_is_not_frozen():
+    gate = WindGate()
+    offer_all(gate, [(0.0, 0.0, 0.0)] * 600)
+    assert not gate.is_frozen
+    assert gate.counts.accepted == 600
+
+
+class TestStamps:
+    def test_zero_stamp_takes_the_arrival(self):
+        gate = WindGate()
+        verdict = gate.offer(0.0, (1, 0, 0), 100.0)
+        assert verdict == (True, Reason.ACCEPTED, 100.0)
+        assert gate.counts.zero_stamp == 1
+
+    @pytest.mark.parametrize("stamp", [math.nan, math.inf, -math.inf, -5.0])
+    def test_an_impossible_stamp_takes_the_arrival(self, stamp):
+        gate = WindGate()
+        assert gate.offer(stamp, (1, 0, 0), 100.0).time == 100.0
+        assert gate.counts.zero_stamp == 1
+
+    def test_without_an_arrival_an_impossible_stamp_has_no_time(self):
+        gate = WindGate()
+        assert gate.offer(math.nan, (1, 0, 0)).reason is Reason.NO_TIME
+        assert gate.offer(math.inf, (1, 0, 0)).reason is Reason.NO_TIME
+        assert gate.offer(0.0, (1, 0, 0)).accepted  # simulated time starts at zero
+
+    def test_future_and_old_stamps_take_the_arrival(self):
+        gate = WindGate()
+        assert gate.offer(160.0, (1, 0, 0), 100.0).time == 100.0
+        assert gate.offer(40.0, (1, 0, 0), 100.1).time == 100.1
+        assert gate.offer(100.15, (1, 0, 0), 100.2).time == 100.15
+        assert (gate.counts.future_stamp, gate.counts.old_stamp) == (1, 1)
+
+    def test_a_message_sent_twice_is_dropped(self):
+        gate = WindGate()
+        gate.offer(100.0, (1, 0, 0), 100.01)
+        verdict = gate.offer(100.0, (1, 0, 0), 100.02)
+        assert (verdict.accepted, verdict.reason) == (False, Reason.REPEATED)
+        assert gate.counts.duplicate_stamp == gate.counts.repeated == 1
+
+    def test_equal_readings_without_stamps_are_no_repeats(self):
+        gate = WindGate()
+        for i in range(20):
+            assert gate.offer(0.0, (3.0, 0.0, 0.0), 100.0 + i * PERIOD).accepted
+        assert gate.counts.zero_stamp == 20
+
+    def test_stamps_of_whole_seconds_are_spread_by_arrival(self):
+        gate = WindGate()
+        times = []
+        for i in range(60):
+            arrival = 100.0 + i * PERIOD
+            verdict = gate.offer(math.floor(arrival + 1e-9), (1.0 + 0.01 * i, 0, 0), arrival)
+            assert verdict.accepted
+            times.append(verdict.time)
+        np.testing.assert_allclose(np.diff(times), PERIOD, atol=1e-9)
+
+    def test_out_of_order_is_taken_in_the_order_of_arrival(self):
+        gate = WindGate()
+        times = [
+            gate.offer(stamp, (1.0, 0.1 * i, 0.0), 100.1 + i * PERIOD).time
+            for i, stamp in enumerate((100.0, 100.1, 100.05, 100.15, 100.2))
+        ]
+        assert gate.counts.out_of_order == 1
+        assert gate.counts.accepted == 5
+        assert (np.diff(times) > 0.0).all()
+
+    def test_without_arrivals_out_of_order_is_refused(self):
+        gate = WindGate()
+        gate.offer(100.0, (1, 0, 0))
+        assert gate.offer(99.9, (1.1, 0, 0)).reason is Reason.NO_TIME
+        assert gate.offer(100.0, (1.2, 0, 0)).reason is Reason.NO_TIME
+
+    def test_a_clock_set_back_starts_anew(self):
+        gate = warmed_up()
+        gate.offer(900.0, (3.0, 0.0, 0.0))
+        verdict = gate.offer(0.05, (20.0, 0.0, 0.0))
+        assert verdict == (True, Reason.ACCEPTED, 0.05)
+        assert gate.counts.clock_back == 1
+
+    @given(
+        st.lists(
+            st.tuples(
+                st.floats(allow_nan=True, allow_infinity=True),
+                st.floats(allow_nan=True, allow_infinity=True),
+                st.floats(0.0, 1.0),
+            ),
+            max_size=40,
+        )
+    )
+    def test_never_a_negative_step_and_every_sample_counted(self, samples):
+        gate = WindGate()
+        arrival, last = 100.0, -math.inf
+        for stamp, speed, wait in samples:
+            arrival += wait
+            verdict = gate.offer(stamp, (speed, 0.0, 0.0), arrival)
+            if verdict.accepted:
+                assert last < verdict.time <= arrival + 0.5
+                last = verdict.time
+        assert gate.counts.accepted + gate.counts.refused == len(samples)
+
+
+@given(st.floats(-math.pi, math.pi), st.integers(0, 5))
+def test_the_axes_do_not_matter(angle, seed):
+    rng = np.random.default_rng(seed)
+    wind = np.cumsum(rng.normal(0.0, 1.2, (60, 3)), axis=0)
+    c, s = math.cos(angle), math.sin(angle)
+    turned = wind @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]).T
+    np.testing.assert_array_equal(offer_all(WindGate(), wind), offer_all(WindGate(), turned))
+
+
+def test_reset_forgets_samples_and_keeps_counts():
+    gate = warmed_up()
+    gate.reset()
+    assert gate.counts.accepted == 20
+    assert gate.offer(0.5, (20.0, 0.0, 0.0)).accepted
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"max_speed": 0.0},
+        {"max_speed": math.nan},
+        {"max_rate": -1.0},
+        {"longest_refusal": -0.1},
+        {"frozen_after": 0.0},
+        {"jump_floor": -1.0},
+        {"jump_fraction": math.inf},
+    ],
+)
+def test_parameters_out_of_range_are_refused(options):
+    with pytest.raises(ParameterError, match=f"{next(iter(options))}: .* is out of range"):
+        WindGate(**options)
+
+
+def test_what_is_no_vector_is_refused_by_an_error():
+    with pytest.raises(ParameterError, match="not three numbers"):
+        WindGate().offer(1.0, (1.0, 2.0))

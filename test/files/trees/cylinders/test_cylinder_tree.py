@@ -1,0 +1,139 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway_ros.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
+from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+
+FILE = Path("cylinders.txt")
+
+
+def cylinders_of(rows, continues=None):
+    """Rows of start, end, diameter, parent."""
+    start, end, width, parent = (list(column) for column in zip(*rows, strict=True))
+    return Cylinders(
+        np.array(start, dtype=float),
+        np.array(end, dtype=float),
+        np.stack([width, width], axis=1).astype(float),
+        np.array(parent),
+        None if continues is None else np.array(continues, dtype=bool),
+        [f"cylinder {i}" for i in range(len(rows))],
+    )
+
+
+def built(rows, continues=None, **options):
+    return tree_of_cylinders(cylinders_of(rows, continues), FILE, CylinderOptions(**options))
+
+
+STEM = [((0, 0, 0), (0, 0, 1), 0.2, -1), ((0, 0, 1), (0, 0, 2), 0.1, 0)]
+
+
+def test_the_extension_goes_on_though_a_thicker_branch_is_there():
+    rows = [*STEM, ((0, 0, 1), (1, 0, 1), 0.15, 0)]
+    assert built(rows, [False, True, False]).tree.branch_length[0] == 2.0
+    tree = built(rows, None).tree
+    np.testing.assert_array_equal(tree.end[1], [1, 0, 1])
+
+
+def test_of_two_extensions_one_goes_on():
+    tree = built([*STEM, ((0, 0, 1), (1, 0, 1), 0.05, 0)], [False, True, True]).tree
+    assert tree.n_branches == 2
+    np.testing.assert_array_equal(tree.end[1], [0, 0, 2])
+
+
+def test_loose_branches_are_set_on_the_nearest_cylinder():
+    tree_file = built([*STEM, ((0.3, 0, 1.6), (1, 0, 1.6), 0.05, -1)], [False, True, False])
+    assert list(tree_file.tree.segment_parent) == [-1, 0, 1]
+    np.testing.assert_allclose(tree_file.tree.start[2], [0.3, 0, 1.6])
+    assert tree_file.notes == (
+        "1 branches had no parent and were set on the nearest cylinder, at most 0.3 m away",
+    )
+
+
+def test_two_trees_are_not_one():
+    other = [((9, 0, 0), (9, 0, 1), 0.15, -1)]
+    with pytest.raises(TreeError, match="cylinder 2: 2 roots: a forest of trees"):
+        built(STEM + other, [False, True, False])
+
+
+@pytest.mark.parametrize(
+    ("rows", "continues", "n", "dropped", "parents"),
+    [
+        # In the middle of a branch: goes to the one before, and what it bears with it.
+        ([*STEM, ((0, 0, 2), (0, 0, 2), 0.1, 1), ((0, 0, 2), (0, 0, 3), 0.1, 2),
+          ((0, 0, 2), (1, 0, 2), 0.05, 2)], [0, 1, 1, 1, 0], 4, 0, [-1, 0, 1, 1]),
+        # First of a branch: goes to the one after.
+        ([*STEM, ((0, 0, 1), (0, 0, 1), 0.05, 0), ((0, 0, 1), (1, 0, 1), 0.05, 2),
+          ((0, 0, 1), (0, 1, 1), 0.04, 2)], [0, 1, 0, 1, 0], 4, 0, [-1, 0, 0, 2]),
+        # A branch of nothing else is left out; what it bears sits on its parent.
+        ([*STEM, ((0, 0, 1), (0, 0, 1), 0.05, 0), ((0, 0, 1), (1, 0, 1), 0.05, 2)],
+         [0, 1, 0, 0], 3, 1, [-1, 0, 0]),
+        # The root itself.
+        ([((0, 0, 0), (0, 0, 0), 0.2, -1), ((0, 0, 0), (0, 0, 1), 0.2, 0),
+          ((0, 0, 1), (0, 0, 2), 0.1, 1)], [0, 1, 1], 2, 0, [-1, 0]),
+        # Two in a row at the base of a branch.
+        ([*STEM, ((0, 0, 1), (0, 0, 1), 0.05, 0), ((0, 0, 1), (0, 0, 1), 0.05, 2),
+          ((0, 0, 1), (1, 0, 1), 0.05, 3), ((0, 0, 1), (0, 1, 1), 0.04, 2)],
+         [0, 1, 0, 1, 1, 0], 4, 0, [-1, 0, 0, 2]),
+    ],
+)  # fmt: skip
+def test_zero_cylinders_are_merged(rows, continues, n, dropped, parents):
+    tree_file = built(rows, continues)
+    assert tree_file.tree.n_segments == n
+    assert list(tree_file.tree.segment_parent) == parents
+    gone = len(rows) - n
+    assert tree_file.notes == (
+        f"{gone} cylinders shorter than 1e-06 m were merged, "
+        f"{dropped} of them branches of nothing else, left out",
+    )
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=st.integers(0, 2**32 - 1), below=st.sampled_from([1e-6, 0.05, 0.3]))
+def test_merging_keeps_volume_and_reach(seed, below):
+    rng = np.random.default_rng(seed)
+    n = 20
+    reach = np.where(rng.random(n) < 0.3, rng.uniform(0, 0.2, n), rng.uniform(0.3, 1.0, n))
+    reach[0] = 1.0
+    z = np.concatenate([[0.0], np.cumsum(reach)])
+    width = rng.uniform(0.05, 0.2, n)
+    rows = [((0, 0, z[i]), (0, 0, z[i + 1]), width[i], i - 1) for i in range(n)]
+    tree = built(rows, [i > 0 for i in range(n)], merge_below=below).tree
+    assert tree.n_segments == 1 + np.count_nonzero(reach[1:] >= below)
+    assert tree.height == pytest.approx(z[-1], abs=1e-9)
+    assert tree.volume.sum() == pytest.approx((np.pi / 4 * width**2 * reach).sum(), rel=1e-9)
+
+
+def test_y_up_files_stand_upright():
+    rows = [((0, 5, 0), (0, 6, 0), 0.1, -1), ((0, 6, 0), (1, 6, 0), 0.1, 0), ((0, 6, 0), (0, 6, 1), 0.1, 0)]
+    tree = built(rows, [False, True, False], up="y").tree
+    np.testing.assert_allclose(tree.end, [[0, 0, 1], [1, 0, 1], [0, -1, 1]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ([((0, 0, 0), (0, 0, np.nan), 0.1, -1)], "cylinder 0: a number that is not finite"),
+        ([((0, 0, 0), (0, 0, 1e9), 0.1, -1)], "cylinder 0: .* too large"),
+        ([((0, 0, 0), (0, 0, 1), 0.0, -1)], "cylinder 0: diameter"),
+        ([((0, 0, 0), (0, 0, 0), 0.1, -1)], "cylinder 0: zero length"),
+        ([((0, 0, 0), (0, 0, 1), 0.1, 0)], "cylinder 0: cyclic"),
+        ([((0, 0, 0), (0, 0, 1), 0.1, 7)], "cylinder 0: orphan"),
+        ([((0, 0, 0), (0, 0, 1), 0.1, -2)], "cylinder 0: orphan"),
+    ],
+)
+def test_what_cannot_be(rows, message):
+    with pytest.raises(TreeError, match=message):
+        built(rows)
+
+
+@pytest.mark.parametrize(
+    "options", [{"up": "x"}, {"merge_below": -1.0}, {"twig_diameter": float("nan")}]
+)
+def test_options_are_checked(options):
+    with pytest.raises(ParameterError, match=next(iter(options))):
+        CylinderOptions(**options)

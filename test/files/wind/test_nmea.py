@@ -1,0 +1,71 @@
+from math import pi, radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.wind.nmea import read_nmea_wind
+
+DATA = Path(__file__).parents[1] / "data"
+MAST = DATA / "mast.nmea"
+RECORDED = Path(__file__).parents[4] / "shared/data/wind/sailing_mwv.nmea.log"
+
+
+def test_true_wind_units_and_places_in_time():
+    record = read_nmea_wind(MAST)
+    np.testing.assert_array_equal(record.time, [0, 1, 5, 6, 7])
+    speed = np.linalg.norm(record.velocity, axis=1)
+    np.testing.assert_allclose(speed, [10, 10, 4.4704, 5, 5])
+    # From 270 degrees is a westerly: it blows to the east.
+    np.testing.assert_allclose(record.velocity[0], [10, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(record.velocity[-1], [0, 5, 0], atol=1e-12)
+
+
+def test_refused_sentences():
+    record = read_nmea_wind(MAST)
+    assert record.refused == 3
+    assert record.first_refused == "line 5: status is 'V', not A"
+
+
+def test_relative_wind_by_name():
+    record = read_nmea_wind(MAST, sentence="MWV R")
+    np.testing.assert_allclose(record.velocity, [[12 * 1852 / 3600, 0, 0]], atol=1e-12)
+
+
+def test_wind_direction_true_and_magnetic():
+    record = read_nmea_wind(DATA / "weather.nmea", declination=radians(5))
+    np.testing.assert_allclose(record.velocity[0], [10, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(record.velocity[1], [0, -19.438 * 1852 / 3600, 0], atol=1e-12)
+    assert record.refused == 1
+
+
+def test_heading_and_rate():
+    record = read_nmea_wind(MAST, heading=pi / 2, rate=4.0)
+    np.testing.assert_allclose(record.velocity[0], [0, -10, 0], atol=1e-12)
+    assert record.period == 0.25
+    assert any("head 90 degrees" in note for note in record.notes)
+
+
+def test_errors(tmp_path):
+    (tmp_path / "other.nmea").write_text("$GPZDA,120000\n")
+    with pytest.raises(FormatError, match="no sentence MWD"):
+        read_nmea_wind(tmp_path / "other.nmea", sentence="MWD")
+    with pytest.raises(FormatError, match="no good row of wind, 1 refused; first line 11"):
+        read_nmea_wind(MAST, sentence="MWD")
+    with pytest.raises(ParameterError, match="sentence is 'VWR'"):
+        read_nmea_wind(MAST, sentence="VWR")
+    for rate in (0.0, float("nan")):
+        with pytest.raises(ParameterError, match="rate is"):
+            read_nmea_wind(MAST, rate=rate)
+
+
+@pytest.mark.skipif(not RECORDED.exists(), reason="recorded data is not at ../shared/data")
+def test_recorded_log():
+    record = read_nmea_wind(RECORDED)
+    lines = [line.split(",") for line in RECORDED.read_text().splitlines() if "MWV" in line]
+    knots = [float(fields[3]) for fields in lines if fields[2] == "T"]
+    speed = np.linalg.norm(record.velocity, axis=1)
+    assert len(record.time) == len(knots) == 375
+    np.testing.assert_allclose(speed, np.array(knots) * 1852 / 3600)
+    assert record.refused == 0

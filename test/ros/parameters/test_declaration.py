@@ -1,0 +1,114 @@
+import pytest
+
+pytest.importorskip("rclpy")
+pytestmark = pytest.mark.ros
+
+from rcl_interfaces.msg import ParameterType  # noqa: E402
+from rclpy.node import Node  # noqa: E402
+from rclpy.parameter import Parameter as RosParameter  # noqa: E402
+
+from tree_sway_ros.errors import ParameterError  # noqa: E402
+from tree_sway_ros.ros.parameters.declaration import ParameterValues  # noqa: E402
+from tree_sway_ros.ros.parameters.parameter import Parameter  # noqa: E402
+
+TABLE = (
+    Parameter("rate", 60.0, "Rate.", "Hz", 1.0, 1000.0),
+    Parameter("delay", 0.1, "Delay.", "s", 0.0, 2.0, live=True),
+    Parameter("every", 1, "Every.", "", 1, 10, live=True),
+    Parameter("normal", (0.0, 0.0, 1.0), "Normal.", "", -1.0, 1.0, live=True),
+    Parameter("kind", "to", "Kind.", choices=("to", "from")),
+)
+
+
+@pytest.fixture
+def declare(context):
+    nodes = []
+
+    def make(on_change=None, **overrides):
+        node = Node(
+            "some",
+            context=context,
+            automatically_declare_parameters_from_overrides=True,
+            parameter_overrides=[RosParameter(k, value=v) for k, v in overrides.items()],
+        )
+        nodes.append(node)
+        return node, ParameterValues(node, TABLE, on_change)
+
+    yield make
+    for node in nodes:
+        node.destroy_node()
+
+
+def change(node, name, value):
+    (result,) = node.set_parameters([RosParameter(name, value=value)])
+    return result
+
+
+def test_defaults_and_overrides(declare):
+    node, values = declare(rate=40, normal=[0, 1, 0])
+    assert values["rate"] == 40.0
+    assert type(values["rate"]) is float
+    assert values["normal"] == (0.0, 1.0, 0.0)
+    assert values("delay", "kind") == {"delay": 0.1, "kind": "to"}
+    assert node.get_parameter("every").value == 1
+
+
+def test_descriptors_tell_unit_and_range(declare):
+    node, _ = declare()
+    rate, every = node.describe_parameter("rate"), node.describe_parameter("every")
+    assert rate.description == "Rate. [Hz]"
+    assert "read at start only" in rate.additional_constraints
+    assert rate.floating_point_range[0].to_value == 1000.0
+    assert every.integer_range[0].from_value == 1
+    assert every.type == ParameterType.PARAMETER_INTEGER
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        ({"rats": 1.0}, "did you mean 'rate'"),
+        ({"rate": 0.5}, "1 .. 1000"),
+        ({"kind": "fro"}, "from"),
+    ],
+)
+def test_a_bad_start_is_refused(declare, overrides, message):
+    with pytest.raises(ParameterError, match=message):
+        declare(**overrides)
+
+
+def test_a_live_change_is_taken_and_told(declare):
+    told = []
+    node, values = declare(told.append)
+    assert change(node, "delay", 1).successful
+    assert values["delay"] == 1.0
+    assert told == [{"delay": 1.0}]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [
+        ("delay", 3.0, "out of range"),
+        ("delay", 3, "out of range"),
+        ("delay", "soon", "not a number"),
+        ("delay", None, "not a number"),
+        ("every", 1.5, "not a whole number"),
+        ("rate", 30.0, "restart with -p rate:=30.0"),
+        ("normal", [0.0, 1.0], "not 3 numbers"),
+    ],
+)
+def test_a_bad_change_is_refused_with_the_reason(declare, name, value, reason):
+    told = []
+    node, values = declare(told.append)
+    before = values[name]
+    result = change(node, name, value)
+    assert not result.successful
+    assert reason in result.reason
+    assert values[name] == before
+    shown = node.get_parameter(name).value
+    assert (tuple(shown) if isinstance(before, tuple) else shown) == before
+    assert told == []
+
+
+def test_setting_the_same_value_again_is_no_change(declare):
+    node, _ = declare()
+    assert change(node, "rate", 60).successful

@@ -1,0 +1,128 @@
+import math
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS, SOLVER
+from tree_sway_ros.ros.parameters.parameter import (
+    Parameter,
+    check_parameter_file,
+    checked_values,
+    defaults,
+    markdown_table,
+)
+
+ROOT = Path(__file__).parents[3]
+SPEED = Parameter("speed", 6.0, "Mean speed.", "m/s", 0.0, 40.0)
+EVERY = [p for table in NODE_PARAMETERS.values() for p in table]
+
+
+@pytest.mark.parametrize("parameter", EVERY, ids=lambda p: p.name)
+def test_a_default_is_good(parameter):
+    assert parameter.checked(parameter.default) == parameter.default
+    assert parameter.description.endswith(".")
+
+
+@pytest.mark.parametrize("table", NODE_PARAMETERS.values(), ids=list(NODE_PARAMETERS))
+def test_names_are_unique(table):
+    assert len(defaults(table)) == len(table)
+
+
+@given(st.floats(0.0, 40.0))
+def test_a_number_in_range_is_taken_as_it_is(value):
+    assert SPEED.checked(value) == value
+
+
+@given(st.one_of(st.floats(max_value=-1e-9), st.floats(min_value=40.0000001), st.just(math.nan)))
+def test_any_other_number_is_refused(value):
+    with pytest.raises(ParameterError, match=r"give 0 \.\. 40 \[m/s\]"):
+        SPEED.checked(value)
+
+
+def test_a_whole_number_will_do_for_a_float():
+    value = SPEED.checked(4)
+    assert value == 4.0
+    assert type(value) is float
+
+
+@pytest.mark.parametrize(
+    ("default", "bad"),
+    [(1.0, True), (1.0, "4"), (1, 1.5), (1, True), (True, 1), ("a", 3), ((0.0, 1.0), (1.0,))],
+)
+def test_another_kind_is_refused(default, bad):
+    with pytest.raises(ParameterError, match="parameter 'x'"):
+        Parameter("x", default, "X.").checked(bad)
+
+
+@pytest.mark.parametrize("bad", ["01", [1.0, math.inf], [1.0, 3.0], 7])
+def test_a_bad_list_is_refused(bad):
+    with pytest.raises(ParameterError):
+        Parameter("x", (0.0, 1.0), "X.", minimum=0.0, maximum=2.0).checked(bad)
+
+
+def test_a_list_becomes_numbers():
+    assert Parameter("x", (0.0, 1.0), "X.").checked([1, 2.5]) == (1.0, 2.5)
+
+
+def test_a_choice_that_is_not_there_names_the_nearest():
+    parameter = Parameter("source", "player", "Source.", choices=("player", "live"))
+    with pytest.raises(ParameterError, match="did you mean 'player'"):
+        parameter.checked("playr")
+
+
+def test_an_unknown_name_is_named_with_the_nearest():
+    with pytest.raises(ParameterError, match="unknown parameter 'rats'; did you mean 'rate'"):
+        checked_values(SOLVER, {"rats": 60.0})
+
+
+def test_what_every_node_has_is_known():
+    assert checked_values(SOLVER, {"use_sim_time": True, "rate": 30}) == {"rate": 30.0}
+
+
+PARAMETER_FILES = sorted(p for p in (ROOT / "config").glob("*.yaml") if p.stem != "forest")
+
+
+def test_every_node_has_a_file_in_config():
+    assert {path.stem for path in PARAMETER_FILES} == set(NODE_PARAMETERS)
+
+
+@pytest.mark.parametrize("path", PARAMETER_FILES, ids=lambda p: p.stem)
+def test_the_files_in_config_are_good_and_repeat_no_default(path):
+    content = yaml.safe_load(path.read_text())
+    check_parameter_file(content, NODE_PARAMETERS, where=path.name)
+    for node, body in content.items():
+        table = defaults(NODE_PARAMETERS[node.rsplit("/", 1)[-1]])
+        assert all(table[name] != value for name, value in body["ros__parameters"].items())
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("solver: {ros__parameters: {rats: 3}}", "f.yaml: solver: unknown parameter 'rats'"),
+        ("solver: {ros__parameters: {rate: 0}}", "0 is out of range"),
+        ("solvr: {ros__parameters: {rate: 3}}", "did you mean 'solver'"),
+        ("solver: {ros_parameters: {rate: 3}}", "two underscores"),
+        ("/**: {ros__parameters: {rats: 3}}", r"/\*\*: unknown parameter 'rats'"),
+        ("[1, 2]", "not a parameter file"),
+    ],
+)
+def test_a_bad_file_is_named(text, message):
+    with pytest.raises(ParameterError, match=message):
+        check_parameter_file(yaml.safe_load(text), NODE_PARAMETERS, where="f.yaml")
+
+
+def test_a_file_for_every_namespace_is_good():
+    content = {"/**/solver": {"ros__parameters": {"rate": 3}}, "/**": {"ros__parameters": None}}
+    check_parameter_file(content, NODE_PARAMETERS)
+
+
+def test_the_table_for_people_has_every_parameter():
+    text = markdown_table(SOLVER)
+    rows = text.splitlines()
+    assert len(rows) == len(SOLVER) + 2
+    assert len({row.replace("\\|", "").count("|") for row in rows}) == 1
+    assert "| `rate` | `60.0` | Hz | 1 .. 1000 |" in text

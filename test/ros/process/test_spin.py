@@ -1,0 +1,143 @@
+import sys
+import types
+
+import pytest
+
+from tree_sway_ros.errors import MissingDependencyError, ParameterError, TransportError
+from tree_sway_ros.ros.process import spin
+
+
+class FakeRclpy(types.ModuleType):
+    """As much of rclpy as a process's life needs."""
+
+    def __init__(self, monkeypatch):
+        super().__init__("rclpy")
+        self.calls = []
+        self.is_ok = True
+        self.on_spin = lambda: None
+        executors = types.ModuleType("rclpy.executors")
+        executors.ExternalShutdownException = type("ExternalShutdownException", (Exception,), {})
+        executors.SingleThreadedExecutor = lambda: self
+        self.shutdown_error = executors.ExternalShutdownException
+        monkeypatch.setitem(sys.modules, "rclpy", self)
+        monkeypatch.setitem(sys.modules, "rclpy.executors", executors)
+        monkeypatch.setattr(spin.signal, "signal", lambda *_: self.calls.append("ignore"))
+
+    def init(self, args=None):
+        self.calls.append("init")
+
+    def ok(self):
+        return self.is_ok
+
+    def add_node(self, node):
+        self.calls.append("add")
+
+    def spin_once(self, timeout_sec):
+        self.calls.append("spin")
+        self.on_spin()
+
+    def try_shutdown(self):
+        self.calls.append("shutdown")
+
+
+class FakeNode:
+    def __init__(self):
+        self.failure = None
+        self.is_done = False
+        self.closed = 0
+
+    def close(self):
+        self.closed += 1
+
+
+@pytest.fixture
+def rclpy(monkeypatch):
+    return FakeRclpy(monkeypatch)
+
+
+@pytest.fixture
+def node(monkeypatch):
+    made = FakeNode()
+    module = types.ModuleType("fake_nodes")
+    module.Node = lambda: made
+    module.Broken = lambda: (_ for _ in ()).throw(ParameterError("a bad value", cure="mend it"))
+    monkeypatch.setitem(sys.modules, "fake_nodes", module)
+    return made
+
+
+def raises(error):
+    def act():
+        raise error
+
+    return act
+
+
+def test_it_ends_when_the_node_is_done(rclpy, node):
+    rclpy.on_spin = lambda: setattr(node, "is_done", True)
+    assert spin.run("fake_nodes", "Node") == 0
+    assert rclpy.calls == ["init", "add", "spin", "ignore", "shutdown"]
+    assert node.closed == 1
+
+
+@pytest.mark.parametrize("kind", [KeyboardInterrupt, None])
+def test_it_ends_well_when_told_to(rclpy, node, kind):
+    rclpy.on_spin = raises((kind or rclpy.shutdown_error)())
+    assert spin.run("fake_nodes", "Node") == 0
+    assert node.closed == 1
+
+
+def test_an_error_while_it_is_told_to_end_is_no_error(rclpy, node):
+    def act():
+        rclpy.is_ok = False
+        raise RuntimeError("publisher is gone")
+
+    rclpy.on_spin = act
+    assert spin.run("fake_nodes", "Node") == 0
+
+
+def test_any_other_error_comes_out(rclpy, node):
+    rclpy.on_spin = raises(RuntimeError("a bug"))
+    with pytest.raises(RuntimeError, match="a bug"):
+        spin.run("fake_nodes", "Node")
+    assert rclpy.calls[-1] == "shutdown"
+
+
+def test_what_a_thread_died_of_ends_the_node(rclpy, node, capsys):
+    rclpy.on_spin = lambda: setattr(node, "failure", ParameterError("time went away"))
+    assert spin.run("fake_nodes", "Node") == 2
+    assert "time went away" in capsys.readouterr().err
+
+
+def test_an_error_of_ours_is_one_line(rclpy, node, capsys):
+    assert spin.run("fake_nodes", "Broken") == 2
+    assert capsys.readouterr().err == "fake_nodes: a bad value; mend it\n"
+
+
+def test_no_ros_is_one_line(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "rclpy", None)
+    assert spin.run("fake_nodes", "Node") == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    with pytest.raises(MissingDependencyError, match="pip install"):
+        spin.require_rclpy()
+
+
+@pytest.mark.parametrize("domain", ["-1", "233", "abc", "1.5"])
+def test_a_domain_that_is_none_is_named(rclpy, monkeypatch, domain):
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    with pytest.raises(TransportError, match=f"ROS_DOMAIN_ID={domain} is no domain"):
+        spin.init(rclpy)
+
+
+def test_a_start_that_fails_is_one_line(rclpy, monkeypatch):
+    monkeypatch.setattr(rclpy, "init", lambda args: raises(RuntimeError("no rmw\nat line 3"))())
+    with pytest.raises(TransportError, match=r"ROS 2 cannot start: no rmw$"):
+        spin.init(rclpy)
+
+
+def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    error = type("RCLError", (RuntimeError,), {})("failed to create domain participant")
+    with pytest.raises(TransportError, match="cannot join domain 7"):
+        spin.create(raises(error))
+    with pytest.raises(RuntimeError, match="a bug"):
+        spin.create(raises(RuntimeError("a bug")))

@@ -1,0 +1,49 @@
+import pytest
+
+from tree_sway_ros.ros.process.topics import (
+    CLOCK,
+    DIAGNOSTICS,
+    MARKERS,
+    SEGMENT_POSES,
+    TF,
+    TOPICS,
+    TREE_DESCRIPTION,
+    WIND,
+    markdown_table,
+    message_class,
+    qos_profile,
+)
+
+
+def test_names_are_relative_but_those_that_ros_fixes():
+    absolute = {topic.name for topic in TOPICS if topic.name.startswith("/")}
+    assert absolute == {DIAGNOSTICS.name, CLOCK.name, TF.name}
+
+
+def test_what_rviz_and_unity_show_is_reliable_and_short():
+    for topic in (SEGMENT_POSES, MARKERS):
+        assert topic.reliable
+        assert topic.depth <= 5
+
+
+def test_any_driver_matches_the_wind():
+    assert not WIND.reliable
+    assert not WIND.latched
+
+
+def test_the_description_waits_for_late_joiners():
+    assert TREE_DESCRIPTION.latched
+    assert TREE_DESCRIPTION.reliable
+
+
+def test_the_table_for_people_has_every_topic():
+    text = markdown_table()
+    assert all(f"`{topic.name}`" in text for topic in TOPICS)
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize("topic", [t for t in TOPICS if t is not TF], ids=lambda t: t.name)
+def test_types_and_qos_exist(topic):
+    pytest.importorskip("rclpy")
+    assert message_class(topic).__name__ == topic.type_name.rsplit("/", 1)[-1]
+    assert qos_profile(topic).depth == topic.depth

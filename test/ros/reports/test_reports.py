@@ -1,0 +1,117 @@
+import pytest
+
+pytest.importorskip("rclpy")
+pytestmark = pytest.mark.ros
+
+from builtin_interfaces.msg import Time  # noqa: E402
+
+from tree_sway_ros.core.wind.gate import WindGate  # noqa: E402
+from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
+from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status, status_array  # noqa: E402
+from tree_sway_ros.ros.reports.sway_report import SwayReport  # noqa: E402
+from tree_sway_ros.ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
+from tree_sway_ros.ros.timing.pacer import Pace  # noqa: E402
+
+TIMEOUT = 2.0
+
+
+class Clock:
+    """A clock in the hand of the test."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def monotonic(self):
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    made = Clock()
+    monkeypatch.setattr(wind_report, "time", made)
+    return made
+
+
+def test_a_status_becomes_a_message():
+    status = Status("wind", WARN, "late", {"age [s]": 1.23456789, "count": 3, "kind": "a"})
+    message = status_array([status], prefix="oak/solver", hardware="oak", stamp=Time(sec=5))
+    (item,) = message.status
+    assert (item.level, item.name, item.message) == (b"\x01", "oak/solver: wind", "late")
+    assert item.hardware_id == "oak"
+    assert {pair.key: pair.value for pair in item.values} == {
+        "age [s]": "1.23457",
+        "count": "3",
+        "kind": "a",
+    }
+    assert message.header.stamp.sec == 5
+
+
+def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
+    report, gate = WindReport(), WindGate()
+    assert report.status(TIMEOUT, gate).level == WARN
+    assert report.age is None
+    for _ in range(21):
+        clock.now += 0.05
+        report.add(True)
+    status = report.status(TIMEOUT, gate)
+    assert status.level == OK
+    assert report.rate == pytest.approx(20.0)
+    clock.now += 1.1 * TIMEOUT
+    assert report.status(TIMEOUT, gate).level == WARN
+    assert report.rate == 0.0
+    clock.now += STALE_AFTER * TIMEOUT
+    assert report.status(TIMEOUT, gate).level == STALE
+    report.add(True)
+    assert report.status(TIMEOUT, gate).level == OK
+
+
+def test_refused_samples_are_no_wind(clock):
+    report, gate = WindReport(), WindGate()
+    gate.offer(1.0, (float("nan"), 0.0, 0.0))
+    report.add(False)
+    status = report.status(TIMEOUT, gate)
+    assert status.level == WARN
+    assert "1 samples refused" in status.message
+    assert status.values["not_finite"] == 1
+
+
+def test_a_frozen_sensor_is_named(clock):
+    report, gate = WindReport(), WindGate(frozen_after=1.0)
+    for k in range(30):
+        gate.offer(1.0 + 0.05 * k, (3.0, 0.0, 0.0))
+        report.add(True)
+    status = report.status(TIMEOUT, gate)
+    assert (status.level, status.message[:6]) == (WARN, "frozen")
+
+
+def pace(skipped):
+    return Pace(60.0, 1e-4, 2e-3, 5e-3, 1e-3, 600, skipped, 0, 0)
+
+
+def test_frames_that_are_skipped_are_a_warning_until_it_keeps_up():
+    report = SwayReport()
+    assert report._output(pace(0), 60.0, 60).level == OK
+    late = report._output(pace(30), 60.0, 90)
+    assert late.level == WARN
+    assert "30 frames skipped, 2.0 ms late" in late.message
+    assert report._output(pace(30), 60.0, 150).level == OK
+
+
+@pytest.mark.parametrize(
+    ("state", "level"),
+    [("none", WARN), ("live", OK), ("holding", OK), ("decaying", WARN), ("stale", STALE)],
+)
+def test_every_state_of_the_wind_has_a_level(state, level):
+    from tree_sway_ros.ros.reports.sway_report import _wind
+
+    assert _wind(state).level == level
+
+
+def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
+    for x, level in ((40.0, OK), (-40.0, WARN), (4000.0, WARN)):
+        history = GustHistory([[0.0, 0.0, 0.0], [x, 0.0, 0.0]], (0.0, 0.0, 0.0))
+        history.push((8.0, 0.0, 0.0), 1.0 / 60.0)
+        status = sway_report._gusts(history)
+        assert status.level == level
+    assert "too far downwind" in status.message

@@ -1,0 +1,167 @@
+import threading
+import time
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy")
+pytestmark = pytest.mark.ros
+
+from rclpy.clock import ROSClock  # noqa: E402
+from rclpy.time import Time  # noqa: E402
+
+from tree_sway_ros.ros.timing.pacer import LONGEST_STEP, Pacer  # noqa: E402
+
+DEADLINE = 10.0
+PERIOD = 20_000_000  # of 50 Hz
+
+
+class Ticks:
+    """A pacer with its ticks, on a clock of ours or on the wall's."""
+
+    def __init__(self, rate=50.0, work=None):
+        self.clock = ROSClock()
+        self.seen = []
+        self.errors = []
+        self._more = threading.Condition()
+        self._work = work
+        self.pacer = Pacer(self.clock, rate, self._take, self.errors.append)
+
+    def _take(self, tick):
+        if self._work is not None:
+            self._work()
+        with self._more:
+            self.seen.append(tick)
+            self._more.notify_all()
+
+    def simulate(self):
+        self.clock._set_ros_time_is_active(True)
+        self.pacer.start()
+        return self
+
+    def set(self, nanoseconds, wait_for=None):
+        self.clock.set_ros_time_override(
+            Time(nanoseconds=nanoseconds, clock_type=self.clock.clock_type)
+        )
+        if wait_for is not None:
+            self.wait(wait_for)
+
+    def wait(self, n):
+        with self._more:
+            assert self._more.wait_for(lambda: len(self.seen) >= n, DEADLINE), self.seen
+
+
+@pytest.fixture
+def ticks():
+    made = []
+
+    def make(**options):
+        made.append(Ticks(**options))
+        return made[-1]
+
+    yield make
+    for item in made:
+        item.pacer.stop()
+
+
+def test_wall_time_ticks_on_the_grid_at_the_rate(ticks):
+    paced = ticks(rate=200.0)
+    paced.pacer.start()
+    paced.wait(100)
+    pace = paced.pacer.pace()
+    times = np.array([tick.time for tick in paced.seen])
+    periods = np.array([tick.periods for tick in paced.seen])
+    assert (times % paced.pacer.period == 0).all()
+    # Whatever the load: time is counted from the clock, so no period is lost or made up.
+    np.testing.assert_array_equal(np.diff(times), periods[1:] * paced.pacer.period)
+    assert pace.ticks >= 100
+    assert pace.skipped == (periods - 1).sum()
+    assert pace.rate == pytest.approx(200.0, rel=0.25)
+
+
+def test_simulated_time_is_followed(ticks):
+    paced = ticks().simulate()
+    for k in range(5):
+        paced.set(10**9 + k * PERIOD, wait_for=k + 1)
+    assert [tick.time for tick in paced.seen] == [10**9 + k * PERIOD for k in range(5)]
+    assert [tick.restarted for tick in paced.seen] == [True] + [False] * 4
+    assert paced.pacer.pace().skipped == 0
+
+
+def test_paused_time_ticks_nothing(ticks):
+    paced = ticks().simulate()
+    paced.set(10**9, wait_for=1)
+    paced.set(10**9 + PERIOD // 2)
+    paced.set(10**9 + PERIOD // 2 + 1)
+    assert len(paced.seen) == 1
+    paced.set(10**9 + PERIOD, wait_for=2)
+    assert len(paced.seen) == 2
+
+
+def test_time_that_has_not_begun_ticks_nothing(ticks):
+    paced = ticks().simulate()
+    paced.set(0)
+    paced.set(5 * 10**9, wait_for=1)
+    assert [tick.time for tick in paced.seen] == [5 * 10**9]
+
+
+def test_a_coarse_clock_is_counted_in_periods(ticks):
+    paced = ticks().simulate()
+    paced.set(10**9, wait_for=1)
+    paced.set(10**9 + 3 * PERIOD, wait_for=2)
+    assert paced.seen[1].periods == 3
+    assert not paced.seen[1].restarted
+
+
+def test_a_jump_back_restarts_at_once(ticks):
+    paced = ticks().simulate()
+    paced.set(100 * 10**9, wait_for=1)
+    paced.set(10**9, wait_for=2)
+    assert paced.seen[1] == (10**9, 1, True)
+    assert paced.pacer.pace().restarts == 1
+
+
+def test_a_jump_forward_is_no_long_step(ticks):
+    paced = ticks().simulate()
+    paced.set(10**9, wait_for=1)
+    paced.set(1000 * 10**9, wait_for=2)
+    assert paced.seen[1].periods * PERIOD <= LONGEST_STEP
+    assert paced.pacer.pace().clamped == 1
+
+
+def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):
+    paced = ticks(rate=100.0, work=lambda: time.sleep(0.025))
+    paced.pacer.start()
+    paced.wait(12)
+    late = [tick.periods for tick in paced.seen[1:]]
+    assert min(late) >= 2
+    assert max(late) <= LONGEST_STEP / paced.pacer.period
+    pace = paced.pacer.pace()
+    assert pace.skipped > 0
+    assert pace.late_p50 < 0.01  # of the newest period: nothing queues up
+
+
+def test_an_error_in_the_work_is_handed_on(ticks):
+    def fail():
+        raise ValueError("no")
+
+    paced = ticks(work=fail)
+    paced.pacer.start()
+    deadline = time.monotonic() + DEADLINE
+    while not paced.errors and time.monotonic() < deadline:
+        paced.pacer._thread.join(0.01)
+    assert [str(error) for error in paced.errors] == ["no"]
+
+
+def test_stopping_twice_or_before_the_start_is_harmless(ticks):
+    paced = ticks()
+    paced.pacer.stop()
+    paced = ticks()
+    paced.pacer.start()
+    paced.pacer.stop()
+    paced.pacer.stop()
+    assert not paced.pacer._thread.is_alive()
+
+
+def test_a_pace_of_nothing_is_zero(ticks):
+    assert ticks().pacer.pace() == (0.0,) * 5 + (0,) * 4

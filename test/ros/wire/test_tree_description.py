@@ -1,0 +1,64 @@
+import json
+
+import numpy as np
+
+from tree_sway_ros.core.leaves.foliage import leaf_clusters
+from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.ros.wire.tree_description import SCHEMA, VERSION, describe
+
+TREE = tree_from_segments(
+    [[0, 0, 0], [0, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 2], [1, 0, 1]], [0.1, 0.08, 0.03]
+)
+
+
+def fits(value, schema, root="$"):
+    """The part of JSON Schema that `SCHEMA` uses."""
+    if "const" in schema:
+        assert value == schema["const"], root
+    kinds = {"object": dict, "array": list, "string": str, "number": float, "integer": int}
+    if "type" in schema:
+        assert isinstance(value, kinds[schema["type"]]), root
+    assert value > schema.get("exclusiveMinimum", -np.inf) if isinstance(value, float) else True
+    assert value >= schema.get("minimum", -np.inf) if isinstance(value, int) else True
+    for name in schema.get("required", ()):
+        assert name in value, f"{root}.{name}"
+    for name, part in schema.get("properties", {}).items():
+        if name in value:
+            fits(value[name], part, f"{root}.{name}")
+    for item in value if isinstance(value, list) else ():
+        fits(item, schema["items"], f"{root}[]")
+
+
+def test_it_fits_its_schema():
+    fits(json.loads(describe(TREE, "map")), SCHEMA)
+    assert "leaves" not in json.loads(describe(TREE, "map"))
+
+
+def test_leaves_are_part_of_it():
+    told = describe(TREE, "map", leaf_clusters(TREE, np.random.default_rng(0), count=12))
+    fits(json.loads(told), SCHEMA)
+    assert len(json.loads(told)["leaves"]["segment"]) == 12
+
+
+def test_every_tree_of_several_begins_with_a_segment_without_a_parent():
+    trees = [StandingTree("a", TREE), StandingTree("b", TREE, x=3.0)]
+    told = json.loads(describe(joined([each.placed() for each in trees]), "map"))
+    fits(told, SCHEMA)
+    parents, names = told["segments"]["parents"], told["segments"]["names"]
+    roots = [name for name, parent in zip(names, parents, strict=True) if parent < 0]
+    assert [name.split("/")[0] for name in roots] == ["a", "b"]
+    assert len(set(names)) == 2 * TREE.n_segments
+
+
+def test_it_says_what_the_tree_says():
+    told = json.loads(describe(TREE, "odom"))
+    assert (told["version"], told["frame_id"]) == (VERSION, "odom")
+    segments = told["segments"]
+    assert segments["names"] == list(TREE.segment_names)
+    assert segments["parents"] == TREE.segment_parent.tolist()
+    assert segments["branches"] == TREE.branch_of_segment.tolist()
+    np.testing.assert_allclose(segments["lengths"], TREE.length)
+    np.testing.assert_allclose(segments["base_radii"], TREE.base_diameter / 2)
+    assert told["branches"]["first_segments"] == TREE.branch_first[:-1].tolist()
+    assert all(len(column) == TREE.n_segments for column in segments.values())

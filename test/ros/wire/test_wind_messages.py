@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy")
+pytestmark = pytest.mark.ros
+
+from hypothesis import given  # noqa: E402
+from hypothesis import strategies as st  # noqa: E402
+
+from tree_sway_ros.errors import ParameterError  # noqa: E402
+from tree_sway_ros.ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
+    WindSample,
+    WindWriter,
+    clock_message,
+    plane_message,
+    stamp_to_ns,
+    wind_class,
+    wind_from_message,
+    wind_to_message,
+)
+
+NUMBERS = st.floats(-100.0, 100.0)
+
+
+@given(
+    st.sampled_from(WIND_TYPE_NAMES), st.integers(0, 2**31 * 10**9 - 1), NUMBERS, NUMBERS, NUMBERS
+)
+def test_what_is_written_is_read_again(type_name, stamp, u, v, w):
+    kind = wind_class(type_name)
+    sample = WindSample(stamp, "mast", u, v, w)
+    read = wind_from_message(wind_to_message(kind, sample))
+    expected = sample if hasattr(kind(), "header") else WindSample(0, "", u, v, w)
+    assert read == expected
+
+
+def test_whole_numbers_are_no_trap():
+    sample = WindSample(1, "map", 1, 2, 3)
+    message = wind_to_message(wind_class("geometry_msgs/Vector3"), sample)
+    assert (message.x, message.y, message.z) == (1.0, 2.0, 3.0)
+
+
+def test_another_type_is_refused():
+    with pytest.raises(ParameterError, match="Vector3Stamped"):
+        wind_class("geometry_msgs/Pose")
+
+
+@pytest.mark.parametrize("type_name", WIND_TYPE_NAMES)
+@pytest.mark.parametrize(("convention", "sign"), [("to", 1.0), ("from", -1.0)])
+def test_the_writer_keeps_the_convention(type_name, convention, sign):
+    message = WindWriter(type_name, convention, "map").message(5, np.array([1.0, -2.0, 0.5]))
+    sample = wind_from_message(message)
+    assert sample[2:] == (sign * 1.0, sign * -2.0, sign * 0.5)
+
+
+def test_the_plane_has_the_quaternion_in_message_order():
+    message = plane_message(3_000_000_001, "map", np.array([0.5, 0.1, 0.2, 0.3]))
+    q = message.pose.orientation
+    assert (q.w, q.x, q.y, q.z) == (0.5, 0.1, 0.2, 0.3)
+    assert stamp_to_ns(message.header.stamp) == 3_000_000_001
+
+
+def test_the_clock():
+    assert stamp_to_ns(clock_message(7_000_000_003).clock) == 7_000_000_003

@@ -1,0 +1,9 @@
+"""T7: mass ratios."""
+
+from __future__ import annotations
+
+from tree_sway_ros.study.battery.rows import t07_mass_ratio as case
+
+
+def test_every_row_is_as_it_should_be():
+    assert [row for row in case.run() if not row.good] == []

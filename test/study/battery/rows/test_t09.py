@@ -1,0 +1,9 @@
+"""T9: strong wind from the side."""
+
+from __future__ import annotations
+
+from tree_sway_ros.study.battery.rows import t09_strong_wind as case
+
+
+def test_every_row_is_as_it_should_be():
+    assert [row for row in case.run() if not row.good] == []

@@ -1,0 +1,9 @@
+"""T11: wind along the branch."""
+
+from __future__ import annotations
+
+from tree_sway_ros.study.battery.rows import t11_parallel as case
+
+
+def test_every_row_is_as_it_should_be():
+    assert [row for row in case.run() if not row.good] == []

@@ -1,0 +1,9 @@
+"""T13: past 90 degrees."""
+
+from __future__ import annotations
+
+from tree_sway_ros.study.battery.rows import t13_past_right_angle as case
+
+
+def test_every_row_is_as_it_should_be():
+    assert [row for row in case.run() if not row.good] == []

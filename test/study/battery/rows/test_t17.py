@@ -1,0 +1,9 @@
+"""T17: bad samples."""
+
+from __future__ import annotations
+
+from tree_sway_ros.study.battery.rows import t17_bad_samples as case
+
+
+def test_every_row_is_as_it_should_be():
+    assert [row for row in case.run() if not row.good] == []

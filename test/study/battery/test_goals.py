@@ -1,0 +1,13 @@
+"""Goals of the default integrator."""
+
+from __future__ import annotations
+
+from tree_sway_ros.study.battery import goals as case
+
+
+def test_every_row_is_as_it_should_be():
+    assert [row for row in case.run() if not row.good] == []
+
+
+def test_a_frame_of_many_branches_is_timed():
+    assert 0.0 < case.milliseconds_a_frame(1600, 3) < 100.0

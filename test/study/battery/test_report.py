@@ -1,0 +1,44 @@
+"""The report: what it prints, writes and returns."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.study.battery.report import CASES, load_case, run_battery
+from tree_sway_ros.study.battery.row import fails, holds
+
+
+def test_rows_know_whether_they_are_good():
+    assert holds("a", "b", "c", True).good
+    assert not holds("a", "b", "c", False).good
+    assert fails("a", "b", "c", True).verdict == "failure reproduced"
+    assert not fails("a", "b", "c", False).good
+
+
+def test_all_cases_are_there():
+    assert list(CASES) == [*(f"T{k}" for k in range(1, 19)), "goals"]
+    assert all(load_case(name).TITLE for name in CASES)
+
+
+def test_the_report_in_terminal_and_json(tmp_path, capsys):
+    file = tmp_path / "battery.json"
+    assert run_battery(json=file, only=["T5", "T14"]) == 0
+    printed = capsys.readouterr().out
+    assert "failure reproduced" in printed
+    assert "4 of 4 rows as they should be" in printed
+    document = json.loads(file.read_text())
+    assert [case["case"] for case in document["cases"]] == ["T5", "T14"]
+    assert all(row["good"] for case in document["cases"] for row in case["rows"])
+
+
+def test_a_row_that_fails_gives_exit_code_one(monkeypatch):
+    monkeypatch.setattr(load_case("T5"), "run", lambda full: [holds("x", "y", "z", False)])
+    assert run_battery(only=["T5"]) == 1
+
+
+def test_an_unknown_case_is_named():
+    with pytest.raises(ParameterError, match="unknown case 'T19'"):
+        run_battery(only=["T19"])

@@ -1,0 +1,58 @@
+"""The benchmark's tree, and that a race is refused where the two sides disagree."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.study.bench import step as bench_step
+from tree_sway_ros.study.bench.bench_tree import bench_tree
+from tree_sway_ros.tools import cli
+
+
+def test_the_tree_is_the_one_that_is_claimed() -> None:
+    tree = bench_tree()
+    assert (tree.n_branches, tree.n_segments) == (121, 726)
+    assert np.bincount(tree.branch_order).tolist() == [1, 12, 36, 72]
+    lengths = np.array([6.0, 2.2, 0.9, 0.4])[tree.branch_order]
+    assert tree.branch_length == pytest.approx(lengths)
+    assert tree.base_diameter[0] == pytest.approx(0.120)
+    assert tree.tip_diameter.min() == pytest.approx(0.008)
+    directions = (tree.end - tree.start) / tree.length[:, None]
+    firsts = directions[tree.branch_first[:-1]].round(6)
+    assert len(np.unique(firsts, axis=0)) == tree.n_branches
+
+
+@pytest.mark.parametrize("segments", [3, 12])
+def test_the_tree_keeps_its_shape_however_it_is_cut(segments: int) -> None:
+    coarse, fine = bench_tree(segments), bench_tree(6)
+    assert coarse.n_segments == 121 * segments
+    assert coarse.height == pytest.approx(fine.height)
+    assert coarse.volume.sum() == pytest.approx(fine.volume.sum())
+
+
+@pytest.mark.parametrize("rung", ["branch", "subtree"])
+def test_kernels_and_twin_agree_and_are_timed(rung: str) -> None:
+    timing = bench_step.time_steps(bench_tree(), rung, 1)
+    assert timing.difference < 1e-9
+    assert 0.0 < timing.minimum <= timing.median
+    assert timing.ratio is not None
+    assert timing.ratio > 1.0
+
+
+def test_a_twin_that_disagrees_is_not_raced(monkeypatch: pytest.MonkeyPatch) -> None:
+    honest = bench_step.NumpyTwin.place
+    monkeypatch.setattr(bench_step.NumpyTwin, "place", lambda self: honest(self) + 1e-6)
+    with pytest.raises(TreeSwayError, match=r"differ by 1\.00e-06"):
+        bench_step.time_steps(bench_tree(), "subtree", 1)
+
+
+def test_the_command_prints_what_a_program_can_read(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["bench", "step", "--rounds", "1", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["segments"] == 726
+    assert [row["rung"] for row in found["timings"]] == ["branch", "subtree", "modes"]
+    assert found["timings"][2]["ratio"] is None

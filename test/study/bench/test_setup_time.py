@@ -1,0 +1,24 @@
+"""That set-ups are timed from nothing, each on its rung."""
+
+from __future__ import annotations
+
+import pytest
+
+from tree_sway_ros.study.bench import setup_time as bench_setup
+from tree_sway_ros.study.bench.bench_tree import bench_tree
+
+
+def test_every_rung_is_set_up_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    built = []
+    honest = bench_setup.SwaySimulator
+
+    def noted(tree, **settings):
+        simulator = honest(tree, **settings)
+        built.append((tree.n_branches, simulator.rung))
+        return simulator
+
+    monkeypatch.setattr(bench_setup, "SwaySimulator", noted)
+    times = bench_setup.time_setups(bench_tree(3, (4, 2)), ("branch", "modes"))
+    assert [each for each in built if each[0] == 13] == [(13, "branch"), (13, "modes")]
+    assert list(times) == ["branch", "modes"]
+    assert all(spent > 0.0 for spent in times.values())

@@ -1,0 +1,34 @@
+"""The comparison with MuJoCo, in the small."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.study.compare.mujoco_tree import mujoco_module
+from tree_sway_ros.study.compare.with_mujoco import compare_with_mujoco
+from tree_sway_ros.study.example_trees import forked_tree
+
+WOOD = Species("example", "example", 8.0e9, 900.0)
+
+
+def test_missing_engine_is_named_with_its_cure(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(MissingDependencyError, match="pip install mujoco"):
+        mujoco_module()
+
+
+def test_both_run_on_one_tree_and_agree():
+    pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    # A stiff bush has modes that decay fast, which MuJoCo's dampers take at shorter steps only.
+    tree = forked_tree(0.65, 0.6, generations=2)
+    wind = np.tile([6.0, 2.0, 0.0], (20, 1))
+    found = compare_with_mujoco(tree, WOOD, wind, rung="coupled", steps=64)
+    assert found.first_frequency == pytest.approx(1.0, abs=0.01)
+    assert found.static_sway == pytest.approx(1.0, abs=0.01)
+    assert found.step_error < 0.01
+    assert found.error < 0.05
+    assert found.speed_up > 1.0
+    assert "tip error over tip motion: coupled" in str(found)

@@ -1,0 +1,9 @@
+"""Array types: float64, int64 and the complex numbers of responses."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]

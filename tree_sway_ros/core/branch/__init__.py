@@ -1,0 +1,7 @@
+"""
+One branch as a beam: bending, twist, the shapes it takes and the model made from them.
+
+Closed forms and quadratures along one branch.
+What several branches do together lives in ``reduction``.
+
+"""

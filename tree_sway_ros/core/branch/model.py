@@ -1,0 +1,195 @@
+"""
+Every branch as a bending body: its axes, its mass and load along it, the ways it bends and twists.
+
+A branch turns about two fixed axes across its chord. Its coordinates are the components of a rotation vector,
+``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What a branch carries loads it and
+shapes it: the shear force and the moment of each child's subtree enter at the child's place.
+
+Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass per length
+[kg/m].
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.branch.beam import Attachments, BranchBeam, SlopeShape
+from tree_sway_ros.core.branch.shapes import (
+    FEWER,
+    N_SHAPES,
+    N_TWISTS,
+    Carried,
+    Coordinate,
+    ways_to_move,
+)
+from tree_sway_ros.core.tree.tree import Tree
+
+
+@dataclass(frozen=True)
+class BranchModel:
+    """
+    One branch, ready to be reduced.
+
+    Parameters
+    ----------
+    beam
+        Its quadrature and bending.
+    drag_area
+        Area that the wind meets per length at each point in [m], (m, 5).
+    mass
+        Mass per length at each point in [kg/m], (m, 5).
+    coordinates
+        Its key rotation x, y; an enriched branch has further pairs and twists after it.
+    children
+        The branches it carries, in the order of ``beam.children``.
+
+    """
+
+    beam: BranchBeam
+    drag_area: Floats
+    mass: Floats
+    coordinates: tuple[Coordinate, ...]
+    children: Ints
+
+    @property
+    def inertia_share(self) -> float:
+        """
+        Inertia that gives the branch alone its beam's first frequency, over that of its static shape [-].
+
+        Inverse iteration from the static shape: each turn bends the branch by its own inertia.
+
+        """
+        beam, shape = self.beam, self.coordinates[0].shape
+        static = _square_frequency(beam, shape, self.mass)
+        none = np.zeros(0)
+        for _ in range(4):
+            bending = beam.bending_moment(self.mass * shape.deflection, none, none)
+            shape = SlopeShape(beam, bending / bending.max() / beam.second_moment)
+        return static / _square_frequency(beam, shape, self.mass)
+
+
+def branch_models(
+    tree: Tree,
+    density: float,
+    *,
+    carries: bool,
+    enriched: frozenset[int] = frozenset(),
+    speed_profile: Floats | None = None,
+    leaf_mass: Floats | None = None,
+    leaf_area: Floats | None = None,
+) -> list[BranchModel]:
+    """
+    Model each branch of a tree.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    density
+        Of green wood in [kg/m^3].
+    carries
+        Whether children load and shape their parents; if not, every branch is alone (the paper).
+    enriched
+        Branches that get further shapes and twists.
+    speed_profile
+        Wind speed over that at the anemometer at each segment's middle [-], (n,); 1 if None.
+    leaf_mass, leaf_area
+        Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
+
+    Returns
+    -------
+    list of BranchModel
+        In the order of the tree's branches.
+
+    """
+    n = tree.n_branches
+    models: list[BranchModel] = []
+    area, area_moment = np.zeros(n), np.zeros((n, 3))
+    weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
+    sums = Carried(area, area_moment, weight, weight_moment, weight_second)
+    children_of: list[list[int]] = [[] for _ in range(n)]
+    for branch in range(1, n):
+        children_of[tree.branch_parent[branch]].append(branch)
+    for branch in range(n - 1, -1, -1):
+        here = tree.segments_of(branch)
+        children = np.array(children_of[branch], dtype=np.int64)
+        beam = BranchBeam(
+            tree.start[here] - tree.start[0],
+            tree.end[here] - tree.start[0],
+            tree.base_diameter[here],
+            tree.tip_diameter[here],
+            _places(tree, branch, children),
+        )
+        length = float(beam.node[-1])
+        mass = density * beam.area
+        drag_area = beam.diameter.copy()
+        if leaf_mass is not None:
+            mass += leaf_mass[branch] / length
+        if leaf_area is not None:
+            drag_area += leaf_area[branch] / length
+        if speed_profile is not None:
+            drag_area *= (speed_profile[here] ** 2)[:, None]
+        carried = sums[children if carries else children[:0]]
+        ways = ways_to_move(beam, drag_area, mass, carried, *_richness(tree, branch, enriched))
+        models.append(BranchModel(beam, drag_area, mass, ways, children))
+        point, dm = beam.point, beam.weight * mass
+        area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
+        area_moment[branch] = np.einsum("sg,sgk->k", beam.weight * drag_area, point)
+        area_moment[branch] += area_moment[children].sum(axis=0)
+        weight[branch] = dm.sum() + weight[children].sum()
+        weight_moment[branch] = np.einsum("sg,sgk->k", dm, point)
+        weight_moment[branch] += weight_moment[children].sum(axis=0)
+        weight_second[branch] = np.einsum("sg,sgi,sgj->ij", dm, point, point)
+        weight_second[branch] += weight_second[children].sum(axis=0)
+    return models[::-1]
+
+
+def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
+    """Shapes and twists of a branch."""
+    if branch not in enriched:
+        return 1, 0
+    return (N_SHAPES, N_TWISTS) if tree.branch_parent[branch] < 0 else (FEWER, FEWER)
+
+
+def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
+    """Where children sit: the foot of the perpendicular from their start onto the parent's segment."""
+    if len(children) == 0:
+        return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
+    first = tree.branch_first[children]
+    seat = tree.segment_parent[first]
+    step = tree.end[seat] - tree.start[seat]
+    along = (
+        np.einsum("ij,ij->i", tree.start[first] - tree.start[seat], step) / tree.length[seat] ** 2
+    )
+    return Attachments(seat - tree.branch_first[branch], np.clip(along, 0.0, 1.0))
+
+
+def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
+    """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
+    return shape.stiffness(shape, 1.0) / float(beam.integral(mass * shape.deflection**2))
+
+
+def enriched_branches(tree: Tree, choice: str) -> frozenset[int]:
+    """
+    Choose the branches that get further shapes and twists.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    choice
+        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with branches), all ``carriers``
+        of others, or ``all``.
+
+    """
+    carriers = {0, *tree.branch_parent[1:].tolist()}
+    limbs = {0, *(int(tree.branch_parent[branch]) for branch in carriers if branch > 0)}
+    chosen: dict[str, Iterable[int]] = {
+        "none": (), "stem": (0,), "limbs": limbs, "carriers": carriers, "all": range(tree.n_branches)
+    }  # fmt: skip
+    return frozenset(chosen[choice])

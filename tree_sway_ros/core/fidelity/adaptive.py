@@ -1,0 +1,222 @@
+"""
+A tree that uses no more model than its scene needs, and changes models unseen.
+
+The error and the cost of every rung in the wind of the last minute are known beforehand (`fidelity_ladder`); the cheapest that
+stays within the tolerance is used, or, where none that can be afforded does, the most accurate of those. When wind or camera ask for another, the new one first sways along unseen until it has
+forgotten that it started at rest, then the picture goes over to it within a second: every pose is a mix of two that agree but for
+the tolerance. A rung is left upwards as soon as it must be, downwards only when a lesser one would do with a third to
+spare, so that a wind on the border does not flicker.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.fidelity.estimate import Estimate, choose
+from tree_sway_ros.core.fidelity.ladder import FidelityLadder
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
+from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
+
+RUN_IN = 10.0
+"""How long a new model sways unseen in [s]."""
+
+CROSS_FADE = 1.0
+"""How long the picture takes to go over in [s]."""
+
+REVIEW = 2.0
+"""How often the choice is looked at again in [s]."""
+
+_SPARE = 2.0 / 3.0
+
+
+class AdaptiveSimulator:
+    """
+    A tree on the least rung that its scene needs; otherwise as `SwaySimulator`.
+
+    Parameters
+    ----------
+    tree, species, settings
+        As for `SwaySimulator`; the rung of the settings does not matter.
+    tolerance
+        Largest error of the tips in [m], root mean square over time and tips.
+    budget
+        Largest cost of a step and a placing in [us]; 0 for none.
+    expected
+        The wind to start for; a fresh breeze of 8 m/s if None.
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        species: Species | None = None,
+        settings: SimulatorSettings | None = None,
+        *,
+        tolerance: float = 0.005,
+        budget: float = 0.0,
+        expected: WindClimate | None = None,
+    ) -> None:
+        """Judge all rungs once, and start on the one that the expected wind asks for."""
+        self.tree = tree
+        self.species = species if species is not None else species_named(tree.species)
+        self.settings = settings or SimulatorSettings()
+        self.ladder = FidelityLadder(tree, self.species, self.settings)
+        self.tolerance, self.budget = tolerance, budget
+        self.pace = 1.0
+        """Cost here over the cost that the ladder says: set it once it is measured."""
+        self._expected = expected or WindClimate.steady(8.0, 0.2)
+        self._tracker = ClimateTracker()
+        self._built: dict[str, SwaySimulator] = {}
+        self.choice = self._choose(self._expected)
+        for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
+            self._simulator(estimate)  # now, for a change must not hold up the stream
+        self._shown = self._simulator(self.choice)
+        self._next: SwaySimulator | None = None
+        self._next_age = self._since_review = 0.0
+        self._poses = np.zeros((tree.n_segments, 7))
+        self._mixed = np.zeros((tree.n_segments, 7))
+
+    @property
+    def rung(self) -> str:
+        """Model in use."""
+        return self._shown.rung
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that the model in use solves."""
+        return self._shown.n_solved
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another in the model in use."""
+        return self._shown.n_copied
+
+    @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body in the model in use."""
+        return self._shown.n_frozen
+
+    @property
+    def frame_cost(self) -> float:
+        """What a step and a placing of the chosen model take on this machine in [us]."""
+        return self.pace * self.choice.cost
+
+    @property
+    def counts(self) -> Counts:
+        """Steps, refused winds and held loads of the model in use."""
+        return self._shown.counts
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Way of the highest tip from rest in [m], (3,), as last placed by the model in use."""
+        return self._shown.tip_displacement
+
+    @property
+    def shown(self) -> SwaySimulator:
+        """Simulator whose poses are seen, or fade."""
+        return self._shown
+
+    @property
+    def is_changing(self) -> bool:
+        """Whether another model is swaying along to take over."""
+        return self._next is not None
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """Advance one step, as `SwaySimulator.step`; now and then look at the choice again."""
+        status = self._shown.step(wind_mean, dt)
+        self._tracker.add(self._shown.wind, dt)
+        if self._next is not None:
+            self._next.step(wind_mean, dt)
+            self._next_age += dt
+            if self._next_age >= RUN_IN + CROSS_FADE:
+                self._shown, self._next = self._next, None
+        self._since_review += dt
+        if self._since_review >= REVIEW:
+            self._since_review = 0.0
+            self.review()
+        return status
+
+    def review(self) -> Estimate:
+        """Look at the choice again: call it when the tolerance has changed. Returns what is chosen."""
+        if self._next is not None:
+            return self.choice
+        wanted = self._choose(self._tracker.climate, current=self.choice)
+        if wanted.name != self.choice.name:
+            self._next, self._next_age = self._simulator(wanted), 0.0
+            self._next.reset()
+        self.choice = wanted
+        return wanted
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """Place every segment, as `SwaySimulator.place`."""
+        poses = self._shown.place(self._poses if out is None else out)
+        share = (self._next_age - RUN_IN) / CROSS_FADE
+        if self._next is not None and share > 0.0:
+            _mix(poses, self._next.place(self._mixed), share * share * (3.0 - 2.0 * share))
+        return poses
+
+    def reset(self) -> None:
+        """Go back to rest and to the wind that was expected, at once on the model that it asks for."""
+        self._tracker = ClimateTracker()
+        self.choice = self._choose(self._expected)
+        self._shown, self._next = self._simulator(self.choice), None
+        self._shown.reset()
+        self._since_review = 0.0
+
+    def _choose(self, climate: WindClimate, current: Estimate | None = None) -> Estimate:
+        estimates = self.ladder.estimates(climate)
+        affordable = [e for e in estimates if self.pace * e.cost <= self.budget]
+        affordable = (affordable or estimates[:1]) if self.budget > 0.0 else estimates
+        same = next((e for e in affordable if current and e.name == current.name), None)
+        wanted = _least(affordable, self.tolerance)
+        if wanted is None:
+            wanted = choose(affordable)
+            return same if same is not None and _SPARE * same.error < wanted.error else wanted
+        if same is not None and wanted.cost < same.cost:
+            careful = _least(affordable, _SPARE * self.tolerance)
+            return careful if careful is not None and careful.cost < same.cost else same
+        return wanted
+
+    def _simulator(self, wanted: Estimate) -> SwaySimulator:
+        if wanted.name not in self._built:
+            model = replace(self.settings, rung=wanted.rung, n_modes=max(wanted.n_modes, 1))
+            calibrated = self.ladder.calibrated(wanted)
+            sim = SwaySimulator(self.tree, self.species, model, calibrated=calibrated)
+            sim.step((0.0, 0.0, 0.0), 1.0 / 60.0)
+            sim.reset()
+            sim.counts.steps = 0
+            self._built[wanted.name] = sim
+        return self._built[wanted.name]
+
+
+def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
+    """Find the cheapest within a tolerance, if there is one."""
+    return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)
+
+
+@fused
+def _mix(poses: Floats, others: Floats, share: float) -> None:
+    """Go over from poses to others by a share of the way, in place."""
+    for j in range(len(poses)):
+        towards = 0.0
+        for k in range(3, 7):
+            towards += poses[j, k] * others[j, k]
+        sign = 1.0 if towards >= 0.0 else -1.0
+        square = 0.0
+        for k in range(7):
+            other = others[j, k] if k < 3 else sign * others[j, k]
+            poses[j, k] += share * (other - poses[j, k])
+            if k >= 3:
+                square += poses[j, k] * poses[j, k]
+        for k in range(3, 7):
+            poses[j, k] /= np.sqrt(square)

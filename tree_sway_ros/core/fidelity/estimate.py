@@ -1,0 +1,146 @@
+"""
+How much model a scene needs: what is known of a model before it runs, and the least that will do.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """
+    What a rung is worth in a wind.
+
+    Parameters
+    ----------
+    rung, n_modes
+        The rung, and its number of modes if it is ``modes``.
+    error
+        Bound of the root mean square over time and tips of the error in [m].
+    motion
+        Root mean square of the motion of the tips about its mean in [m].
+    cost
+        Of one step and one placing in [us].
+    n_frozen
+        Branches that move with their parent as one body.
+
+    """
+
+    rung: str
+    n_modes: int
+    error: float
+    motion: float
+    cost: float
+    n_frozen: int = 0
+
+    @property
+    def name(self) -> str:
+        """As people say it: ``modes 6``, or ``modes 6 with 20 branches frozen``."""
+        return model_name(self.rung, self.n_modes, self.n_frozen)
+
+
+def choose(
+    estimates: Sequence[Estimate], *, tolerance: float | None = None, budget: float | None = None
+) -> Estimate:
+    """
+    Choose the least rung that a scene needs.
+
+    Parameters
+    ----------
+    estimates
+        Of all rungs.
+    tolerance
+        Largest error in [m]; the cheapest rung within it is chosen.
+    budget
+        Largest cost of a step in [us]; the most accurate rung within it is chosen. With both, the cheapest within the
+        tolerance among those within the budget.
+
+    Returns
+    -------
+    Estimate
+        The choice.
+
+    Raises
+    ------
+    ParameterError
+        A tolerance or budget that no rung meets; the error names the nearest.
+
+    """
+    within = [e for e in estimates if budget is None or e.cost <= budget]
+    if not within:
+        cheapest = min(estimates, key=lambda e: e.cost)
+        raise ParameterError(
+            f"no rung costs less than {budget:g} us a step",
+            where="budget",
+            cure=f"allow {cheapest.cost:.3g} us for '{cheapest.name}'",
+        )
+    if tolerance is None:
+        return min(within, key=lambda e: (e.error, e.cost))
+    good = [e for e in within if e.error <= tolerance]
+    if not good:
+        best = min(within, key=lambda e: e.error)
+        raise ParameterError(
+            f"no rung errs less than {tolerance:g} m in this wind",
+            where="tolerance",
+            cure=f"allow {best.error:.3g} m for '{best.name}', or pin a rung",
+        )
+    return min(good, key=lambda e: e.cost)
+
+
+def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> float:
+    """
+    Turn a tolerance on the picture into one in the scene.
+
+    Parameters
+    ----------
+    pixels
+        Tolerance in [px].
+    distance
+        From the camera to the tree in [m].
+    focal_length
+        Of the camera in [px].
+
+    Returns
+    -------
+    float
+        In [m].
+
+    """
+    if not (pixels > 0.0 and distance > 0.0 and focal_length > 0.0):
+        raise ParameterError(
+            f"tolerance of {pixels:g} px at {distance:g} m with a focal length of {focal_length:g} px",
+            cure="give three numbers above 0",
+        )
+    return pixels * distance / focal_length
+
+
+def distance_to(tree: Tree, position: Floats) -> float:
+    """
+    Distance from a camera to the nearest branch tip or to the root in [m], at least 1 cm.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    position
+        Of the camera in the tree's frame in [m], (3,).
+
+    """
+    seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
+    return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)
+
+
+def model_name(rung: str, n_modes: int, n_frozen: int) -> str:
+    """Name of a model as people say it."""
+    name = f"{rung} {n_modes}" if rung == "modes" else rung
+    is_told = n_frozen > 0 and rung != "frozen"
+    return f"{name} with {n_frozen} branches frozen" if is_told else name

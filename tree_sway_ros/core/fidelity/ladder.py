@@ -1,0 +1,179 @@
+"""
+The ladder of models of one tree: the error of every rung in any wind, known before a step is taken.
+
+The coupled tree is linear to first order, so the error of a lesser rung need not be tried: it is the difference of the
+two responses, summed over the frequencies of the wind's load. That difference, joined from the root to the tips of all
+branches, is what a viewer would see. To it comes a margin for what no linear model knows.
+
+Between the rungs stand those in which the quietest branches are frozen and move with their parents as one body; they are rungs
+like any other, as the response of a tree with frozen branches is known too.
+
+Symbols: D(f) difference of two tip responses, S(f) spectrum of the load, C its covariance.
+
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.fidelity.estimate import Estimate, model_name
+from tree_sway_ros.core.fidelity.frame_cost import frame_cost
+from tree_sway_ros.core.fidelity.quiet_branches import quiet_sets
+from tree_sway_ros.core.motion.drag import pressure
+from tree_sway_ros.core.motion.response import Complexes, key_response, tip_motion
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
+from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.climate import WindClimate
+
+MARGIN = 1.3
+"""Estimated over computed error: the wind is not quite linear in its effect."""
+
+FLOOR = 0.03
+"""Share of the motion by which even the coupled model may err against every segment solved."""
+
+LADDER: tuple[tuple[str, int, float], ...] = (
+    ("coupled", 0, 0.0), ("coupled", 0, 0.01),
+    ("modes", 12, 0.0), ("modes", 12, 0.003), ("modes", 12, 0.01), ("modes", 12, 0.03), ("modes", 12, 0.1),
+    ("modes", 6, 0.0), ("modes", 3, 0.0),
+    ("subtree", 0, 0.0), ("subtree", 0, 0.1), ("branch", 0, 0.0), ("frozen", 0, math.inf),
+)  # fmt: skip
+"""Rungs, the best first, with their number of modes and the share of the motion that freezing may cost."""
+
+MOST_COUPLED, MOST_MODES = 250, 32
+"""A tree of more branches than this is not solved in all its modes, but in this many."""
+
+_SPARSE = 4
+"""One frequency in so many will do to find the quiet branches."""
+
+_FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 160)])
+
+
+class FidelityLadder:
+    """
+    The rungs of a tree, each with its response.
+
+    Parameters
+    ----------
+    tree, species, settings
+        As for `SwaySimulator`; the settings' rung does not matter.
+
+    """
+
+    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+        """Find the response of every rung."""
+        self.tree, self.species = tree, species
+        self._coefficient = species.drag_law(settings.in_leaf)
+        whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
+        best, best_modes = _best(tree)
+        bank = whole.bank(best, best_modes)
+        rotations = key_response(bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES)
+        self._truth = tip_motion(bank.branches, rotations)
+        self._motion = _gram(self._truth)
+        shares = sorted({share for *_, share in LADDER} - {0.0, math.inf})
+        few = slice(None, None, _SPARSE)
+        sets = quiet_sets(tree, bank.branches, rotations[:, :, few], _FREQUENCIES[few], shares)
+        all_still = np.ones(tree.n_branches, dtype=np.bool_)
+        self._trees = {0.0: whole, math.inf: PartlyFrozenTree(whole, all_still)}
+        for share, quiet in zip(shares, sets, strict=True):
+            if quiet.any():
+                self._trees[share] = PartlyFrozenTree(whole, quiet)
+        self._rungs: dict[str, _Rung] = {}
+        for rung, n_modes, share in LADDER:
+            if rung == "coupled":
+                rung, n_modes = best, best_modes
+            self._add(rung, n_modes, share)
+        del self._truth
+
+    def calibrated(self, estimate: Estimate) -> CalibratedTree:
+        """Return the tree, calibrated and frozen as an estimate has it."""
+        return self._trees[self._rungs[estimate.name].share]
+
+    def estimates(self, climate: WindClimate) -> list[Estimate]:
+        """
+        Judge every rung in a wind.
+
+        Parameters
+        ----------
+        climate
+            The wind.
+
+        Returns
+        -------
+        list of Estimate
+            From the cheapest to the dearest.
+
+        """
+        load = pressure(climate.speed, *self._coefficient)
+        swing = _root(self._motion, climate, with_mean=False) * load
+        offset = _root(self._motion, climate, with_mean=True) * load
+        found = []
+        for each in self._rungs.values():
+            floor = FLOOR * offset if each.rung != "frozen" else 0.0
+            bound = MARGIN * _root(each.error, climate, with_mean=True) * load + floor
+            found.append(Estimate(each.rung, each.n_modes, bound, swing, each.cost, each.n_frozen))
+        return sorted(found, key=lambda e: e.cost)
+
+    def _add(self, rung: str, n_modes: int, share: float) -> None:
+        """Set a rung against the best one, both on the coordinates of the whole tree."""
+        calibrated, whole = self._trees.get(share), self._trees[0.0].layer(rung)
+        n = whole.reduction.n_coordinates
+        if calibrated is None or n_modes > calibrated.layer(rung).reduction.n_coordinates:
+            return
+        bank = calibrated.bank(rung, n_modes)
+        name = model_name(rung, n_modes, bank.n_frozen)
+        if name in self._rungs:
+            return
+        moving = np.arange(n)
+        if isinstance(calibrated, PartlyFrozenTree):
+            moving = calibrated.pruning.coordinates(whole.reduction)
+        rotations = np.zeros((n, 2, len(_FREQUENCIES)), dtype=np.complex128)
+        rotations[moving] = key_response(
+            bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES
+        )
+        error = _gram(tip_motion(whole.branches, rotations) - self._truth)
+        cost = frame_cost(bank, self.tree)
+        self._rungs[name] = _Rung(rung, n_modes, share, bank.n_frozen, cost, error)
+
+
+@dataclass(frozen=True)
+class _Rung:
+    """One way to solve the tree, its cost and its error, as `_gram`."""
+
+    rung: str
+    n_modes: int
+    share: float
+    n_frozen: int
+    cost: float
+    error: Floats
+
+
+def _best(tree: Tree) -> tuple[str, int]:
+    """Find the rung that all others are set against, and its number of modes."""
+    return ("coupled", 0) if tree.n_branches <= MOST_COUPLED else ("modes", MOST_MODES)
+
+
+def _n_coordinates(branches: Any) -> int:
+    return int(branches["n_coordinates"].sum())
+
+
+def _gram(response: Complexes) -> Floats:
+    """Mean over tips of the inner products of the answers along x and y, (f, 2, 2)."""
+    gram = np.einsum("bkif,bkjf->fij", response.conj(), response).real / len(response)
+    return np.asarray(gram, dtype=np.float64)
+
+
+def _root(gram: Floats, climate: WindClimate, *, with_mean: bool) -> float:
+    """Root mean square that a load makes of a response, per unit of drag pressure."""
+    density = np.einsum("fij,ij->f", gram, climate.covariance) * climate.spectrum(_FREQUENCIES)
+    square = float((0.5 * (density[1:] + density[:-1]) * np.diff(_FREQUENCIES)).sum())
+    if with_mean:
+        square += float(climate.mean @ gram[0] @ climate.mean)
+    return math.sqrt(max(square, 0.0))

@@ -1,0 +1,88 @@
+"""
+Which branches hardly move on their parents: those that may be frozen.
+
+A branch is judged with all it carries: by how far the tips of its subtree go in a turbulent wind from any side, less what they
+would go as one body with its base. Sets of branches are nested; each is the largest whose freezing costs no more than a given
+share of the motion of the whole tree.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.motion.response import Complexes, base_motion, carried_to, tip_motion
+from tree_sway_ros.core.reduction.pruning import Bools, Pruning
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.climate import WindClimate
+
+
+def quiet_sets(
+    tree: Tree, branches: Any, rotations: Complexes, frequencies: Floats, shares: Sequence[float]
+) -> list[Bools]:
+    """
+    Find the branches to freeze.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    branches
+        Records of `BRANCH`, (b,).
+    rotations
+        `key_response` of the tree, (N, 2, f).
+    frequencies
+        In [Hz], (f,), the first of them 0.
+    shares
+        Error that freezing may make, over the motion of the tips, both root mean square, in [-].
+
+    Returns
+    -------
+    list of Bools
+        For each share, the branches that may be frozen, (b,); with each, all that it carries.
+
+    """
+    swing, motion = _swings(tree, branches, rotations * np.sqrt(_weights(frequencies)))
+    per_tip = swing / (tree.subtree_end - np.arange(tree.n_branches))
+    order = np.sort(per_tip[1:])
+    return [_largest(tree, swing, per_tip, order, share**2 * motion) for share in shares]
+
+
+def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed: float) -> Bools:
+    """Bisect for the highest threshold per tip at which what the frozen subtrees swing is still allowed."""
+    low, high = 0, len(order)  # so many of the quietest may surely, may perhaps be frozen
+    quiet = np.zeros(tree.n_branches, dtype=np.bool_)
+    while low < high:
+        middle = (low + high + 1) // 2
+        pruning = Pruning(tree, per_tip <= order[middle - 1])
+        if swing[pruning.tops].sum() <= allowed:
+            low, quiet = middle, pruning.frozen
+        else:
+            high = middle - 1
+    return quiet
+
+
+def _swings(tree: Tree, branches: Any, rotations: Complexes) -> tuple[Floats, float]:
+    """Sum over the tips of each subtree of the squared way on its base, (b,), and that of all tips on the ground."""
+    base, tips = base_motion(branches, rotations), tip_motion(branches, rotations)
+    swing = np.zeros(tree.n_branches)
+    for branch in range(tree.n_branches):
+        those = slice(branch, int(tree.subtree_end[branch]))
+        body = np.broadcast_to(base[branch], (those.stop - branch, *base.shape[1:]))
+        own = tips[those] - carried_to(body, branches["tip"][those])
+        swing[branch] = np.square(np.abs(own)).sum()
+    return swing, float(swing[0])
+
+
+def _weights(frequencies: Floats) -> Floats:
+    """Mean square of the load at each frequency, in a wind of intensity .2 from any side, (f,)."""
+    climate = WindClimate.steady(1.0, 0.2)
+    density = climate.spectrum(frequencies) * np.trace(climate.covariance)
+    steps = np.diff(frequencies)
+    weights = 0.5 * density * (np.append(steps, 0.0) + np.insert(steps, 0, 0.0))
+    weights[0] += np.square(climate.mean).sum()
+    return np.asarray(weights, dtype=np.float64)

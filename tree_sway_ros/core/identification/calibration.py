@@ -1,0 +1,180 @@
+"""
+The modulus that gives a tree its measured frequency.
+
+With its weight a tree's square frequency is not proportional to the modulus, but its elastic stiffness is: of
+``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is reduced once. The lowest w^2 rises with s and
+bends down, being the least of functions linear in s, with the slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's
+method comes from below; a bracket keeps it off the buckling load, where w is 0.
+
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tree_sway_ros.core.branch.model import branch_models, enriched_branches
+from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.reduction.matrices import reduce_tree
+from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import TreeError
+
+_TOLERANCE = 1e-9
+_STANDS = 1.001
+"""A tree is taken to stand up to this share of the weight that buckles it."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """
+    A species whose modulus and damping fit one tree.
+
+    Parameters
+    ----------
+    species
+        With the modulus, and the damping ratio if one was measured, of the tree.
+    frequency
+        Slowest sway of the tree with it in [Hz].
+    frequency_before
+        The same before; None if the tree could not stand.
+    modulus_ratio
+        Modulus over the one before in [-].
+    branch
+        Name of the branch that bends most in that sway: the stem's, in most trees.
+    sensitivity
+        Relative change of the modulus over that of the frequency in [-]: 2 without weight, less with it.
+
+    """
+
+    species: Species
+    frequency: float
+    frequency_before: float | None
+    modulus_ratio: float
+    branch: str
+    sensitivity: float
+
+
+def calibrate(
+    tree: Tree,
+    species: Species,
+    frequency: float,
+    damping_ratio: float | None = None,
+    settings: SimulatorSettings | None = None,
+) -> Calibration:
+    """
+    Fit modulus and damping of a tree to its slowest sway.
+
+    Parameters
+    ----------
+    tree, species
+        The tree and its wood so far.
+    frequency
+        Measured natural frequency in [Hz].
+    damping_ratio
+        Measured damping ratio in [-]; taken for the season of the settings. That of the species stays if None.
+    settings
+        Season, leaves and gravity; the defaults if None. The model is that of the rungs ``modes`` and ``coupled``.
+
+    Returns
+    -------
+    Calibration
+        The species to use, and what changed.
+
+    Raises
+    ------
+    ParameterError
+        A frequency or a damping ratio out of range.
+    TreeError
+        A tree that would buckle before it sways so slowly, or a branch without mass.
+
+    """
+    within("frequency", frequency, 0.0, 1e3, "Hz", above=True)
+    settings = settings or SimulatorSettings()
+    model = _ScaledTree(tree, species, settings)
+    found = model.swaying_at((2.0 * math.pi * frequency) ** 2)
+    if found is None:
+        weakest, limit = model.weakest, model.sway(model.least)
+        raise TreeError(
+            f"{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz when branch "
+            f"'{weakest}' is about to buckle under its own weight",
+            where=tree.name,
+            cure="check the measured frequency, the density and the diameters",
+        )
+    changes: dict[str, float] = {"modulus": found.scale * species.modulus}
+    if damping_ratio is not None:
+        within("damping ratio", damping_ratio, 0.0, 1.0)
+        changes["damping_in_leaf" if settings.in_leaf else "damping_bare"] = damping_ratio
+    return Calibration(
+        replace(species, **changes, is_estimate=False),  # type: ignore[arg-type]
+        found.frequency,
+        model.sway(1.0).frequency if model.least < 1.0 else None,
+        found.scale,
+        model.branch_of(found.coordinate),
+        2.0 * found.square / (found.scale * found.slope),
+    )
+
+
+@dataclass(frozen=True)
+class _Sway:
+    """Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns most."""
+
+    scale: float
+    square: float
+    slope: float
+    coordinate: int
+
+    @property
+    def frequency(self) -> float:
+        return math.sqrt(self.square) / (2.0 * math.pi)
+
+
+class _ScaledTree:
+    """A coupled tree whose modulus is scaled."""
+
+    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+        models = branch_models(
+            tree,
+            species.density,
+            carries=True,
+            enriched=enriched_branches(tree, settings.enrich),
+            speed_profile=settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2])),
+            leaf_mass=settings.leaf_mass,
+            leaf_area=settings.leaf_area,
+        )
+        shear = species.shear_ratio * species.modulus
+        self.tree = tree
+        self.reduction = reduce_tree(tree, models, species.modulus, shear, settings.gravity)
+        factor, coordinate = buckling_factor(self.reduction)
+        #: Scale at which the tree just stands, and the branch that gives way first.
+        self.least = _STANDS / factor
+        self.weakest = self.branch_of(coordinate)
+
+    def branch_of(self, coordinate: int) -> str:
+        """Name of the branch that a coordinate belongs to."""
+        branch = int(np.searchsorted(self.reduction.first, coordinate, side="right")) - 1
+        return self.tree.branch_names[branch]
+
+    def sway(self, scale: float) -> _Sway:
+        """Slowest mode at a scale."""
+        scaled = replace(self.reduction, elastic=scale * self.reduction.elastic)
+        modes = natural_modes(self.tree, scaled, 1)
+        energy = self.reduction.elastic * modes.shapes[:, 0] ** 2
+        square = float(modes.circular[0]) ** 2
+        return _Sway(scale, square, float(energy.sum()), int(np.argmax(energy)))
+
+    def swaying_at(self, square: float) -> _Sway | None:
+        """Find the scale for a square circular frequency [1/s^2]; None if the tree would buckle."""
+        low, high = self.least, math.inf
+        sway = self.sway(max(1.0, 2.0 * low))
+        while abs(sway.square / square - 1.0) > _TOLERANCE:
+            low, high = (sway.scale, high) if sway.square < square else (low, sway.scale)
+            if high - low < _TOLERANCE * low:
+                return None
+            step = sway.scale + (square - sway.square) / sway.slope
+            sway = self.sway(step if low < step < high else 0.5 * (low + high))
+        return sway

@@ -1,1 +1,0 @@
-"""Methods for one key segment, side by side: one file a method."""

@@ -1,1 +1,0 @@
-"""Methods on the angles: the paper's equation with its multipliers eliminated."""

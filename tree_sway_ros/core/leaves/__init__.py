@@ -1,0 +1,7 @@
+"""
+Leaves: traits of a species, mass and area per branch, where they sit, how they flutter.
+
+Arrays per branch or per leaf.
+Drag of leaves in wind is in ``motion/drag``.
+
+"""

@@ -1,0 +1,226 @@
+"""
+Rungs 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
+
+Rung 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q + Phi (eta - E^T Q)``: D is the
+diagonal of the flexibility, and E takes out of it what the modes already hold. Rung 4, `coupled`, steps all modes and leaves
+nothing. As in rungs 1 and 2 the load is found once a step, at the state half a step on.
+
+Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments on the key rotations, w circular frequencies.
+
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.branch.beam import cross_matrix
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.records import WORK
+from tree_sway_ros.core.motion.tree_passes import (
+    air_records,
+    blow,
+    gather,
+    generalised,
+    refit,
+    ride,
+)
+from tree_sway_ros.core.oscillators.propagator import fill_propagator
+from tree_sway_ros.core.oscillators.step_rules import DEFAULT, fill_steps
+from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, true_force
+from tree_sway_ros.core.reduction.matrices import Reduction
+from tree_sway_ros.core.reduction.modes import Modes
+
+
+class ModalBank:
+    """
+    Oscillators of natural modes.
+
+    Parameters
+    ----------
+    branches
+        Records of `BRANCH`, (b,); their compliance is set with the time step.
+    reduction
+        Matrices of the tree.
+    modes
+        Its slowest modes, or all.
+    damping_ratio
+        Of every mode in [-].
+    integrator
+        Method of the oscillators, one of `REAL_TIME`.
+
+    """
+
+    carries = True
+
+    def __init__(
+        self,
+        branches: Any,
+        reduction: Reduction,
+        modes: Modes,
+        damping_ratio: float,
+        integrator: str = DEFAULT,
+    ) -> None:
+        """Make room for the coefficients and the state."""
+        n, m = modes.shapes.shape
+        self.branches = branches
+        # One mode after another, so that a loop over coordinates is one of vectors.
+        self._shapes = np.ascontiguousarray(modes.shapes.T)
+        self.shapes, self.integrator = self._shapes.T, integrator
+        self.stiffness = modes.circular**2
+        self.damping = 2.0 * damping_ratio * modes.circular
+        diagonal = np.asarray(reduction.stiffness.diagonal())
+        self._flexibility = 1.0 / diagonal if m < n else np.zeros(n)
+        held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
+        self._held = np.ascontiguousarray(held.T)
+        self._limit = LOAD_MAX * diagonal
+        self._participation = _participation(branches, modes.shapes)
+        self.work = np.zeros(len(branches), dtype=WORK)
+        self._air = air_records(branches)
+        self.modal = np.zeros((6, m))
+        self.state = np.zeros((4, n))
+        self._pull = np.zeros(len(branches))
+        self._whole, self._half = np.zeros((2, m, 8))
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        one = np.ones(len(self.stiffness))
+        fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self._whole)
+        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
+        self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
+        refit(self._air, self.branches)
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wx, wy, wz
+            Mean wind over the step in [m/s].
+        per_speed_squared
+            `wind_load.pressure` in [kg/m^3].
+
+        Returns
+        -------
+        int
+            How many loads were held at their limit.
+
+        """
+        return int(
+            _advance(
+                self.branches, self.work, self._air, self.modal, self.state, self._shapes, self._held,
+                self._flexibility, self._limit, self._whole, self._half, self._pull,
+                wx, wy, wz, per_speed_squared,
+            )
+        )  # fmt: skip
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
+        impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
+        dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
+        eta = dynamic - (self._held @ moments)[:, :, None]
+        rest = self._flexibility[:, None, None] * moments[:, :, None]
+        swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
+        return np.asarray(swinging, dtype=np.complex128)
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        _expand(self._shapes, self._flexibility, self.modal, self.state)
+        rotations: Floats = self.state[3]
+        return rotations
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        self.modal[:] = 0.0
+        self.state[:] = 0.0
+        self.work[:] = np.zeros((), dtype=WORK)
+        self._air["slip"] = 0.0
+
+
+def _participation(branches: Any, shapes: Floats) -> Floats:
+    """Mean over three directions of the squared motion of each load centre in each mode, (b, m)."""
+    m = shapes.shape[1]
+    motion = np.zeros((len(branches), 6, m))
+    out = np.zeros((len(branches), m))
+    for b, branch in enumerate(branches):
+        own = slice(branch["coordinate"], branch["coordinate"] + branch["n_coordinates"])
+        if b > 0:
+            parent = branches[branch["parent"]]
+            k = parent["n_coordinates"]
+            ways = shapes[parent["coordinate"] : parent["coordinate"] + k]
+            motion[b] = motion[branch["parent"]] + branch["twist"][:k].T @ ways
+        at = motion[b, :3] - cross_matrix(branch["centre"]) @ motion[b, 3:]
+        at += branch["flow"][: branch["n_coordinates"]].T @ shapes[own]
+        out[b] = np.square(at).sum(axis=0) / 2.0
+    return out
+
+
+@fused
+def _expand(shapes: Floats, flexibility: Floats, modal: Floats, state: Floats) -> None:
+    """Modes and static rest to key rotations."""
+    eta, rest, moment, x = modal[0], modal[2], state[0], state[3]
+    for i in range(len(x)):
+        x[i] = flexibility[i] * moment[i]
+    for k in range(len(eta)):
+        amount = eta[k] - rest[k]
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * amount
+
+
+@fused
+def _to_middle(
+    modal: Floats, state: Floats, shapes: Floats, half: Floats, flexibility: Floats
+) -> None:
+    """Key rotations and rates half a step on, under the last step's load."""
+    eta, rate, rest, force, middle_eta, middle_rate = (
+        modal[0], modal[1], modal[2], modal[3], modal[4], modal[5],
+    )  # fmt: skip
+    moment, x, v = state[0], state[1], state[2]
+    for k in range(len(eta)):
+        h = half[k]
+        middle_eta[k] = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * force[k] - rest[k]
+        middle_rate[k] = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * force[k]
+    for i in range(len(x)):
+        x[i], v[i] = flexibility[i] * moment[i], 0.0
+    for k in range(len(eta)):
+        amount, pace = middle_eta[k], middle_rate[k]
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * amount
+            v[i] += shapes[k, i] * pace
+
+
+@fused
+def _advance(
+    branches: Any, work: Any, air: Any, modal: Floats, state: Floats, shapes: Floats, held: Floats,
+    flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    _to_middle(modal, state, shapes, half, flexibility)
+    eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
+    moment, x, v = state[0], state[1], state[2]
+    ride(branches, work, x, v)
+    blow(branches, work, air, x, v, wx, wy, wz, per_speed_squared)
+    gather(branches, work)
+    generalised(branches, work, True, moment, pull)
+    over = 0
+    for b in range(len(branches)):
+        i = branches[b].coordinate
+        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+    for i in range(len(moment)):
+        if not abs(moment[i]) <= limit[i]:
+            moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
+            over += 1
+    for k in range(len(eta)):
+        pushed, resting = 0.0, 0.0
+        for i in range(len(moment)):
+            pushed += shapes[k, i] * moment[i]
+            resting += held[k, i] * moment[i]
+        force[k], rest[k] = pushed, resting
+        c, old = whole[k], eta[k]
+        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * force[k]
+        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * force[k]
+    return over

@@ -1,0 +1,189 @@
+"""
+Memory of the hot path: one record a branch, one record of work a branch, one record of sixteen segments.
+
+A step visits every branch once and needs all that is known of it, so what belongs to a branch lies together; a
+kernel takes a record array as one argument, where each plain array costs a call about .2 us.
+
+Segments follow their branch and not each other, so those at the same place in sixteen branches are computed at once: a
+record holds sixteen lanes, one a branch, and distances within it are constants that let the compiler use vectors. The
+records of sixteen branches, from base to tip, make a block; parents are in earlier blocks than their children.
+
+Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations in [rad].
+
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from tree_sway_ros.core.branch.shapes import MAX_COORDINATES, N_SHAPES, N_TWISTS
+
+MAX_SLOPES = N_SHAPES + N_TWISTS
+"""Shapes and twists of an enriched branch."""
+
+
+@cache
+def branch_layout(n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+    """
+    All that a step needs to know of a branch, with room for so many coordinates, shapes and twists.
+
+    Where no branch has more than one shape, records have no room for more: a forest is solved no faster than its
+    records come from memory.
+
+    """
+    return np.dtype(
+        [
+            ("parent", "i8"),  # branch it sits on, -1 for the stem
+            ("seat", "i8"),  # segment it sits on, -1 for the stem
+            ("first", "i8"),  # its first segment
+            ("end", "i8"),  # one past its last segment
+            ("coordinate", "i8"),  # its first coordinate
+            ("n_coordinates", "i8"),  # pairs x, y, then twists
+            ("n_pairs", "i8"),
+            ("source", "i8"),  # branch whose motion it copies, itself if solved
+            ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
+            ("twist", "f8", (n_coordinates, 6)),  # motion of its base per unit of parent's coordinates
+            ("push", "f8", (n_coordinates, 3)),  # displacement under the wind's mean push
+            ("flow", "f8", (n_coordinates, 3)),  # displacement at which its drag damps
+            ("reach", "f8", (n_coordinates, 3)),  # displacement of its tip
+            ("tip", "f8", (3,)),  # tip at rest
+            ("turn", "f8", (n_coordinates, 3)),  # rotation of what the wind sees
+            ("lever", "f8"),  # of its own load about its base [m]
+            ("axial_lever", "f8"),  # of what it carries on its parent's rotation [m]
+            ("area", "f8"),  # drag area [m^2]
+            ("speed", "f8"),  # wind here over wind at the anemometer
+            ("compliance", "f8"),  # velocity half a step after a unit of force [s/kg]
+            ("centre", "f8", (3,)),  # centre of the wind load
+            ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
+            ("block", "i8"),  # record of its first segment
+            ("lane", "i8"),  # of all its segments
+            ("steepest", "f8", (n_slopes,)),  # square of the largest slope of each shape and twist
+            ("skew", "f8"),  # third cumulant of its slope shape, over 6
+            ("tip_skew", "f8"),  # the same of the tip-load shape
+            ("seat_slope", "f8", (n_slopes,)),  # of the parent's shapes and twists at its base
+            ("offset", "f8", (3,)),  # base, from its seat's start, in the seat's frame
+        ]
+    )
+
+
+BRANCH = branch_layout()
+"""With room for every coordinate."""
+
+LANES = 16
+
+
+@cache
+def segment_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+    """All that placing needs to know of one segment of each of sixteen branches."""
+    return np.dtype(
+        [
+            ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
+            ("slope", "f8", (n_slopes, LANES)),  # of each shape, then of each twist
+            ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
+            ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
+            ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
+        ]
+    )
+
+
+@cache
+def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+    """
+    What placing needs to know of the sixteen branches of a block, and finds.
+
+    All work in the last record, behind the last block's, so that it stays in the fastest cache.
+
+    """
+    return np.dtype(
+        [
+            ("block", "i8"),  # first record of their segments
+            ("n_records", "i8"),
+            ("n_lanes", "i8"),
+            ("is_plain", "i8"),  # whether none of them has more than one shape
+            # As in `BRANCH`:
+            ("branch", "i8", (LANES,)),
+            ("parent", "i8", (LANES,)),
+            ("rides_plain", "i8", (LANES,)),  # whether its parent has one shape
+            ("coordinate", "i8", (LANES,)),
+            ("seat", "i8", (LANES,)),
+            ("first", "i8", (LANES,)),
+            ("frame", "f8", (3, 3, LANES)),
+            ("skew", "f8", (LANES,)),
+            ("tip_skew", "f8", (LANES,)),
+            ("steepest", "f8", (LANES,)),
+            ("seat_slope", "f8", (LANES,)),
+            ("offset", "f8", (3, LANES)),
+            # Room to work in:
+            ("key", "f8", (2, LANES)),  # key rotation
+            ("below", "f8", (4, LANES)),  # orientation of the parent's base, from rest, w x y z
+            ("under", "f8", (7, LANES)),  # pose of the seat
+            ("seat_turn", "f8", (3, LANES)),  # half the rotation vector of the seat, from the parent's base
+            ("turn", "f8", (3, LANES)),  # half the rotation vector a unit of slope, as children see it
+            ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
+            ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
+            ("way", "f8", (n_slopes, 3, LANES)),  # half the rotation vector a unit of each slope
+            ("square", "f8", (LANES,)),  # of the length of the first of these
+            ("swing", "f8", (4, LANES)),  # the first of these, then the base: what a sine is multiplied by
+            ("half_angle", "f8", (LANES,)),  # bound on the square of half of what segments turn by [rad^2]
+            ("at", "f8", (3, LANES)),  # where the segment starts
+            ("ahead", "f8", (3, LANES)),  # its chord when placed
+            ("pose", "f8", (4, LANES)),  # its orientation when placed, w x y z
+        ]
+    )
+
+
+SEGMENT = segment_layout()
+"""With room for every shape and twist."""
+
+WORK = np.dtype(
+    [
+        ("velocity", "f8", (6,)),  # of the base (v, w), about the root, in rest geometry
+        ("rotation", "f8", (3,)),  # of the base, from rest
+        ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
+        ("met", "f8", (3,)),  # the same, where the base has turned the branch to [N]
+        ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
+        ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
+        ("turn", "f8", (3,)),  # half the rotation vector a unit of slope, for who sits on a branch of one shape
+    ]
+)
+"""What a step computes on the way, kept from one step to the next."""
+
+AIR = np.dtype(
+    [
+        ("speed", "f8", (LANES,)),  # as in `BRANCH`, as are the next three
+        ("compliance", "f8", (LANES,)),
+        ("area", "f8", (LANES,)),
+        ("projector", "f8", (6, LANES)),
+        ("motion", "f8", (3, LANES)),  # of what the wind sees [m/s]
+        ("base", "f8", (3, LANES)),  # rotation of the base
+        ("turn", "f8", (3, LANES)),  # rotation of what the wind sees
+        ("slip", "f8", (3, LANES)),  # what the last force took off the relative wind, over the compliance [N]
+        ("force", "f8", (3, LANES)),
+        ("met", "f8", (3, LANES)),
+    ]
+)
+"""What the wind meets on each of sixteen branches that follow each other, and its force."""
+
+SWAY = np.dtype(
+    [
+        *((name, *AIR.fields[name][0].subdtype) for name in AIR.names or ()),  # type: ignore[index, misc]
+        ("centre", "f8", (3, LANES)),  # as in `BRANCH`, as are the next three, of the first shape
+        ("flow", "f8", (2, 3, LANES)),
+        ("lean", "f8", (2, 3, LANES)),  # its turn
+        ("push", "f8", (2, 3, LANES)),
+        ("along", "f8", (3, LANES)),  # its chord times its lever
+        ("velocity", "f8", (6, LANES)),  # of the base
+        ("x", "f8", (2, LANES)),
+        ("v", "f8", (2, LANES)),
+        ("load", "f8", (3, LANES)),  # along b, e1, e2 [N m]
+        ("middle_x", "f8", (2, LANES)),  # half a step on
+        ("middle_v", "f8", (2, LANES)),
+        ("whole", "f8", (8, LANES)),  # rows of the propagator of a step
+        ("half", "f8", (6, LANES)),  # of half a step under a constant load
+        ("guard", "f8", (3, LANES)),  # rows of `two_axis.guards`
+        ("is_solved", "i8", (LANES,)),  # whether it copies no other
+    ]
+)
+"""Oscillators of sixteen branches that follow each other, and what the wind meets on them."""

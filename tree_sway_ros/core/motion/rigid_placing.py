@@ -1,0 +1,128 @@
+"""
+Placing what is frozen: a subtree that moves with its parent as one body.
+
+Its base turns and goes with its seat, as that of any branch; from there on every segment keeps its place and
+orientation relative to the base.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.placing import seat_turn
+from tree_sway_ros.core.reduction.pruning import Pruning
+from tree_sway_ros.core.rotation import product, quaternions_from_x, rotated
+from tree_sway_ros.core.tree.tree import Tree
+
+
+@dataclass(frozen=True)
+class RigidParts:
+    """
+    Frozen subtrees, ready to be placed.
+
+    Parameters
+    ----------
+    parent
+        Moving branch that each one sits on, its index among the moving ones, (t,).
+    rows
+        Its seat, its first segment and one past its last, rows of the pose block, (t, 3).
+    seat_slope, offset
+        Slopes of the parent's shapes at its base, (t, c), and its base from the seat's start in the seat's frame in
+        [m], (t, 3).
+    arm, rest
+        Start of each segment of the tree from the base it moves with, at rest, in [m], (n, 3), and orientation at rest,
+        w x y z, (n, 4); those of moving segments are not read.
+
+    """
+
+    parent: Ints
+    rows: Ints
+    seat_slope: Floats
+    offset: Floats
+    arm: Floats
+    rest: Floats
+
+    @staticmethod
+    def of(pruning: Pruning, branches: Any) -> RigidParts:
+        """
+        Lay out the frozen subtrees of a tree.
+
+        Parameters
+        ----------
+        pruning
+            What is frozen.
+        branches
+            Records of `BRANCH` of the whole tree, (b,).
+
+        """
+        tree, tops = pruning.whole, pruning.tops
+        first = tree.branch_first[tops]
+        end = tree.branch_first[tree.subtree_end[tops]]
+        base = np.zeros((tree.n_segments, 3))
+        for row, past in zip(first, end, strict=True):
+            base[row:past] = tree.start[row]
+        return RigidParts(
+            pruning.place_among_moving[tree.branch_parent[tops]],
+            np.stack([tree.segment_parent[first], first, end], axis=1),
+            branches["seat_slope"][tops].copy(),
+            branches["offset"][tops].copy(),
+            tree.start - base,
+            _orientations(tree),
+        )
+
+    def place(self, branches: Any, work: Any, x: Floats, out: Floats) -> None:
+        """
+        Place the frozen segments, once the moving ones are.
+
+        Parameters
+        ----------
+        branches, work
+            Records of `BRANCH` and `WORK` of the moving branches, (m,).
+        x
+            Their key rotations, (M,).
+        out
+            Pose block of the whole tree, (n, 7), its frozen rows written.
+
+        """
+        _place(
+            self.parent, self.rows, self.seat_slope, self.offset, self.arm, self.rest,
+            branches, work, x, out,
+        )  # fmt: skip
+
+
+def _orientations(tree: Tree) -> Floats:
+    return quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+
+
+@fused
+def _place(
+    parents: Ints, rows: Ints, seat_slope: Floats, offset: Floats, arm: Floats, rest: Floats,
+    branches: Any, work: Any, x: Floats, out: Floats,
+) -> None:  # fmt: skip
+    for t in range(len(parents)):
+        seat, below = rows[t, 0], work[parents[t]].base
+        w, i, j, k = seat_turn(branches[parents[t]], seat_slope[t], x)
+        w, i, j, k = product(below[0], below[1], below[2], below[3], w, i, j, k)
+        px, py, pz = rotated(
+            out[seat, 6], out[seat, 3], out[seat, 4], out[seat, 5],
+            offset[t, 0], offset[t, 1], offset[t, 2],
+        )  # fmt: skip
+        px, py, pz = px + out[seat, 0], py + out[seat, 1], pz + out[seat, 2]
+        # The rotation as a matrix: three products a row, many rows.
+        xx, xy, xz = 1.0 - 2.0 * (j * j + k * k), 2.0 * (i * j - w * k), 2.0 * (i * k + w * j)
+        yx, yy, yz = 2.0 * (i * j + w * k), 1.0 - 2.0 * (i * i + k * k), 2.0 * (j * k - w * i)
+        zx, zy, zz = 2.0 * (i * k - w * j), 2.0 * (j * k + w * i), 1.0 - 2.0 * (i * i + j * j)
+        for row in range(rows[t, 1], rows[t, 2]):
+            a, b, c = arm[row, 0], arm[row, 1], arm[row, 2]
+            out[row, 0] = px + xx * a + xy * b + xz * c
+            out[row, 1] = py + yx * a + yy * b + yz * c
+            out[row, 2] = pz + zx * a + zy * b + zz * c
+            out[row, 6], out[row, 3], out[row, 4], out[row, 5] = product(
+                w, i, j, k, rest[row, 0], rest[row, 1], rest[row, 2], rest[row, 3]
+            )

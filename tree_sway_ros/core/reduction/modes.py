@@ -1,0 +1,202 @@
+"""
+Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
+
+Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq, Sorensen & Yang, 1998); all
+modes of a small one from the dense problem. A tree whose stiffness with its own weight is not positive buckles (Greenhill,
+1881): it is refused with the name of the branch.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+from scipy.sparse import csc_matrix
+from scipy.sparse import linalg as sparse_linalg
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.reduction.matrices import Reduction
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError, TreeError
+
+MOST_ALL_MODES = 3000
+"""A tree of more coordinates than this is not solved in all its modes: that takes minutes and gains nothing."""
+
+_DENSE_UP_TO = 400
+
+
+@dataclass(frozen=True)
+class Modes:
+    """
+    Natural modes, the slowest first.
+
+    Parameters
+    ----------
+    circular
+        Circular frequencies w in [rad/s], (m,).
+    shapes
+        Key rotations of each mode, (N, m), of unit modal mass.
+
+    """
+
+    circular: Floats
+    shapes: Floats
+
+    @property
+    def frequencies(self) -> Floats:
+        """Natural frequencies in [Hz], (m,)."""
+        frequencies: Floats = self.circular / (2.0 * np.pi)
+        return frequencies
+
+    def slowest(self, count: int) -> Modes:
+        """Leave out all but the slowest."""
+        return Modes(self.circular[:count], np.ascontiguousarray(self.shapes[:, :count]))
+
+
+def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) -> Modes:
+    """
+    Find the slowest modes.
+
+    Parameters
+    ----------
+    tree
+        The tree, for the names in errors.
+    reduction
+        Its matrices.
+    count
+        How many; all if None.
+
+    Returns
+    -------
+    Modes
+        The `count` slowest modes.
+
+    Raises
+    ------
+    ParameterError
+        A count below 1 or above the number of coordinates.
+    TreeError
+        A tree that buckles under its own weight, or a branch without mass.
+
+    """
+    n = reduction.n_coordinates
+    wanted = n if count is None else count
+    if count is None and n > MOST_ALL_MODES:
+        raise ParameterError(
+            f"all {n} modes of a tree of {tree.n_branches} branches",
+            where="rung 'coupled'",
+            cure="use rung 'modes', which errs by a few percent of the motion with 12",
+        )
+    if not 1 <= wanted <= n:
+        raise ParameterError(
+            f"{wanted} modes of a tree that has {n}",
+            where="modes",
+            cure=f"ask for 1 to {n}",
+        )
+    refuse_buckling(tree, reduction)
+    if wanted == n:
+        inverse_squares, shapes = linalg.eigh(
+            reduction.mass.toarray(), reduction.stiffness.toarray(), driver="gvd"
+        )
+    elif n <= _DENSE_UP_TO or 3 * wanted > n:
+        inverse_squares, shapes = linalg.eigh(
+            reduction.mass.toarray(), reduction.stiffness.toarray(), subset_by_index=[n - wanted, n - 1]
+        )
+    else:
+        stiffness = csc_matrix(reduction.stiffness)
+        solve = sparse_linalg.splu(stiffness)
+        inverse_squares, shapes = sparse_linalg.eigsh(
+            reduction.mass,
+            k=wanted,
+            M=stiffness,
+            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
+            which="LA",
+            v0=np.ones(n),
+        )
+    slowest_first = np.argsort(-inverse_squares)
+    circular = 1.0 / np.sqrt(inverse_squares[slowest_first])
+    return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
+
+
+def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
+    """
+    Keep the modes that loads drive most.
+
+    A mode's share in the bending energy under a static load q is ``(phi . q)^2 / w^2``; it is weighed by 1 / w, for turbulence has
+    less for the quick ones. Of modes that loads do not reach, as branches that swing against each other, nothing is lost.
+
+    Parameters
+    ----------
+    modes
+        To choose from.
+    loads
+        Moments on the key rotations, (N, any).
+    count
+        How many to keep.
+
+    Returns
+    -------
+    Modes
+        The chosen ones, the slowest first.
+
+    """
+    driven = (np.square(modes.shapes.T @ loads) / modes.circular[:, None] ** 3).max(axis=1)
+    kept = np.sort(np.argsort(-driven, kind="stable")[:count])
+    return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
+
+
+def buckling_factor(reduction: Reduction) -> tuple[float, int]:
+    """
+    Find by how much the weight could grow before the tree buckles.
+
+    Returns
+    -------
+    factor, coordinate
+        Critical weight over real weight (infinite without gravity), and the coordinate that gives way most.
+
+    """
+    n = reduction.n_coordinates
+    scale = 1.0 / np.sqrt(reduction.elastic)
+    softening = -(reduction.gravity.multiply(scale[:, None]).multiply(scale[None, :])).tocsc()
+    if softening.nnz == 0 or abs(softening).max() == 0.0:
+        return float("inf"), 0
+    if n <= _DENSE_UP_TO:
+        values, vectors = linalg.eigh(softening.toarray(), subset_by_index=[n - 1, n - 1])
+    else:
+        values, vectors = sparse_linalg.eigsh(softening, k=1, which="LA", v0=np.ones(n))
+    worst = int(np.argmax(np.abs(vectors[:, 0] * scale)))
+    return (1.0 / float(values[0]) if values[0] > 0.0 else float("inf")), worst
+
+
+def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
+    """
+    Refuse a tree that cannot swing.
+
+    Raises
+    ------
+    TreeError
+        It buckles under its own weight, or a branch has no mass.
+
+    """
+    diagonal = reduction.mass.diagonal()
+    for coordinate in np.flatnonzero(~(diagonal > 0.0))[:1]:
+        raise TreeError(
+            "massless: it has a length but nothing that could swing",
+            where=_branch_name(tree, reduction, int(coordinate)),
+            cure="give its segments a diameter and the wood a density above 0",
+        )
+    factor, coordinate = buckling_factor(reduction)
+    if factor <= 1.0:
+        raise TreeError(
+            f"buckles under its own weight: it could carry {100.0 * factor:.0f} % of it",
+            where=_branch_name(tree, reduction, coordinate),
+            cure=f"give a modulus {1.05 / factor:.2f} times as high or diameters {factor**-0.5 * 1.03:.2f} "
+            "times as thick, or leave gravity out",
+        )
+
+
+def _branch_name(tree: Tree, reduction: Reduction, coordinate: int) -> str:
+    branch = int(np.searchsorted(reduction.first, coordinate, side="right")) - 1
+    return f"branch '{tree.branch_names[branch]}'"

@@ -1,0 +1,7 @@
+"""
+Several trees in one wind: where they stand, when a gust reaches them, how exact each must be.
+
+`make` is the door to every kind of simulator.
+Nothing here draws or publishes.
+
+"""

@@ -1,0 +1,73 @@
+"""
+What a scene asks of its trees: an error that nobody sees, a time that a frame may take.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway_ros.core.fidelity.estimate import distance_to, tolerance_in_metres
+
+
+def tell_demand(
+    simulators: Iterable[Any],
+    *,
+    tolerance: float,
+    budget: float = 0.0,
+    camera: ArrayLike | None = None,
+    tolerance_pixels: float = 0.5,
+    focal_length: float = 1000.0,
+) -> None:
+    """
+    Tell the trees that choose their model what is asked of them; the others do not mind.
+
+    Parameters
+    ----------
+    simulators
+        One a tree.
+    tolerance
+        Largest error of the tips in [m], where there is no camera.
+    budget
+        Largest cost of a frame of all these trees in [us], shared by segments; 0 for none.
+    camera
+        Where it stands in [m], (3,); None if there is none.
+    tolerance_pixels, focal_length
+        Largest error on its picture, and its focal length, both in [px].
+
+    """
+    adaptive = _adaptive(simulators)
+    total = sum(each.tree.n_segments for each in adaptive)
+    for each in adaptive:
+        each.budget = budget * each.tree.n_segments / total
+        each.tolerance = tolerance
+        if camera is not None:
+            distance = distance_to(each.tree, np.asarray(camera, dtype=np.float64))
+            each.tolerance = tolerance_in_metres(tolerance_pixels, distance, focal_length)
+
+
+def tell_pace(simulators: Iterable[Any], spent: float) -> None:
+    """
+    Tell the trees that choose their model how fast this machine is.
+
+    Parameters
+    ----------
+    simulators
+        One a tree.
+    spent
+        What a frame of all of them takes here, with the models now in use, in [us].
+
+    """
+    adaptive = _adaptive(simulators)
+    foreseen = sum(each.choice.cost for each in adaptive)
+    for each in adaptive:
+        each.pace = spent / foreseen
+
+
+def _adaptive(simulators: Iterable[Any]) -> list[AdaptiveSimulator]:
+    return [each for each in simulators if isinstance(each, AdaptiveSimulator)]

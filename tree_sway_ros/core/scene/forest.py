@@ -1,0 +1,255 @@
+"""
+Several trees in one wind, solved one after another and placed in one block.
+
+Every tree is turned and moved to where it stands once, before it is calibrated, so that no wind need be turned
+into its frame and no pose out of it. The gusts reach one tree after the other (`gust_travel`).
+
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.gust_travel import GustHistory
+from tree_sway_ros.errors import ParameterError, TreeSwayError
+
+
+class Forest:
+    """
+    Trees that sway in one wind; used like a `SwaySimulator`.
+
+    Parameters
+    ----------
+    trees
+        The trees, each with a name of its own.
+    settings
+        How they are modelled, but for those with settings of their own.
+    fidelity
+        Model of trees without settings of their own, as of `make_simulator`; the rung of the settings if None.
+    tolerance
+        Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on its own.
+    leaf_on
+        Whether trees that do not say bear leaves.
+    anemometer
+        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind reaches first
+        if None (`GustHistory`).
+    convection_ratio
+        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind everywhere.
+    **changes
+        Fields of the settings, as keywords.
+
+    Raises
+    ------
+    ParameterError
+        No trees, two of one name, a setting out of its range.
+    SpeciesError
+        A species that no table knows.
+    TreeError
+        A tree that buckles under its own weight.
+
+    Examples
+    --------
+    >>> row = [StandingTree(f"tree{i}", tree, x=8.0 * i) for i in range(5)]
+    >>> forest = Forest(row, rung="subtree")
+    >>> forest.step((8.0, 0.0, 0.0), 1 / 60)
+    0
+
+    """
+
+    def __init__(
+        self,
+        trees: Sequence[StandingTree],
+        settings: SimulatorSettings | None = None,
+        *,
+        fidelity: str | None = None,
+        tolerance: float = 0.005,
+        leaf_on: bool = False,
+        anemometer: ArrayLike | None = None,
+        convection_ratio: float = 1.0,
+        **changes: Any,
+    ) -> None:
+        """Calibrate every tree where it stands."""
+        names = [tree.name for tree in trees]
+        for name in names:
+            if names.count(name) > 1:
+                raise ParameterError(f"two trees called '{name}'", where="forest", cure="name each")
+        self.settings = replace(settings or SimulatorSettings(), **changes)
+        self.names = tuple(names)
+        self.tree: Tree = joined([tree.placed() for tree in trees])
+        self.simulators = tuple(
+            _simulator(
+                tree,
+                tree.settings_where_it_stands(self.settings, leaf_on),
+                None if tree.settings is not None else fidelity,
+                tolerance,
+            )
+            for tree in trees
+        )
+        self.gusts = GustHistory(
+            np.array([sim.tree.start[0] for sim in self.simulators]),
+            anemometer,
+            convection_ratio=convection_ratio,
+        )
+        ends = np.cumsum([0, *(sim.tree.n_segments for sim in self.simulators)]).tolist()
+        self._slices = tuple(map(slice, ends[:-1], ends[1:]))
+        self._steps = self._refused = 0
+        self._wind = np.zeros(3)
+        self._poses = np.zeros((ends[-1], 7))
+        self._rows = self._rows_of(self._poses)
+        self.place()
+
+    @property
+    def rung(self) -> str:
+        """Model in use; several where trees differ."""
+        return ", ".join(dict.fromkeys(sim.rung for sim in self.simulators))
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that are solved; the others copy."""
+        return sum(sim.n_solved for sim in self.simulators)
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another."""
+        return sum(sim.n_copied for sim in self.simulators)
+
+    @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body."""
+        return sum(sim.n_frozen for sim in self.simulators)
+
+    @property
+    def counts(self) -> Counts:
+        """What was refused at the anemometer, and held in any tree."""
+        held = sum(sim.counts.held for sim in self.simulators)
+        return Counts(self._steps, self._refused, held)
+
+    @property
+    def wind(self) -> Floats:
+        """Wind at the anemometer in the last step in [m/s], (3,)."""
+        return self._wind
+
+    def segments_of(self, name: str) -> slice:
+        """
+        Return the rows of a tree in the pose block.
+
+        Raises
+        ------
+        ParameterError
+            If no tree has that name.
+
+        """
+        if name not in self.names:
+            known = ", ".join(self.names)
+            raise ParameterError(f"no tree is called '{name}'", where="forest", cure=f"use one of: {known}")
+        return self._slices[self.names.index(name)]
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wind_mean
+            Mean of the wind over the step at the anemometer, the way the air goes, in [m/s], (3,).
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        int
+            As `SwaySimulator.step`, of all trees together.
+
+        Raises
+        ------
+        ParameterError
+            A step that is not above 0 or not finite.
+
+        """
+        status = OK
+        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
+        # The history must not remember what no tree would take.
+        if math.hypot(x, y, z) <= self.settings.max_wind:
+            self._wind[0], self._wind[1], self._wind[2] = x, y, z
+        else:
+            status = WIND_REFUSED
+            self._refused += 1
+        felt = self.gusts.push(self._wind, dt)
+        for simulator, wind in zip(self.simulators, felt.tolist(), strict=True):
+            status |= simulator.step(wind, dt)
+        self._steps += 1
+        return status
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """
+        Place every segment of every tree.
+
+        Parameters
+        ----------
+        out
+            Where to write, (n, 7) float64; an array of the forest's own, used again each time, if None.
+
+        Returns
+        -------
+        Floats
+            Pose block of all trees, one after another, in the frame of the forest; see `SwaySimulator.place`.
+
+        """
+        poses = self._poses if out is None else out
+        rows = self._rows if out is None else self._rows_of(out)
+        for simulator, each in zip(self.simulators, rows, strict=True):
+            simulator.place(each)
+        return poses
+
+    @property
+    def tip_displacements(self) -> Floats:
+        """Way of the highest tip of each tree from rest in [m], (t, 3), as last placed."""
+        return np.stack([sim.tip_displacement for sim in self.simulators])
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Way of the highest tip of all from rest in [m], (3,), as last placed."""
+        highest = max(self.simulators, key=lambda sim: float(sim.tree.end[:, 2].max()))
+        return highest.tip_displacement
+
+    def reset(self) -> None:
+        """Bring every tree to rest and forget the wind; the counts stay."""
+        for simulator in self.simulators:
+            simulator.reset()
+        self.gusts.reset()
+        self._wind[:] = 0.0
+        self.place()
+
+    def _rows_of(self, poses: Floats) -> tuple[Floats, ...]:
+        return tuple(poses[each] for each in self._slices)
+
+
+def _simulator(
+    tree: StandingTree, settings: SimulatorSettings, fidelity: str | None, tolerance: float
+) -> Simulator:
+    """Simulator of one tree where it stands; what is wrong with it names the tree."""
+    placed = tree.placed()
+    try:
+        return make_simulator(
+            placed,
+            tree.species if tree.species is not None else species_named(placed.species),
+            settings,
+            fidelity=fidelity or settings.rung,
+            tolerance=tolerance,
+        )
+    except TreeSwayError as error:
+        where = f"{tree.name}: {error.where}" if error.where else tree.name
+        raise type(error)(error.what, where=where, cure=error.cure) from error

@@ -1,0 +1,292 @@
+"""
+From a tree to the oscillators that move it, for every rung of the ladder.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
+from tree_sway_ros.core.motion.drag import fill_branch_loads
+from tree_sway_ros.core.motion.fill_records import (
+    fill_branch_geometry,
+    head_records,
+    segment_records,
+)
+from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.records import WORK, branch_layout
+from tree_sway_ros.core.motion.response import Responding
+from tree_sway_ros.core.motion.rigid_placing import RigidParts
+from tree_sway_ros.core.motion.tree_passes import even_wind_moments
+from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
+from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
+from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.similar_twigs import twig_sources
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+
+
+class Oscillators(Responding, Protocol):
+    """What every rung gives: key rotations that a wind moves."""
+
+    work: Any
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step under a mean wind [m/s]; returns how many loads were held."""
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+
+    def reset(self) -> None:
+        """Go back to rest."""
+
+
+_COUPLED = ("modes", "coupled")
+
+USUAL_MODES = 12
+"""Modes that are stepped where no number is asked for."""
+
+
+class Frozen:
+    """Rung 0: a tree that stands still, for one too far away to be seen moving."""
+
+    carries = True
+
+    def __init__(self, branches: Any, n_coordinates: int) -> None:
+        """Rest is all there is."""
+        self.branches = branches
+        self.work = np.zeros(len(branches), dtype=WORK)
+        self._x = np.zeros(n_coordinates)
+
+    def set_step(self, dt: float) -> None:
+        """Any step [s] will do."""
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Stand still."""
+        return 0
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Zeros, (N, k, f)."""
+        return np.zeros((*moments.shape, len(circular)), dtype=np.complex128)
+
+    def rotations(self) -> Floats:
+        """Zeros, (N,)."""
+        return self._x
+
+    def reset(self) -> None:
+        """Stay at rest."""
+
+
+@dataclass(frozen=True)
+class Bank:
+    """
+    A tree ready to be stepped and placed.
+
+    Parameters
+    ----------
+    oscillators
+        What moves.
+    branches, segments, heads
+        Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
+    frequencies
+        Natural frequencies of the model without air in [Hz], rising.
+    n_solved
+        Branches that are solved and do not copy.
+    mass
+        Of wood and leaves in [kg].
+    frozen
+        What moves with its parent as one body, and how many branches that is.
+
+    """
+
+    oscillators: Oscillators
+    branches: Any
+    segments: Any
+    heads: Any
+    frequencies: Floats
+    n_solved: int
+    mass: float
+    frozen: RigidParts | None = None
+    n_frozen: int = 0
+
+
+def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Bank:
+    """
+    Calibrate a tree for the rung of its settings; see `CalibratedTree.bank`.
+
+    """
+    return CalibratedTree(tree, species, settings).bank(settings.rung, settings.n_modes)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A tree reduced in one of the three ways that rungs differ in."""
+
+    models: list[BranchModel]
+    reduction: Reduction
+    branches: Any
+    segments: Any
+    mass: float
+
+
+class CalibratedTree:
+    """
+    A tree calibrated once, for all rungs.
+
+    Parameters
+    ----------
+    tree, species, settings
+        As for `SwaySimulator`; the settings' rung does not matter.
+
+    """
+
+    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+        """Wait to be asked."""
+        self.tree, self.species, self.settings = tree, species, settings
+        self._slowest: Modes | None = None
+
+    @property
+    def damping_ratio(self) -> float:
+        """Of every oscillator in [-]."""
+        settings, species = self.settings, self.species
+        if settings.damping_ratio is not None:
+            return settings.damping_ratio
+        return species.damping_in_leaf if settings.in_leaf else species.damping_bare
+
+    def bank(self, rung: str, n_modes: int | None = None) -> Bank:
+        """
+        Build the oscillators of a rung.
+
+        Parameters
+        ----------
+        rung
+            One of `RUNGS`.
+        n_modes
+            How many modes the rung ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if None.
+
+        Raises
+        ------
+        TreeError
+            A tree that buckles under its own weight, or a branch without mass.
+        ParameterError
+            More modes than there are.
+
+        """
+        layer = self.layer(rung)
+        branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
+        if rung == "frozen":
+            oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
+        elif rung in _COUPLED:
+            modes = self._modes(rung, n_modes)
+            oscillators = ModalBank(
+                branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
+            )
+            frequencies = modes.frequencies
+        else:
+            refuse_buckling(self.tree, layer.reduction)
+            branches["source"] = twig_sources(self.tree, self.settings.twig_tolerance)
+            _share_frames(branches)
+            bank = self._uncoupled(layer, branches, carries=rung == "subtree")
+            frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
+            oscillators = bank
+        solved = int((branches["source"] == np.arange(len(branches))).sum())
+        segments = layer.segments.copy()
+        heads = head_records(branches, segments)
+        return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
+
+    def layer(self, rung: str) -> Layer:
+        """Reduction that a rung starts from."""
+        if rung == "branch":
+            return self.alone
+        return self.coupled if rung in _COUPLED else self.carried
+
+    @cached_property
+    def alone(self) -> Layer:
+        """Every branch on its own."""
+        return self._reduced(carries=False, enriched=frozenset())
+
+    @cached_property
+    def carried(self) -> Layer:
+        """Branches that carry their children, one shape each."""
+        return self._reduced(carries=True, enriched=frozenset())
+
+    @cached_property
+    def coupled(self) -> Layer:
+        """Branches that carry their children, those of the enriched ones with further shapes."""
+        return self._reduced(carries=True, enriched=enriched_branches(self.tree, self.settings.enrich))
+
+    def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
+        tree, species, settings = self.tree, self.species, self.settings
+        speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
+        models = branch_models(
+            tree,
+            species.density,
+            carries=carries,
+            enriched=enriched,
+            speed_profile=speed,
+            leaf_mass=settings.leaf_mass,
+            leaf_area=settings.leaf_area,
+        )
+        shear = species.shear_ratio * species.modulus
+        reduction = reduce_tree(
+            tree, models, species.modulus, shear, settings.gravity, carries=carries
+        )
+        layout = branch_layout() if enriched else branch_layout(2, 1)
+        branches = np.zeros(tree.n_branches, dtype=layout)
+        fill_branch_geometry(tree, models, branches)
+        fill_branch_loads(tree, models, reduction, speed, branches)
+        return Layer(
+            models,
+            reduction,
+            branches,
+            segment_records(tree, models),
+            float(sum(model.beam.integral(model.mass) for model in models)),
+        )
+
+    def _modes(self, rung: str, count: int | None) -> Modes:
+        """All modes, or those of the slowest that the wind drives most."""
+        reduction = self.coupled.reduction
+        n = reduction.n_coordinates
+        n_modes = min(USUAL_MODES, n) if count is None else count
+        is_driven = rung == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
+        candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
+        wanted = n if rung == "coupled" else candidates
+        if self._slowest is None or len(self._slowest.circular) < wanted:
+            self._slowest = natural_modes(self.tree, reduction, None if wanted == n else wanted)
+        modes = self._slowest.slowest(wanted)
+        if not is_driven:
+            return modes
+        return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+
+    def _uncoupled(self, layer: Layer, branches: Any, *, carries: bool) -> UncoupledBank:
+        """Each branch's own oscillator: the mean of its two axes."""
+        tree, settings = self.tree, self.settings
+        inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)
+        stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
+        if not carries:
+            inertia = inertia * np.array([model.inertia_share for model in layer.models])
+        damping = 2.0 * self.damping_ratio * np.sqrt(stiffness * inertia)
+        if settings.stiffness == "volume_rule":
+            volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
+            parent = volume[np.maximum(tree.branch_parent, 0)]
+            rule = np.sqrt(volume * parent)
+            stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
+        return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
+
+
+def _share_frames(branches: Any) -> None:
+    """Let a twig that copies turn about the axes of its source, so that it moves the same way."""
+    for b in np.flatnonzero(branches["source"] != np.arange(len(branches))):
+        branches["frame"][b] = branches["frame"][branches["source"][b]]

@@ -1,0 +1,66 @@
+"""
+A calibrated tree some of whose branches move with their parents: the rungs between one rung and the next.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+
+from tree_sway_ros.core.motion.fill_records import lanes, segment_records
+from tree_sway_ros.core.motion.rigid_placing import RigidParts
+from tree_sway_ros.core.reduction.pruning import Bools, Pruning
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Layer
+
+
+class PartlyFrozenTree(CalibratedTree):
+    """
+    What is left to solve of a tree when branches are frozen.
+
+    Parameters
+    ----------
+    whole
+        The tree, calibrated; its layers are shared.
+    frozen
+        Branches that move with their parent, (b,); with each, all that it carries, and never the stem.
+
+    """
+
+    def __init__(self, whole: CalibratedTree, frozen: Bools) -> None:
+        """Wait to be asked."""
+        self.pruning = Pruning(whole.tree, frozen)
+        super().__init__(self.pruning.tree(), whole.species, whole.settings)
+        self._whole = whole
+
+    def bank(self, rung: str, n_modes: int | None = None) -> Bank:
+        """Build the oscillators of a rung, as `CalibratedTree.bank`, and lay out what is frozen."""
+        return replace(
+            super().bank(rung, n_modes),
+            frozen=RigidParts.of(self.pruning, self._whole.layer(rung).branches),
+            n_frozen=int(self.pruning.frozen.sum()),
+        )
+
+    @cached_property
+    def alone(self) -> Layer:
+        """Every moving branch on its own."""
+        return self._pruned(self._whole.alone)
+
+    @cached_property
+    def carried(self) -> Layer:
+        """Moving branches that carry the others, one shape each."""
+        return self._pruned(self._whole.carried)
+
+    @cached_property
+    def coupled(self) -> Layer:
+        """Moving branches that carry the others, those of the enriched ones with further shapes."""
+        return self._pruned(self._whole.coupled)
+
+    def _pruned(self, layer: Layer) -> Layer:
+        models = [layer.models[branch] for branch in self.pruning.moving]
+        branches = self.pruning.branches(layer.branches)
+        branches["block"], branches["lane"], _ = lanes(self.tree, models)
+        segments = segment_records(self.tree, models)
+        return Layer(
+            models, self.pruning.reduction(layer.reduction), branches, segments, layer.mass
+        )

@@ -1,0 +1,107 @@
+"""
+What a simulator can be told, in one place.
+
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
+from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.errors import ParameterError
+
+RUNGS = ("frozen", "branch", "subtree", "modes", "coupled")
+"""Rungs of the ladder of models, the least first."""
+
+STIFFNESS_RULES = ("beam", "volume_rule")
+"""Ways to set the stiffness of a branch."""
+
+
+@dataclass(frozen=True)
+class SimulatorSettings:
+    """
+    How a tree is modelled; what it is made of is its species.
+
+    Parameters
+    ----------
+    rung
+        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``modes`` or ``coupled``.
+    n_modes
+        How many modes the rung ``modes`` steps; 12, or all if there are fewer, if None.
+    mode_choice
+        Which modes these are: the most ``driven`` by wind among the slow ones, or the ``slowest``.
+    stiffness
+        ``beam``, or ``volume_rule`` (the paper's, rungs ``branch`` and ``subtree``).
+    volume_stiffness, volume_damping
+        The two constants of the volume rule in [N m/rad/m^3] and [N m s/rad/m^3].
+    damping_ratio
+        In [-]; that of the species if None.
+    in_leaf
+        Whether the species' damping is that of the tree in leaf.
+    gravity
+        In [m/s^2]; 0 leaves weight out.
+    profile
+        Wind over height.
+    integrator
+        Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be unstable
+        is refused at the first step.
+    twig_tolerance
+        How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
+    enrich
+        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``: ``none``, the ``stem``, the
+        ``limbs`` (stem and all branches that carry branches with branches), all ``carriers`` of others, or ``all``.
+    leaf_mass, leaf_area
+        Leaves of each branch in [kg] and [m^2], (b,).
+    max_wind
+        Wind speed in [m/s] above which a sample is refused.
+
+    """
+
+    rung: str = "subtree"
+    n_modes: int | None = None
+    mode_choice: str = "driven"
+    stiffness: str = "beam"
+    volume_stiffness: float = 2.0e5
+    volume_damping: float = 2.0e3
+    damping_ratio: float | None = None
+    in_leaf: bool = False
+    gravity: float = 9.81
+    profile: WindProfile = field(default_factory=WindProfile)
+    integrator: str = DEFAULT
+    twig_tolerance: float = 0.05
+    enrich: str = "limbs"
+    leaf_mass: Floats | None = None
+    leaf_area: Floats | None = None
+    max_wind: float = 150.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range."""
+        _one_of("rung", self.rung, RUNGS)
+        _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
+        _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
+        _one_of("integrator", self.integrator, REAL_TIME)
+        _one_of("enrich", self.enrich, ("none", "stem", "limbs", "carriers", "all"))
+        if self.stiffness == "volume_rule" and self.rung in ("modes", "coupled"):
+            raise ParameterError(
+                f"the volume rule on rung '{self.rung}'",
+                where="stiffness",
+                cure="use it on 'branch' or 'subtree', or stiffness 'beam'",
+            )
+        if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
+            raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
+        if self.n_modes is not None and self.n_modes < 1:
+            raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
+        for name in ("volume_stiffness", "volume_damping", "max_wind"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
+        if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
+            raise ParameterError(f"gravity {self.gravity} m/s^2", cure="give 0 or more")
+
+
+def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise ParameterError(f"unknown {what} '{value}'", cure=f"use one of: {', '.join(known)}")

@@ -1,0 +1,7 @@
+"""
+The tree as arrays of segments in depth-first order, and what makes or recuts one.
+
+Species live here too: wood, damping and drag by name.
+Nothing here knows of wind or motion.
+
+"""

@@ -1,0 +1,135 @@
+"""
+The tree: read-only arrays of segments, grouped in branches, in depth-first order.
+
+Order is the data structure here. Segments of a branch are contiguous; branches stand in depth-first
+order, so that a branch comes after its parent and everything it carries is one contiguous slice. Sums
+over subtrees are then one backward pass and joining from the root is one forward pass.
+
+Symbols: n segments, b branches. SI units; z points up, the frame is ENU (REP-103).
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.arrays import Floats, Ints
+
+_Number = TypeVar("_Number", np.float64, np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """
+    A tree of straight segments; build it with `tree_from_segments`, which checks and orders.
+
+    Parameters
+    ----------
+    start, end
+        Root-side and tip-side node of each segment in [m], (n, 3).
+    base_diameter, tip_diameter
+        Diameter at the start and at the end of each segment in [m], (n,).
+    segment_parent
+        The segment each one sits on, -1 for the root, (n,).
+    branch_first
+        First segment of each branch, and n at the end, (b + 1,).
+    branch_parent
+        The branch each one sits on, -1 for the stem, (b,).
+    subtree_end
+        One past the last branch that each branch carries, (b,): branch i carries itself and
+        ``i + 1 .. subtree_end[i] - 1``.
+    source_index
+        Position of each segment in the input it was built from, (n,).
+    branch_names
+        One name a branch.
+    name, species
+        What the tree is called, and the key of its wood in the species table.
+
+    """
+
+    start: Floats
+    end: Floats
+    base_diameter: Floats
+    tip_diameter: Floats
+    segment_parent: Ints
+    branch_first: Ints
+    branch_parent: Ints
+    subtree_end: Ints
+    source_index: Ints
+    branch_names: tuple[str, ...]
+    name: str = "tree"
+    species: str = "broadleaf"
+
+    def __post_init__(self) -> None:
+        """Make every array read-only."""
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    @property
+    def n_segments(self) -> int:
+        """Number of segments."""
+        return len(self.start)
+
+    @property
+    def n_branches(self) -> int:
+        """Number of branches."""
+        return len(self.branch_parent)
+
+    @cached_property
+    def length(self) -> Floats:
+        """Length of each segment in [m], (n,)."""
+        return _read_only(np.linalg.norm(self.end - self.start, axis=1))
+
+    @cached_property
+    def branch_of_segment(self) -> Ints:
+        """Branch of each segment, (n,)."""
+        counts = np.diff(self.branch_first)
+        return _read_only(np.repeat(np.arange(self.n_branches, dtype=np.int64), counts))
+
+    @cached_property
+    def branch_length(self) -> Floats:
+        """Length of each branch along its segments in [m], (b,)."""
+        return _read_only(np.add.reduceat(self.length, self.branch_first[:-1]))
+
+    @cached_property
+    def branch_order(self) -> Ints:
+        """Branching order: 0 for the stem, one more than its parent's for the others, (b,)."""
+        order = np.zeros(self.n_branches, dtype=np.int64)
+        for branch in np.flatnonzero(self.branch_parent >= 0):
+            order[branch] = order[self.branch_parent[branch]] + 1
+        return _read_only(order)
+
+    @cached_property
+    def volume(self) -> Floats:
+        """Volume of each segment, a conical frustum, in [m^3], (n,)."""
+        d0, d1 = self.base_diameter, self.tip_diameter
+        return _read_only(np.pi / 12.0 * self.length * (d0 * d0 + d0 * d1 + d1 * d1))
+
+    @property
+    def height(self) -> float:
+        """Highest node above the root node in [m]."""
+        return float(max(self.end[:, 2].max(), self.start[:, 2].max()) - self.start[0, 2])
+
+    @property
+    def segment_names(self) -> tuple[str, ...]:
+        """Name of each segment: its branch's name and its place in it, as ``stem/3``."""
+        return tuple(
+            f"{name}/{i}"
+            for branch, name in enumerate(self.branch_names)
+            for i in range(int(self.branch_first[branch + 1] - self.branch_first[branch]))
+        )
+
+    def segments_of(self, branch: int) -> slice:
+        """Slice of the segments of a branch."""
+        return slice(int(self.branch_first[branch]), int(self.branch_first[branch + 1]))
+
+
+def _read_only(array: NDArray[_Number]) -> NDArray[_Number]:
+    array.setflags(write=False)
+    return array

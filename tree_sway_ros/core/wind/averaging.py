@@ -1,0 +1,284 @@
+"""
+From samples of a sensor to what a solver needs: the mean of the wind over each of its steps.
+
+The samples become a curve. `linear` joins them by straight lines, which can be drawn only once the next
+sample is there: the curve runs one sensor period late, and later still by as much as samples are seen to
+arrive after the solver has passed their stamp. `hold` keeps each sample until the next. The solver gets the
+exact mean of the curve over its step, which keeps second order where a sample of it would not.
+
+What the solver has been given is never redrawn, so that nothing jumps in `linear`, whatever comes late,
+early or not at all: a short dropout is held; a long one decays to calm; the first sample after either is
+faded in. Times are those of one clock, handed in by the caller; it may jump.
+
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway_ros.core.checks import three_numbers, within
+from tree_sway_ros.core.wind.curve import Vector, WindCurve
+from tree_sway_ros.core.wind.sensor_timing import SensorTiming
+from tree_sway_ros.errors import ParameterError
+
+Floats = NDArray[np.float64]
+
+INTERPOLATIONS = ("linear", "hold")
+
+CLOCK_RESET = 1.0
+"""Backward step in [s] that is a clock set back, not a sample out of order or a look at the past."""
+
+_CALM: Vector = (0.0, 0.0, 0.0)
+_STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
+
+
+class WindAverage:
+    """
+    Samples in, means over steps out.
+
+    Parameters
+    ----------
+    interpolation
+        ``linear`` or ``hold``.
+    timeout
+        Age of the newest sample in [s] up to which it is held; at least three sensor periods.
+    decay
+        Time constant in [s] with which the wind then dies down.
+    blend
+        Longest time in [s] over which the first sample after a dropout is faded in; a dropout shorter
+        than that fades in over its own length.
+    capacity
+        Number of samples kept. A step must not span more.
+
+    Raises
+    ------
+    ParameterError
+        If the interpolation is unknown or a value is out of its range.
+
+    """
+
+    def __init__(
+        self,
+        interpolation: str = "linear",
+        timeout: float = 2.0,
+        decay: float = 3.0,
+        *,
+        blend: float = 0.5,
+        capacity: int = 512,
+    ) -> None:
+        """Start without a sample."""
+        if interpolation not in INTERPOLATIONS:
+            raise ParameterError(
+                f"unknown interpolation '{interpolation}'",
+                where="interpolation",
+                cure=f"use one of: {', '.join(INTERPOLATIONS)}",
+            )
+        self._is_linear = interpolation == "linear"
+        self._timeout = within("timeout", timeout, 0.0, 3600.0, "s", above=True)
+        self._decay = within("decay", decay, 0.0, 3600.0, "s", above=True)
+        self._blend = min(within("blend", blend, 0.0, 60.0, "s", above=True), self._timeout)
+        self._curve = WindCurve(not self._is_linear, int(within("capacity", capacity, 8, 1e6)))
+        self._fade = WindCurve(False, 2)  # what is left of the wind before the last dropout
+        self.refused = 0
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget every sample and every step; keep the count of the refused ones."""
+        self._curve.clear()
+        self._fade.clear()
+        self._timing = SensorTiming(self._timeout)
+        self._newest: float | None = None  # time of the newest sample
+        self._passed: float | None = None  # end of the latest step: before it nothing may change
+        self._is_new_clock = False  # the clock has jumped since the newest sample
+
+    @property
+    def period(self) -> float | None:
+        """Estimated period of the sensor in [s]; None before the second sample."""
+        return self._timing.period
+
+    def add(self, time: float, vector: ArrayLike) -> bool:
+        """
+        Add a sample.
+
+        Parameters
+        ----------
+        time
+            Time of the sample in [s].
+        vector
+            Wind in [m/s], (3,).
+
+        Returns
+        -------
+        bool
+            False if it was refused, and counted: not finite, or not after the one before.
+
+        Raises
+        ------
+        ParameterError
+            If the sample is not three numbers.
+
+        """
+        x, y, z = three_numbers("wind", vector)
+        if not (math.isfinite(time) and math.isfinite(x + y + z)):
+            self.refused += 1
+            return False
+        if self._newest is not None and time <= self._newest:
+            if time > self._newest - CLOCK_RESET:
+                self.refused += 1
+                return False
+            self._set_clock_back(time)
+        self._clamp_clock(time)
+        passed = -math.inf if self._passed is None else self._passed
+        if self._newest is None or self._is_new_clock:
+            gap = silence = math.inf
+        else:
+            gap = time - self._newest
+            silence = max(gap, passed - self._newest - self._timing.lateness)
+        if self._timing.is_dropout(silence):
+            self._start_anew(time, (x, y, z), silence)
+        elif self._timing.period is None:
+            self._curve.append(max(time, passed), self._curve.last)  # the first holds to the second
+        self._timing.note_interval(gap)
+        self._timing.note_lateness(max(0.0, passed - time), gap)
+        self._draw_to(time, passed, (x, y, z))
+        self._newest = time
+        self._is_new_clock = False
+        return True
+
+    def mean(self, start: float, end: float) -> Floats:
+        """
+        Return the mean of the wind over a step.
+
+        Parameters
+        ----------
+        start, end
+            The step in [s]; a step of no length gives the value there.
+
+        Returns
+        -------
+        Floats
+            Mean wind in [m/s], (3,); zero before the first sample.
+
+        Raises
+        ------
+        ParameterError
+            If the step is not finite or ends before it starts.
+
+        """
+        if not (math.isfinite(start) and start <= end < math.inf):
+            raise ParameterError(f"no step from {start} to {end}", where="wind average")
+        if self._passed is not None and end < self._passed - CLOCK_RESET:
+            self._set_clock_back(start)
+        self._clamp_clock(start)
+        mean = self._mean(start, end)
+        self._passed = end if self._passed is None else max(end, self._passed)
+        return np.array(mean)
+
+    def state(self, time: float) -> str:
+        """
+        Return what the wind is at a time in [s].
+
+        Returns
+        -------
+        str
+            ``none`` before the first sample; ``live``; ``holding`` the last one; ``decaying``;
+            ``stale`` when nothing is left of it.
+
+        """
+        if self._newest is None:
+            return "none"
+        if time - self._newest <= self._timing.longest_live + self._timing.lateness:
+            return "live"
+        overdue = time - self._decay_start
+        if overdue <= 0.0:
+            return "holding"
+        return "decaying" if overdue <= _STALE_DECAYS * self._decay else "stale"
+
+    @property
+    def _decay_start(self) -> float:
+        return (self._newest or 0.0) + self._timing.lateness + self._timing.longest_hold
+
+    def _draw_to(self, time: float, passed: float, value: Vector) -> None:
+        """Draw the curve on to a new sample, from where the solver has passed at the earliest."""
+        if not self._is_linear:
+            self._curve.append(max(time, passed), value)
+            return
+        knot = time + (self._timing.period or 0.0) + self._timing.lateness
+        if self._curve.end < passed:
+            self._curve.append(passed, self._curve.last)
+        elif self._curve.end >= knot:
+            self._curve.cut(max(passed, time))
+        self._curve.append(knot, value)
+
+    def _start_anew(self, time: float, value: Vector, silence: float) -> None:
+        """Start a new curve at a value; what there was until now fades out on top of it."""
+        since = self._passed
+        before = _CALM if since is None else self._mean(since, since)
+        self._curve.clear()
+        self._fade.clear()
+        if since is None:
+            self._curve.append(time, value)
+            return
+        self._curve.append(since, value)
+        x, y, z = (b - v for b, v in zip(before, value, strict=True))
+        self._fade.append(since, (x, y, z))
+        self._fade.append(since + min(silence, self._blend), _CALM)
+
+    def _mean(self, start: float, end: float) -> Vector:
+        if self._newest is None:
+            return _CALM
+        calm = self._decay_start
+        if start == end:
+            left = math.exp(min(0.0, (calm - start) / self._decay))
+            return _sum(self._curve.value(start), self._fade_at(start, start), left)
+        if end <= calm:
+            return _sum(self._curve.mean(start, end), self._fade_at(start, end), 1.0)
+        level = _sum(self._curve.value(end), self._fade_at(end, end), 1.0)
+        since = max(start, calm)
+        decayed = self._decay * (
+            math.exp((calm - since) / self._decay) - math.exp((calm - end) / self._decay)
+        )
+        x, y, z = (v * decayed / (end - start) for v in level)
+        if start >= calm:
+            return x, y, z
+        held = self._mean(start, calm)
+        part = (calm - start) / (end - start)
+        return x + part * held[0], y + part * held[1], z + part * held[2]
+
+    def _fade_at(self, start: float, end: float) -> Vector:
+        if not self._fade or start >= self._fade.end:
+            return _CALM
+        return self._fade.value(start) if start == end else self._fade.mean(start, end)
+
+    def _set_clock_back(self, time: float) -> None:
+        """Begin anew at a time, from the wind there is."""
+        held = _CALM if self._passed is None else self._mean(self._passed, self._passed)
+        had_wind, period = self._newest is not None, self._timing.period
+        self.reset()
+        if had_wind:
+            self._timing.period = period
+            self._newest = time
+            self._curve.append(time, held)
+        self._passed = time
+        self._is_new_clock = True
+
+    def _clamp_clock(self, time: float) -> None:
+        """Take a clock that jumps forward for one that stood still."""
+        if self._passed is None:
+            return
+        now = self._passed if self._newest is None else max(self._passed, self._newest)
+        jump = time - now
+        if jump > self._timing.longest_hold:
+            self._curve.shift(jump)
+            self._fade.shift(jump)
+            self._passed += jump
+            if self._newest is not None:
+                self._newest += jump
+            self._is_new_clock = True
+
+
+def _sum(a: Vector, b: Vector, factor: float) -> Vector:
+    return factor * (a[0] + b[0]), factor * (a[1] + b[1]), factor * (a[2] + b[2])

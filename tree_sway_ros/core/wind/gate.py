@@ -1,0 +1,262 @@
+"""
+The gate that a wind sample passes: faults are refused and counted, true gusts and steps get in.
+
+A sample is refused if it is not finite, faster than any wind for which the model holds, or too far from
+the last good one. Too far is a rate of change times the time between the two, plus what the small eddies
+change between any two samples: in the inertial subrange increments grow as the cube root of time, so that
+a rate alone refuses the good samples of a fast sensor in a strong wind (20 m/s^2: 39 % at 20 Hz in
+12 m/s). What stays away for `longest_refusal` is no spike but a step, and is let in.
+
+Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival, much older
+than it, a duplicate, out of order) is counted and the time of arrival stands in for it.
+
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.checks import three_numbers, within
+
+# What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics 0x8000,
+# which is 327.68 where the count is .01 m/s.
+SENTINELS = (999.0, 999.9, 999.99, 6999.0, 7999.0, 9999.0, 99999.0, 32767.0, 32768.0, 327.67, 327.68)
+
+FUTURE_TOLERANCE = 0.5
+"""How far a stamp may be ahead of its arrival in [s]: clocks of two machines differ."""
+LONGEST_TRANSPORT = 2.0
+"""Age in [s] at which a stamp is of another clock, or of a recording, and no longer believed."""
+CLOCK_RESET = 1.0
+"""Backward step in [s] that is a clock set back (a bag that loops), not samples out of order."""
+
+
+class Reason(str, Enum):
+    """Why a sample was refused, or ``accepted``."""
+
+    ACCEPTED = "accepted"
+    NOT_FINITE = "not_finite"
+    SENTINEL = "sentinel"
+    TOO_FAST = "too_fast"
+    SPIKE = "spike"
+    REPEATED = "repeated"
+    NO_TIME = "no_time"
+
+
+class Verdict(NamedTuple):
+    """What became of a sample: whether it is good, why, and the time to use for it in [s]."""
+
+    accepted: bool
+    reason: Reason
+    time: float
+
+
+@dataclass
+class GateCounts:
+    """
+    What went through the gate, by reason.
+
+    Parameters
+    ----------
+    accepted
+        Samples that got in.
+    not_finite, sentinel, too_fast, spike, repeated, no_time
+        Samples refused: not a number or infinite; a sensor's code for no reading; above the largest
+        speed; too far from the last good one; a message sent twice; no time after the last one.
+    forced
+        Accepted ones that were let in because refusing had lasted long enough.
+    zero_stamp, future_stamp, old_stamp, duplicate_stamp, out_of_order
+        Stamps not believed; the sample itself may be good.
+    clock_back
+        Times the clock was set back.
+    frozen
+        Times the sensor began to repeat one reading.
+
+    """
+
+    accepted: int = 0
+    not_finite: int = 0
+    sentinel: int = 0
+    too_fast: int = 0
+    spike: int = 0
+    repeated: int = 0
+    no_time: int = 0
+    forced: int = 0
+    zero_stamp: int = 0
+    future_stamp: int = 0
+    old_stamp: int = 0
+    duplicate_stamp: int = 0
+    out_of_order: int = 0
+    clock_back: int = 0
+    frozen: int = 0
+
+    @property
+    def refused(self) -> int:
+        """Samples refused, for any reason."""
+        return (
+            self.not_finite
+            + self.sentinel
+            + self.too_fast
+            + self.spike
+            + self.repeated
+            + self.no_time
+        )
+
+
+class WindGate:
+    """
+    Judge wind samples one by one; a refused one leaves no trace but its count.
+
+    Parameters
+    ----------
+    max_speed
+        Largest speed in [m/s].
+    max_rate
+        Largest rate of change of the vector in [m/s^2].
+    longest_refusal
+        Time in [s] after which a change is believed, however sudden.
+    frozen_after
+        Time in [s] of equal samples, other than zero, after which the sensor counts as frozen.
+    jump_floor
+        Change between two samples that is always believed in [m/s]: resolution and small eddies.
+    jump_fraction
+        Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of its range.
+
+    """
+
+    def __init__(
+        self,
+        max_speed: float = 40.0,
+        max_rate: float = 20.0,
+        longest_refusal: float = 0.5,
+        frozen_after: float = 10.0,
+        *,
+        jump_floor: float = 1.0,
+        jump_fraction: float = 0.25,
+    ) -> None:
+        """Open the gate with no sample seen."""
+        self._max_speed = within("max_speed", max_speed, 0.0, 150.0, "m/s", above=True)
+        self._max_rate = within("max_rate", max_rate, 0.0, 1e4, "m/s^2", above=True)
+        self._longest_refusal = within("longest_refusal", longest_refusal, 0.0, 60.0, "s")
+        self._frozen_after = within("frozen_after", frozen_after, 0.0, 1e5, "s", above=True)
+        self._jump_floor = within("jump_floor", jump_floor, 0.0, 100.0, "m/s")
+        self._jump_fraction = within("jump_fraction", jump_fraction, 0.0, 10.0)
+        self.counts = GateCounts()
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the samples seen; keep the counts."""
+        self._time = -math.inf
+        self._stamp = -math.inf
+        self._seen = (math.nan, math.nan, math.nan)  # last sample offered
+        self._good = (0.0, 0.0, 0.0)  # last one accepted, at _good_time
+        self._good_time = -math.inf
+        self._refused_since = math.inf
+        self._equal_since = -math.inf
+        self._is_frozen = False
+
+    @property
+    def is_frozen(self) -> bool:
+        """Whether the sensor has repeated one reading for longer than a live one does."""
+        return self._is_frozen
+
+    def offer(self, stamp: float, vector: ArrayLike, arrival: float | None = None) -> Verdict:
+        """
+        Judge a sample.
+
+        Parameters
+        ----------
+        stamp
+            Time that the sample carries in [s].
+        vector
+            Wind in [m/s], (3,), before any projection; the axes do not matter.
+        arrival
+            Time that it arrived in [s], on the clock of the stamps; None if the stamp is all there is.
+
+        Returns
+        -------
+        Verdict
+            Whether it is good, why, and the time to use for it: strictly after that of the last one.
+
+        Raises
+        ------
+        ParameterError
+            If the sample is not three numbers.
+
+        """
+        x, y, z = three_numbers("wind", vector)
+        is_repeated = stamp > 0.0 and stamp == self._stamp and (x, y, z) == self._seen
+        time = self._time_of(stamp, stamp if arrival is None else arrival)
+        if is_repeated:
+            reason = Reason.REPEATED
+        elif not self._time < time < math.inf:
+            reason = Reason.NO_TIME
+        else:
+            reason = self._judge(time, x, y, z)
+            self._time, self._stamp = time, stamp
+            self._watch_for_frozen(time, (x, y, z))
+        name = reason.value
+        setattr(self.counts, name, getattr(self.counts, name) + 1)
+        if reason is Reason.ACCEPTED:
+            self._good, self._good_time = (x, y, z), time
+            self._refused_since = math.inf
+        return Verdict(reason is Reason.ACCEPTED, reason, time)
+
+    def _time_of(self, stamp: float, arrival: float) -> float:
+        counts = self.counts
+        time = stamp
+        if arrival < self._time - CLOCK_RESET:
+            counts.clock_back += 1
+            self.reset()
+        if not math.isfinite(stamp) or (stamp <= 0.0 and arrival > 0.0):
+            counts.zero_stamp += 1
+            time = arrival
+        elif stamp > arrival + FUTURE_TOLERANCE:
+            counts.future_stamp += 1
+            time = arrival
+        elif stamp < arrival - LONGEST_TRANSPORT:
+            counts.old_stamp += 1
+            time = arrival
+        elif stamp == self._stamp:
+            counts.duplicate_stamp += 1
+            time = arrival
+        elif stamp < self._stamp:
+            counts.out_of_order += 1
+            time = arrival
+        return arrival if time <= self._time else time
+
+    def _judge(self, time: float, x: float, y: float, z: float) -> Reason:
+        speed = math.hypot(x, y, z)
+        if not math.isfinite(speed):
+            return Reason.NOT_FINITE
+        if speed > self._max_speed:
+            is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
+            return Reason.SENTINEL if is_code else Reason.TOO_FAST
+        jump = math.hypot(x - self._good[0], y - self._good[1], z - self._good[2])
+        allowed = self._max_rate * (time - self._good_time)
+        allowed += self._jump_floor + self._jump_fraction * math.hypot(*self._good)
+        if jump <= allowed:
+            return Reason.ACCEPTED
+        self._refused_since = min(self._refused_since, time)
+        if time - self._refused_since < self._longest_refusal:
+            return Reason.SPIKE
+        self.counts.forced += 1
+        return Reason.ACCEPTED
+
+    def _watch_for_frozen(self, time: float, sample: tuple[float, float, float]) -> None:
+        if sample != self._seen or sample == (0.0, 0.0, 0.0):
+            self._seen = sample
+            self._equal_since = time
+            self._is_frozen = False
+        elif not self._is_frozen and time - self._equal_since >= self._frozen_after:
+            self._is_frozen = True
+            self.counts.frozen += 1

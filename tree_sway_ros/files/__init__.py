@@ -1,0 +1,7 @@
+"""
+Files to trees and winds, and back.
+
+Text, tables and schemas that several formats share live in this folder itself.
+No ROS, no arithmetic of motion.
+
+"""

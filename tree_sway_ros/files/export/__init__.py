@@ -1,0 +1,7 @@
+"""
+Trees to files: YAML, OBJ, glTF.
+
+One function per format.
+Pictures are made in ``view``.
+
+"""

@@ -1,0 +1,84 @@
+"""The last step of every importer: segments to a `Tree`, with errors that name the file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import FormatError, TreeError
+
+MAX_COORDINATE = 1e8
+"""No map has coordinates beyond this [m]; a file with wrong columns soon does."""
+
+
+@dataclass(slots=True)
+class SegmentTable:
+    """
+    Segments as a file lists them; filled row by row, then built.
+
+    Parameters
+    ----------
+    start, end
+        Root-side and tip-side node in [m].
+    diameter
+        Diameter at start and at end in [m].
+    parent
+        Segment that each sits on, -1 for the root; empty to find it from the nodes.
+    branch
+        Branch key of each; empty to find it from how the segments go on.
+    branch_names
+        Name of each branch by key 0, 1 ...; empty for ``stem``, ``b1`` ...
+    labels
+        What an error calls each segment, with the line of the file.
+
+    """
+
+    start: list[list[float]] = field(default_factory=list)
+    end: list[list[float]] = field(default_factory=list)
+    diameter: list[list[float]] = field(default_factory=list)
+    parent: list[int] = field(default_factory=list)
+    branch: list[int] = field(default_factory=list)
+    branch_names: list[str] = field(default_factory=list)
+    labels: list[str] = field(default_factory=list)
+
+    def build(self, source: str, name: str, species: str = "broadleaf") -> Tree:
+        """
+        Build the tree.
+
+        Raises
+        ------
+        TreeError
+            What `tree_from_segments` refuses, or coordinates beyond `MAX_COORDINATE`; always with
+            the file.
+        FormatError
+            If there is no segment.
+
+        """
+        if not self.start:
+            raise FormatError("no segments", where=source, cure="give at least one segment")
+        extreme = np.abs(np.hstack([self.start, self.end, self.diameter])).max(axis=1)
+        for index in np.flatnonzero(extreme > MAX_COORDINATE)[:1]:
+            raise TreeError(
+                f"a coordinate of {extreme[index]:.3g} m",
+                where=self.labels[index],
+                cure="give metres; check that the columns are what they should be",
+            )
+        try:
+            return tree_from_segments(
+                self.start,
+                self.end,
+                self.diameter,
+                parent=np.array(self.parent, dtype=np.int64) if self.parent else None,
+                branch=np.array(self.branch, dtype=np.int64) if self.branch else None,
+                branch_names=self.branch_names or None,
+                name=name,
+                species=species,
+                labels=self.labels,
+            )
+        except TreeError as error:
+            if error.where:
+                raise
+            raise TreeError(error.what, where=source, cure=error.cure) from error

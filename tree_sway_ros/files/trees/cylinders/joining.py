@@ -1,0 +1,145 @@
+"""Who grows on whom among cylinders: order, loose branches, and which chain is a branch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.errors import TreeError
+from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+
+_MAX_LOOSE = 1000
+_MAX_LOOSE_VOLUME = 0.2
+"""A loose part of more than this of the stem's volume is a tree of its own."""
+
+
+@dataclass(slots=True)
+class JoinedBranches:
+    """
+    Parents after loose branches were joined.
+
+    Parameters
+    ----------
+    parent
+        Parent of each cylinder, -1 only at the stem, (n,).
+    count
+        Number of branches that were loose.
+    distance
+        Largest distance from the base of one to the axis it was set on, in [m].
+
+    """
+
+    parent: Ints
+    count: int
+    distance: float
+
+
+def parents_first(parent: Ints, labels: list[str]) -> list[int]:
+    """
+    Order in which parents come before what they carry.
+
+    Raises
+    ------
+    TreeError
+        A parent that does not exist, or a cycle.
+
+    """
+    n = len(parent)
+    for index in np.flatnonzero((parent < -1) | (parent >= n))[:1]:
+        raise TreeError(
+            "orphan: its parent does not exist", where=labels[index], cure="name a cylinder"
+        )
+    children: list[list[int]] = [[] for _ in range(n)]
+    order: list[int] = []
+    for index, above in enumerate(parent.tolist()):
+        (children[above] if above >= 0 else order).append(index)
+    for index in order:
+        order.extend(children[index])
+    if len(order) < n:
+        lost = int(np.setdiff1d(np.arange(n), order)[0])
+        raise TreeError(
+            "cyclic: following its parents never reaches a root",
+            where=labels[lost],
+            cure="break the cycle; at least one cylinder has no parent",
+        )
+    return order
+
+
+def join_loose_branches(cylinders: Cylinders) -> JoinedBranches | None:
+    """
+    Set branches that have no parent on the nearest cylinder of the stem; None if there are none.
+
+    Raises
+    ------
+    TreeError
+        As `parents_first`; also if a loose part is so large that it is a tree of its own.
+
+    """
+    parent = cylinders.parent
+    roots = np.flatnonzero(parent == -1)
+    order = parents_first(parent, cylinders.labels)
+    if len(roots) <= 1:
+        return None
+    root_of = np.empty(len(parent), dtype=np.int64)
+    for index in order:
+        root_of[index] = index if parent[index] < 0 else root_of[parent[index]]
+    length = np.linalg.norm(cylinders.end - cylinders.start, axis=1)
+    volume = np.bincount(root_of, weights=length * cylinders.diameter.mean(axis=1) ** 2)
+    stem = int(roots[np.argmax(volume[roots])])
+    loose = roots[roots != stem]
+    largest = int(loose[np.argmax(volume[loose])])
+    if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
+        raise TreeError(
+            f"{len(roots)} roots: a forest of trees that are not connected",
+            where=cylinders.labels[largest],
+            cure="give each tree a file of its own, or this cylinder a parent",
+        )
+    on_stem = np.flatnonzero(root_of == stem)
+    joined, farthest = parent.copy(), 0.0
+    for index in loose:
+        nearest, distance = _nearest(cylinders, on_stem, cylinders.start[index])
+        joined[index] = nearest
+        farthest = max(farthest, distance)
+    return JoinedBranches(joined, len(loose), farthest)
+
+
+def _nearest(cylinders: Cylinders, among: Ints, point: Floats) -> tuple[int, float]:
+    start = cylinders.start[among]
+    axis = cylinders.end[among] - start
+    squared = np.maximum(np.einsum("ij,ij->i", axis, axis), 1e-24)
+    along = np.clip(np.einsum("ij,ij->i", point - start, axis) / squared, 0.0, 1.0)
+    distance = np.linalg.norm(start + along[:, None] * axis - point, axis=1)
+    best = int(np.argmin(distance))
+    return int(among[best]), float(distance[best])
+
+
+def heirs(cylinders: Cylinders) -> Ints:
+    """
+    Which child goes on with each cylinder's branch, -1 where none does, (n,).
+
+    Where the file does not say, the thickest child. Where it names several, the thickest of them.
+
+    """
+    heir = np.full(len(cylinders.parent), -1, dtype=np.int64)
+    width = cylinders.diameter[:, 0]
+    may = np.ones(len(heir), dtype=np.bool_) if cylinders.continues is None else cylinders.continues
+    for child in np.flatnonzero(may & (cylinders.parent >= 0)):
+        above = cylinders.parent[child]
+        if heir[above] < 0 or width[child] > width[heir[above]]:
+            heir[above] = child
+    return heir
+
+
+def branch_keys(cylinders: Cylinders) -> Ints | None:
+    """Branch of each cylinder, (n,); None if the file does not say what goes on with what."""
+    if cylinders.continues is None:
+        return None
+    heir = heirs(cylinders)
+    keys = np.arange(len(heir), dtype=np.int64)
+    for index in parents_first(cylinders.parent, cylinders.labels):
+        above = cylinders.parent[index]
+        if above >= 0 and heir[above] == index:
+            keys[index] = keys[above]
+    return keys

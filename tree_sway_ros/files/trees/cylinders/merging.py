@@ -1,0 +1,133 @@
+"""Merge cylinders that are too short to have a direction into their neighbours of the same branch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+from tree_sway_ros.files.trees.cylinders.joining import heirs
+
+
+@dataclass(slots=True)
+class MergedCylinders:
+    """
+    Cylinders without the tiny ones.
+
+    Parameters
+    ----------
+    cylinders
+        Those that remain.
+    count
+        Number of those that do not.
+    dropped
+        How many of them were a branch on their own, with no neighbour to go to.
+
+    """
+
+    cylinders: Cylinders
+    count: int = 0
+    dropped: int = 0
+
+
+def merge_tiny(cylinders: Cylinders, order: list[int], below: float) -> MergedCylinders:
+    """
+    Merge cylinders shorter than a length.
+
+    A tiny one goes to the cylinder before it in its branch, which is drawn out to its end; the first
+    of a branch to the one after it. The volume is kept. What grew on it grows on the other.
+
+    Parameters
+    ----------
+    cylinders
+        Cylinders of one tree.
+    order
+        Their numbers, parents first.
+    below
+        Length in [m].
+
+    """
+    tiny = np.linalg.norm(cylinders.end - cylinders.start, axis=1) < max(below, 1e-9)
+    if not tiny.any() or tiny.all():
+        return MergedCylinders(cylinders)
+    start, end, diameter = cylinders.start.copy(), cylinders.end.copy(), cylinders.diameter.copy()
+    parent, heir = cylinders.parent.copy(), heirs(cylinders)
+    goes_on = np.zeros(len(parent), dtype=np.bool_)
+    goes_on[heir[heir >= 0]] = True
+    # Who stands in for a cylinder that is gone.
+    stand_in = np.arange(len(parent))
+    dropped = 0
+    for index in order:
+        above = parent[index] = stand_in[parent[index]] if parent[index] >= 0 else -1
+        if not tiny[index]:
+            continue
+        after = int(heir[index])
+        if goes_on[index] and above >= 0:
+            _merge(start, end, diameter, int(above), index, start[above], end[index])
+            stand_in[index] = above
+        elif after >= 0:
+            _merge(start, end, diameter, after, index, start[index], end[after])
+            # Its other children come to stand on the one after it, which takes its own parent.
+            stand_in[index] = after
+            parent[after] = above
+            tiny[after] = np.linalg.norm(end[after] - start[after]) < max(below, 1e-9)
+            goes_on[after] = False
+        elif above >= 0:
+            stand_in[index] = above
+            dropped += 1
+        else:  # a root on which only side branches grow: it stays, and the core will complain
+            tiny[index] = False
+    moved = replace(cylinders, start=start, end=end, diameter=diameter, parent=parent)
+    remaining = _remaining(moved, ~tiny, goes_on, stand_in)
+    return MergedCylinders(remaining, int(tiny.sum()), dropped)
+
+
+def _merge(
+    start: Floats, end: Floats, diameter: Floats, kept: int, gone: int, begin: Floats, finish: Floats
+) -> None:
+    volume = _volume(start, end, diameter, kept) + _volume(start, end, diameter, gone)
+    start[kept], end[kept] = begin.copy(), finish.copy()
+    after = _volume(start, end, diameter, kept)
+    if after > 0.0 and volume > 0.0:
+        diameter[kept] *= np.sqrt(volume / after)
+
+
+def _volume(start: Floats, end: Floats, diameter: Floats, index: int) -> float:
+    """Volume of one cone in [m^3], but for the constant factor."""
+    d0, d1 = diameter[index]
+    return float(np.linalg.norm(end[index] - start[index]) * (d0 * d0 + d0 * d1 + d1 * d1))
+
+
+def _remaining(
+    cylinders: Cylinders, keep: NDArray[np.bool_], goes_on: NDArray[np.bool_], stand_in: Ints
+) -> Cylinders:
+    """Take the cylinders that are kept, and number them anew."""
+    kept = np.flatnonzero(keep)
+    number = np.full(len(keep), -1, dtype=np.int64)
+    number[kept] = np.arange(len(kept))
+    parent = [
+        -1 if above < 0 else int(number[_standing(stand_in, above)])
+        for above in cylinders.parent[kept].tolist()
+    ]
+    return replace(
+        cylinders,
+        start=cylinders.start[kept],
+        end=cylinders.end[kept],
+        diameter=cylinders.diameter[kept],
+        parent=np.array(parent, dtype=np.int64),
+        continues=None if cylinders.continues is None else goes_on[kept],
+        labels=[cylinders.labels[index] for index in kept],
+    )
+
+
+def _standing(stand_in: Ints, index: int) -> int:
+    """Who stands in for a cylinder at last; the way there is shortened, as it may be long."""
+    last = index
+    while stand_in[last] != last:
+        last = int(stand_in[last])
+    while stand_in[index] != last:
+        stand_in[index], index = last, int(stand_in[index])
+    return last

@@ -1,0 +1,85 @@
+"""A tree as a file gave it: its shape, its wood, and what the importer had to do to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
+from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.simulator.season import in_season
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+
+
+@dataclass(frozen=True, eq=False)
+class TreeFile:
+    """
+    A tree with the species it is made of.
+
+    Parameters
+    ----------
+    tree
+        The segments, in branches.
+    species
+        Wood, damping and drag: the table's entry for ``tree.species``, with what the file says
+        otherwise in place of the table's values.
+    source
+        Where it came from: a path, or the name of a built-in tree.
+    notes
+        What the importer changed or left out, one sentence each; empty if nothing.
+    origin
+        Where the tree's zero is in the frame of the file in [m].
+
+    """
+
+    tree: Tree
+    species: Species
+    source: str
+    notes: tuple[str, ...] = ()
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def of_species(self, species: Species) -> TreeFile:
+        """Return the same tree of another wood, with that species' leaves."""
+        return replace(self, tree=replace(self.tree, species=species.key), species=species)
+
+    def simulator(
+        self,
+        settings: SimulatorSettings | None = None,
+        *,
+        fidelity: str = "auto",
+        tolerance: float = 0.005,
+        leaf_on: bool = False,
+        **changes: Any,
+    ) -> Simulator:
+        """
+        Make a simulator of the tree.
+
+        Parameters
+        ----------
+        settings, fidelity, tolerance, **changes
+            As for `make_simulator`.
+        leaf_on
+            Whether the tree bears leaves.
+
+        Raises
+        ------
+        TreeSwayError
+            As `make_simulator`.
+
+        """
+        model = replace(settings or SimulatorSettings(), **changes)
+        if leaf_on:
+            model = in_season(self.tree, model, leaf_on=True)
+        return make_simulator(
+            self.tree, self.species, model, fidelity=fidelity, tolerance=tolerance
+        )
+
+    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
+        """Place clusters of leaves on it, always the same ones; None without leaves."""
+        if not leaf_on or count < 1:
+            return None
+        return leaf_clusters(self.tree, np.random.default_rng(0), count=count)

@@ -1,0 +1,94 @@
+"""A tree or a forest by name or by path: what the command line and the nodes call TREE."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Any
+
+from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, forest_of_files
+from tree_sway_ros.files.trees.yaml.forest_yaml import is_forest, read_forest
+
+
+def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile:
+    """
+    Open a built-in tree or a tree file.
+
+    Parameters
+    ----------
+    name_or_path
+        One of `BUILTIN_TREES`, or the path of a file; a file of the name of a built-in tree is
+        meant by ``./name``.
+    seed
+        Seed of a built-in tree.
+    **options
+        Options of the file's reader; see `read_tree`.
+
+    Raises
+    ------
+    FormatError
+        Neither a built-in tree nor a file, or the file of a forest.
+    TreeSwayError
+        What reading the file may raise.
+
+    """
+    text = str(name_or_path)
+    if text in BUILTIN_TREES:
+        if options:
+            raise ParameterError(
+                f"option '{next(iter(options))}' for a built-in tree", cure="leave it out: it has no file"
+            )
+        tree = builtin_tree(text, seed)
+        return TreeFile(tree, species_named(tree.species), text)
+    path = Path(text).expanduser()
+    if not path.exists():
+        close = difflib.get_close_matches(text, BUILTIN_TREES, n=1)
+        guess = f"did you mean '{close[0]}'? " if close else ""
+        raise FormatError(
+            f"no tree '{text}'",
+            cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",
+        )
+    if is_forest(path):
+        raise FormatError("a forest, where one tree is asked for", where=text, cure="name one of its trees")
+    return read_tree(path, **options)
+
+
+def open_scene(
+    name_or_path: str | Path, seed: int = 0, **options: Any
+) -> TreeFile | ForestFile:
+    """
+    Open a built-in tree, a tree file or the file of a forest; either makes its simulator itself.
+
+    Parameters
+    ----------
+    name_or_path
+        As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds several.
+    seed, **options
+        As of `open_tree`; a forest has none.
+
+    Raises
+    ------
+    ParameterError
+        Options for a forest or a built-in tree.
+    TreeSwayError
+        As `open_tree` and `read_forest`.
+
+    """
+    path = Path(name_or_path).expanduser()
+    if str(name_or_path) not in BUILTIN_TREES and is_forest(path):
+        if options:
+            raise ParameterError(
+                f"option '{next(iter(options))}' for a forest",
+                where=str(path),
+                cure="convert its trees first, and name the new files in the forest",
+            )
+        return read_forest(path, open_tree)
+    if str(name_or_path) in BUILTIN_TREES or not path.exists():
+        return open_tree(name_or_path, seed, **options)
+    files = read_trees(path, **options)
+    return files[0] if len(files) == 1 else forest_of_files(files, path.stem)

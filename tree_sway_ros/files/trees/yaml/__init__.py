@@ -1,0 +1,7 @@
+"""
+Trees, forests and species written by people, as YAML with schemas.
+
+Each schema stands beside its reader.
+Other formats have rooms of their own.
+
+"""

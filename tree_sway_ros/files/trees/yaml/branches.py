@@ -1,0 +1,193 @@
+"""Branches of a YAML tree, named by hand, to segments: who grows on whom, and where."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.errors import FormatError, TreeError
+from tree_sway_ros.files.trees.assembly import SegmentTable
+
+Values = dict[str, Any]
+
+
+@dataclass(slots=True)
+class _Placed:
+    """Geometry of a branch in the tree's frame, and its first row in the table."""
+
+    start: Floats
+    end: Floats
+    diameter: Floats
+    first: int
+
+
+def branch_segments(
+    branches: list[Values], lines: list[int], segment_lines: list[list[int]], source: str
+) -> SegmentTable:
+    """
+    Join named branches to one table of segments.
+
+    Parameters
+    ----------
+    branches
+        Checked values of each branch.
+    lines
+        Line of each branch.
+    segment_lines
+        Line of each node or segment of each branch.
+    source
+        The file, for the errors.
+
+    Raises
+    ------
+    FormatError
+        A name that stands twice, both or none of nodes and segments, a place that is not there.
+    TreeError
+        A parent that is not there, a cycle, not exactly one stem, a branch in the air.
+
+    """
+    where = [f"{source}:{line}: branch '{b['name']}'" for b, line in zip(branches, lines, strict=True)]
+    index = _indices(branches, where)
+    parents = _parents(branches, index, where)
+    table = SegmentTable(branch_names=[branch["name"] for branch in branches])
+    placed: dict[int, _Placed] = {}
+    for number in _parents_first(parents, branches, where):
+        branch, its_parent = branches[number], placed.get(parents[number])
+        start, end, diameter = _own_points(branch, where[number])
+        sits_on, origin = -1, np.zeros(3)
+        if its_parent is not None:
+            sits_on, origin = _attachment(branch, its_parent, start[0], where[number])
+        rows = _Placed(start + origin, end + origin, diameter, len(table.start))
+        placed[number] = rows
+        table.start += rows.start.tolist()
+        table.end += rows.end.tolist()
+        table.diameter += diameter.tolist()
+        base = its_parent.first + sits_on if its_parent is not None else -1
+        table.parent += [base, *range(rows.first, rows.first + len(start) - 1)]
+        table.branch += [number] * len(start)
+        table.labels += [
+            f"{source}:{line}: segment {i} of branch '{branch['name']}'"
+            for i, line in enumerate(segment_lines[number][-len(start) :])
+        ]
+    return table
+
+
+def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
+    index: dict[str, int] = {}
+    for number, branch in enumerate(branches):
+        if branch["name"] in index:
+            first = where[index[branch["name"]]].rsplit(": ", 1)[0]
+            raise FormatError(
+                f"a second branch of that name, the first is at {first}",
+                where=where[number],
+                cure="give each branch a name of its own",
+            )
+        index[branch["name"]] = number
+    return index
+
+
+def _parents(branches: list[Values], index: dict[str, int], where: list[str]) -> list[int]:
+    parents = []
+    for number, branch in enumerate(branches):
+        name = branch.get("parent")
+        if name is not None and name not in index:
+            close = difflib.get_close_matches(name, index, n=1)
+            cure = f"did you mean '{close[0]}'?" if close else "name a branch of this file"
+            raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
+        parents.append(-1 if name is None else index[name])
+    stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]
+    if len(stems) > 1:
+        raise TreeError(
+            "a second branch without a parent",
+            where=where[stems[1]],
+            cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
+        )
+    return parents
+
+
+def _parents_first(parents: list[int], branches: list[Values], where: list[str]) -> list[int]:
+    children: dict[int, list[int]] = {}
+    for number, its_parent in enumerate(parents):
+        children.setdefault(its_parent, []).append(number)
+    order = list(children.get(-1, ()))
+    for number in order:
+        order.extend(children.get(number, ()))
+    if len(order) < len(parents):
+        lost = min(set(range(len(parents))) - set(order))
+        raise TreeError(
+            "cyclic: following its parents never reaches a stem",
+            where=where[lost],
+            cure="break the cycle; exactly one branch has no parent",
+        )
+    return order
+
+
+def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
+    if ("nodes" in branch) == ("segments" in branch):
+        raise FormatError(
+            "both nodes and segments" if "nodes" in branch else "neither nodes nor segments",
+            where=where,
+            cure="give one of the two",
+        )
+    if "nodes" in branch:
+        nodes = np.array(branch["nodes"], dtype=np.float64)
+        return nodes[:-1, :3], nodes[1:, :3], np.stack([nodes[:-1, 3], nodes[1:, 3]], axis=1)
+    links = branch["segments"]
+    start = np.array([link["start"] for link in links], dtype=np.float64)
+    end = np.array([link["end"] for link in links], dtype=np.float64)
+    return start, end, np.array([diameter_pair(link["diameter"]) for link in links])
+
+
+def diameter_pair(diameter: float | list[float]) -> list[float]:
+    """Diameter at start and end in [m] from one number or a pair."""
+    return list(diameter) if isinstance(diameter, list) else [diameter, diameter]
+
+
+def _attachment(
+    branch: Values, on: _Placed, first_node: Floats, where: str
+) -> tuple[int, Floats]:
+    """Return the parent's segment, and the point that the branch's own points are offsets from."""
+    axis = on.end - on.start
+    length = np.linalg.norm(axis, axis=1)
+    place = branch.get("at")
+    if place is not None and "segment" in branch:
+        raise FormatError("both at and segment", where=where, cure="give one of the two")
+    if isinstance(place, (int, float)):
+        reach = np.cumsum(length)
+        along = place * reach[-1]
+        segment = int(min(np.searchsorted(reach, along), len(length) - 1))
+        fraction = 1.0 - (reach[segment] - along) / max(length[segment], 1e-12)
+        return segment, on.start[segment] + fraction * axis[segment]
+    if place is not None or "segment" in branch:
+        segment = place["segment"] if place is not None else branch["segment"]
+        if segment >= len(length):
+            raise FormatError(
+                f"no segment {segment} on its parent '{branch['parent']}'",
+                where=where,
+                cure=f"name a segment from 0 to {len(length) - 1}",
+            )
+        if place is None:
+            return segment, np.zeros(3)
+        return segment, on.start[segment] + place.get("fraction", 1.0) * axis[segment]
+    return _nearest(branch, on, first_node, where), np.zeros(3)
+
+
+def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:
+    """Segment of the parent nearest to a point, which must touch the parent or nearly so."""
+    axis = on.end - on.start
+    squared = np.maximum(np.einsum("ij,ij->i", axis, axis), 1e-24)
+    along = np.clip(np.einsum("ij,ij->i", point - on.start, axis) / squared, 0.0, 1.0)
+    distance = np.linalg.norm(on.start + along[:, None] * axis - point, axis=1)
+    segment = int(np.argmin(distance))
+    allowed = on.diameter[segment].max() + 0.01 * float(np.sqrt(squared).sum())
+    if distance[segment] > allowed:
+        raise TreeError(
+            f"starts {distance[segment]:.3g} m off its parent '{branch['parent']}'",
+            where=where,
+            cure="move its first node onto the parent, or say where with 'at' or 'segment'",
+        )
+    return segment

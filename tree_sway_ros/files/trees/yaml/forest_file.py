@@ -1,0 +1,133 @@
+"""Trees that stand together, as a file gave them; used like a `TreeFile`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.leaves.foliage import (
+    LeafClusters,
+    foliage_of,
+    joined_clusters,
+    leaf_clusters,
+    no_clusters,
+)
+from tree_sway_ros.core.scene.forest import Forest
+from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
+from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+
+
+@dataclass(frozen=True, eq=False)
+class ForestFile:
+    """
+    A forest.
+
+    Parameters
+    ----------
+    name
+        Of all together.
+    trees
+        Each with its name, its place and its wood.
+    source
+        The file.
+    notes
+        What the importer changed or left out, one sentence each.
+    anemometer
+        Where the wind is measured in [m], (3,); where it reaches the forest if None.
+    convection_ratio
+        Speed at which gusts travel over the mean wind speed in [-].
+
+    """
+
+    name: str
+    trees: tuple[StandingTree, ...]
+    source: str
+    notes: tuple[str, ...] = ()
+    anemometer: tuple[float, float, float] | None = None
+    convection_ratio: float = 1.0
+
+    @cached_property
+    def tree(self) -> Tree:
+        """All trees as one record where they stand, names as ``tree/branch``; to be described, drawn, written."""
+        return joined([each.placed() for each in self.trees], self.name)
+
+    def of_species(self, species: Species) -> ForestFile:
+        """Return the same forest, all of one wood."""
+        trees = [
+            replace(each, tree=replace(each.tree, species=species.key), species=species)
+            for each in self.trees
+        ]
+        return replace(self, trees=tuple(trees))
+
+    def simulator(
+        self,
+        settings: SimulatorSettings | None = None,
+        *,
+        fidelity: str = "auto",
+        tolerance: float = 0.005,
+        leaf_on: bool = False,
+        **changes: Any,
+    ) -> Forest:
+        """
+        Make a simulator of all trees.
+
+        Parameters
+        ----------
+        settings, fidelity, tolerance, **changes
+            As for `make_simulator`, for every tree.
+        leaf_on
+            Whether those trees bear leaves of which the file does not say.
+
+        Raises
+        ------
+        TreeSwayError
+            As `make_simulator`; names the tree.
+
+        """
+        return Forest(
+            self.trees,
+            settings,
+            fidelity=fidelity,
+            tolerance=tolerance,
+            leaf_on=leaf_on,
+            anemometer=self.anemometer,
+            convection_ratio=self.convection_ratio,
+            **changes,
+        )
+
+    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
+        """Place clusters of leaves, as many on a tree as its leaf area is of all; None without leaves."""
+        area = np.array(
+            [
+                foliage_of(each.tree).area.sum() if each.bears_leaves(leaf_on) else 0.0
+                for each in self.trees
+            ]
+        )
+        if not area.any() or count < 1:
+            return None
+        counts = np.ceil(count * area / area.sum() - 1e-9).astype(np.int64).tolist()
+        clusters = [
+            leaf_clusters(each.placed(), np.random.default_rng(number), count=own)
+            if own
+            else no_clusters()
+            for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
+        ]
+        return joined_clusters(clusters, [each.tree.n_segments for each in self.trees])
+
+
+def forest_of_files(files: Sequence[TreeFile], name: str) -> ForestFile:
+    """Return the trees of one file as a forest: where they stand in it, the first at the origin."""
+    first = np.array(files[0].origin)
+    trees = []
+    for each in files:
+        x, y, z = (np.array(each.origin) - first + each.tree.start[0]).tolist()
+        trees.append(StandingTree(each.tree.name, each.tree, x, y, z, species=each.species))
+    notes = [f"{each.tree.name}: {note}" for each in files for note in each.notes]
+    return ForestFile(name, tuple(trees), files[0].source, tuple(notes))

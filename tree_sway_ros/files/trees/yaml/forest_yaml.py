@@ -1,0 +1,149 @@
+"""
+The YAML form of a forest: which trees, and where each stands.
+
+A tree is the name of a built-in one or a file of any format, found from the forest's own folder. Keys, kinds
+and ranges are those of ``forest_schema.json`` beside this file::
+
+    name: glade
+    trees:
+      - {name: fig, tree: benjamina, x: 0, y: 0, leaf_on: true}
+      - {name: cypress, tree: goldcrest, x: 1.5, y: .4, yaw: 2.1, seed: 7}
+      - {name: old oak, tree: ../scans/oak.mat, species: oak, x: 9, y: 3}
+
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from tree_sway_ros.core.scene.placed_tree import StandingTree
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.errors import FormatError, TreeSwayError
+from tree_sway_ros.files.text_file import read_head, read_text
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.files.yaml_nodes import YamlNode, parse_yaml
+from tree_sway_ros.files.yaml_schema import SchemaCheck, packaged_schema
+
+OpenTree = Callable[[str, int], TreeFile]
+OpenSpecies = Callable[[str], Species]
+_SUFFIXES = (".yaml", ".yml", ".json")
+_TREES = re.compile(r"""^\{?\s*["']?trees["']?\s*:""", re.MULTILINE)
+
+
+def is_forest(path: Path) -> bool:
+    """Whether a file looks like a forest: YAML with ``trees`` at its outermost."""
+    if path.suffix.lower() not in _SUFFIXES or not path.is_file():
+        return False
+    return _TREES.search(read_head(path).decode("utf-8", errors="replace")) is not None
+
+
+def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) -> ForestFile:
+    """
+    Read a forest from a YAML file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    open_tree
+        Opens a tree by its name or path, with a seed.
+
+    Raises
+    ------
+    FormatError
+        Not YAML, or not what the schema says; names file, line and key.
+    TreeSwayError
+        A tree that cannot be opened; names the line, the tree, and what is wrong with it.
+
+    """
+
+    @cache
+    def opened(name: str, seed: int) -> TreeFile:
+        beside = path.parent / Path(name).expanduser()
+        return open_tree(beside if beside.is_file() else name, seed)
+
+    @cache
+    def opened_species(name: str) -> Species:
+        beside = path.parent / Path(name).expanduser()
+        return open_species(beside if beside.is_file() else name)
+
+    return parse_forest(
+        read_text(path), opened, str(path), default_name=path.stem, open_species=opened_species
+    )
+
+
+def parse_forest(
+    text: str,
+    open_tree: OpenTree,
+    source: str = "text",
+    *,
+    default_name: str = "forest",
+    open_species: OpenSpecies = open_species,
+) -> ForestFile:
+    """Read a forest from YAML text; see `read_forest`."""
+    root = parse_yaml(text, source)
+    values: dict[str, Any] = SchemaCheck(packaged_schema("forest_schema.json"), source).value(root)
+    assert isinstance(root.value, dict)
+    nodes = root.value["trees"].value
+    assert isinstance(nodes, list)
+    _refuse_same_names(values["trees"], nodes, source)
+    trees, notes = [], []
+    for entry, node in zip(values["trees"], nodes, strict=True):
+        standing, file_notes = _standing(entry, open_tree, open_species, f"{source}:{node.line}")
+        trees.append(standing)
+        notes += [f"{standing.name}: {note}" for note in file_notes]
+    anemometer = values.get("anemometer")
+    return ForestFile(
+        name=values.get("name", default_name),
+        trees=tuple(trees),
+        source=source,
+        notes=tuple(notes),
+        anemometer=None if anemometer is None else tuple(anemometer),
+        convection_ratio=values.get("convection_ratio", 1.0),
+    )
+
+
+def _standing(
+    entry: dict[str, Any], open_tree: OpenTree, open_species: OpenSpecies, where: str
+) -> tuple[StandingTree, tuple[str, ...]]:
+    """One tree of the list, and the notes of its file."""
+    name = entry["name"]
+    try:
+        tree_file = open_tree(entry["tree"], entry.get("seed", 0))
+        if "species" in entry:
+            tree_file = tree_file.of_species(open_species(entry["species"]))
+    except TreeSwayError as error:
+        inner = f"{error.where}: {error.what}" if error.where else error.what
+        raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
+    place: dict[str, Any] = {key: entry[key] for key in ("x", "y", "z", "yaw") if key in entry}
+    standing = StandingTree(
+        name, tree_file.tree, species=tree_file.species, leaf_on=entry.get("leaf_on"), **place
+    )
+    return standing, tree_file.notes
+
+
+def _refuse_same_names(
+    entries: list[dict[str, Any]], nodes: list[YamlNode], source: str
+) -> None:
+    lines: dict[str, int] = {}
+    for entry, node in zip(entries, nodes, strict=True):
+        name = entry["name"]
+        if "/" in name:
+            raise FormatError(
+                f"a slash in the name '{name}'",
+                where=f"{source}:{node.line}",
+                cure="leave it out: it stands between tree and branch in the names of segments",
+            )
+        if name in lines:
+            raise FormatError(
+                f"two trees called '{name}', the first in line {lines[name]}",
+                where=f"{source}:{node.line}",
+                cure="give each a name of its own",
+            )
+        lines[name] = node.line

@@ -1,0 +1,74 @@
+"""
+A species by its key, or a file of one's own beside the table.
+
+The file says which entry of the table the species is like and what is measured otherwise, in the keys of a tree's
+YAML; leaves are those of that entry::
+
+    name: elm of the park
+    species: ash
+    wood: {modulus: 7.2e9, density: 980, damping_bare: .03}
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tree_sway_ros.core.tree.species import Species, species_keys, species_named
+from tree_sway_ros.errors import SpeciesError
+from tree_sway_ros.files.text_file import read_text
+from tree_sway_ros.files.trees.yaml.tree_yaml import species_of
+from tree_sway_ros.files.yaml_nodes import parse_yaml
+from tree_sway_ros.files.yaml_schema import Schema, SchemaCheck, tree_schema
+
+_SUFFIXES = (".yaml", ".yml", ".json")
+
+
+def open_species(key_or_path: str | Path) -> Species:
+    """
+    Open a species.
+
+    Parameters
+    ----------
+    key_or_path
+        Key in the species table, or a YAML file.
+
+    Raises
+    ------
+    SpeciesError
+        A key that the table does not know, and no file.
+    FormatError
+        Not YAML, or not what the schema says; names file, line and key.
+
+    """
+    text = str(key_or_path)
+    path = Path(text).expanduser()
+    if text in species_keys() or path.suffix.lower() not in _SUFFIXES:
+        return species_named(text)
+    if not path.exists():
+        raise SpeciesError(
+            f"no species file '{text}'", cure=f"give a file, or one of: {', '.join(sorted(species_keys()))}"
+        )
+    return parse_species(read_text(path), str(path))
+
+
+def parse_species(text: str, source: str = "text") -> Species:
+    """Read a species from YAML text; see `open_species`."""
+    root = parse_yaml(text, source)
+    values: dict[str, Any] = SchemaCheck(species_schema(), source).value(root)
+    species = species_of(values, root, source)
+    return replace(species, title=values.get("name", species.title))
+
+
+def species_schema() -> Schema:
+    """Return the JSON schema of a species file: that of a tree's YAML without the tree."""
+    whole = tree_schema()
+    known = ("tree_sway", "name", "species", "wood")
+    return {
+        "type": "object",
+        "required": ["species"],
+        "properties": {key: whole["properties"][key] for key in known},
+        "$defs": whole["$defs"],
+    }

@@ -1,1 +1,0 @@
-"""Files into core objects: trees and wind records, one file a format."""

@@ -1,0 +1,136 @@
+"""
+A table of parameters on a node: declared with descriptors, checked by our own rules, changed while it runs.
+
+ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently ignores a
+misspelt name. Parameters are therefore declared with dynamic typing; kinds, ranges and names are checked
+here, and a refused change keeps the old value and says why.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.ros.parameters.parameter import (
+    Parameter,
+    Table,
+    Value,
+    unknown_names,
+    unknown_parameter,
+)
+
+_LARGEST = {float: 1e308, int: 2**62}
+
+
+class ParameterValues:
+    """
+    The values of a node's parameters, kept in step with ROS.
+
+    Parameters
+    ----------
+    node
+        Created with ``automatically_declare_parameters_from_overrides=True``, so that what the user
+        gave can be seen, misspelt names included.
+    table
+        The node's parameters.
+    on_change
+        Called with the new values by name after a live change.
+
+    Raises
+    ------
+    ParameterError
+        An unknown name or a refused value among what the user gave.
+
+    """
+
+    def __init__(
+        self,
+        node: Any,
+        table: Table,
+        on_change: Callable[[dict[str, Value]], None] | None = None,
+    ) -> None:
+        self._by_name = {parameter.name: parameter for parameter in table}
+        self._values: dict[str, Value] = {}
+        self._on_change = on_change
+        given = {name: item.value for name, item in node.get_parameters_by_prefix("").items()}
+        name = node.get_name()
+        for unknown in unknown_names(table, given):
+            raise unknown_parameter(table, unknown, where=f"node '{name}'")
+        for parameter in table:
+            value = given.get(parameter.name, parameter.default)
+            self._values[parameter.name] = parameter.checked(value)
+            if parameter.name in given:
+                node.undeclare_parameter(parameter.name)
+            shown = list(value) if isinstance(value, tuple) else value
+            node.declare_parameter(
+                parameter.name, shown, _descriptor(parameter), ignore_override=True
+            )
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._apply)
+
+    def __getitem__(self, name: str) -> Value:
+        """Value of a parameter, of its own kind: a float is a float even if ROS was given 40."""
+        return self._values[name]
+
+    def __call__(self, *names: str) -> dict[str, Value]:
+        """Values of some parameters, as keyword arguments."""
+        return {name: self._values[name] for name in names}
+
+    def _check(self, changes: list[Any]) -> SetParametersResult:
+        for change in changes:
+            parameter = self._by_name.get(change.name)
+            if parameter is None:
+                continue
+            try:
+                new = parameter.checked(change.value)
+            except ParameterError as error:
+                return SetParametersResult(successful=False, reason=str(error))
+            if not parameter.live and new != self._values[change.name]:
+                reason = (
+                    f"parameter '{change.name}' is read at start only; "
+                    f"restart with -p {change.name}:={change.value}"
+                )
+                return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _apply(self, changes: list[Any]) -> None:
+        new = {
+            change.name: self._by_name[change.name].checked(change.value)
+            for change in changes
+            if change.name in self._by_name
+        }
+        self._values.update(new)
+        if new and self._on_change is not None:
+            self._on_change(new)
+
+
+def _descriptor(parameter: Parameter) -> ParameterDescriptor:
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    descriptor = ParameterDescriptor(
+        description=f"{parameter.description}{unit}",
+        additional_constraints=parameter.range_text
+        + ("" if parameter.live else " (read at start only)"),
+        dynamic_typing=True,
+    )
+    if parameter.minimum is None and parameter.maximum is None:
+        return descriptor
+    kind = type(parameter.default)
+    largest = _LARGEST.get(kind, 0)
+    low = -largest if parameter.minimum is None else parameter.minimum
+    high = largest if parameter.maximum is None else parameter.maximum
+    if kind is float:
+        descriptor.floating_point_range = [
+            FloatingPointRange(from_value=float(low), to_value=float(high))
+        ]
+    elif kind is int:
+        descriptor.integer_range = [IntegerRange(from_value=int(low), to_value=int(high))]
+    return descriptor

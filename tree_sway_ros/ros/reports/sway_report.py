@@ -1,0 +1,120 @@
+"""Does the stream keep up, and with which model? What the solver says on `/diagnostics`."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import asdict
+from typing import Any
+
+from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
+from tree_sway_ros.ros.timing.pacer import Pace, Pacer
+from tree_sway_ros.ros.timing.stepping import Stepper
+
+_WIND = {
+    "none": (WARN, "no wind yet: the tree is at rest"),
+    "live": (OK, "live"),
+    "holding": (OK, "a sample is overdue: the last wind is held"),
+    "decaying": (WARN, "no wind: its force decays"),
+    "stale": (STALE, "no wind: nothing is left of its force"),
+}
+
+
+class SwayReport:
+    """Compares each report with the one before."""
+
+    def __init__(self) -> None:
+        self._skipped = 0
+        self._frames = 0
+        self._time = time.monotonic()
+
+    def statuses(self, stepper: Stepper, pacer: Pacer, frames: int) -> list[Status]:
+        """
+        Report on the wind, the output and the model.
+
+        Parameters
+        ----------
+        stepper, pacer
+            Of the solver.
+        frames
+            Pose arrays published so far.
+
+        """
+        output = self._output(pacer.pace(), 1e9 / pacer.period, frames)
+        statuses = [_wind(stepper.wind_state), output, _model(stepper.simulator)]
+        gusts = getattr(stepper.simulator, "gusts", None)
+        return statuses if gusts is None else [*statuses, _gusts(gusts)]
+
+    def _output(self, pace: Pace, rate: float, frames: int) -> Status:
+        now = time.monotonic()
+        published = (frames - self._frames) / max(1e-9, now - self._time)
+        skipped = pace.skipped - self._skipped
+        self._time, self._frames, self._skipped = now, frames, pace.skipped
+        values = {
+            "rate [Hz]": pace.rate,
+            "wanted [Hz]": rate,
+            "published [Hz]": published,
+            "late p50 [s]": pace.late_p50,
+            "late p95 [s]": pace.late_p95,
+            "late max [s]": pace.late_max,
+            "work [s]": pace.work_mean,
+            "frames": frames,
+            "skipped": pace.skipped,
+            "clock forward": pace.clamped,
+            "clock back": pace.restarts,
+        }
+        if skipped > 0.01 * rate:
+            late = f"{1e3 * pace.late_p95:.1f} ms late (p95)"
+            return Status("output", WARN, f"{skipped} frames skipped, {late}", values)
+        return Status("output", OK, f"{pace.rate:.1f} Hz", values)
+
+
+def _wind(state: str) -> Status:
+    level, sentence = _WIND[state]
+    return Status("wind", level, sentence, {"state": state})
+
+
+def _model(simulator: Any) -> Status:
+    values = {
+        "fidelity": simulator.rung,
+        "branches solved": simulator.n_solved,
+        "branches copied": simulator.n_copied,
+        "branches frozen": simulator.n_frozen,
+        **asdict(simulator.counts),
+    }
+    trees = simulators_of(simulator)
+    if trees != (simulator,):
+        values |= {f"fidelity of {each.tree.name}": each.rung for each in trees}
+    adaptive = [each for each in trees if hasattr(each, "choice")]
+    if adaptive:
+        worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
+        values["chosen"] = ", ".join(dict.fromkeys(each.choice.name for each in adaptive))
+        values["estimated error [m]"] = worst.choice.error
+        values["tolerance [m]"] = worst.tolerance
+        cost, budget = sum(each.frame_cost for each in adaptive), sum(each.budget for each in adaptive)
+        values["estimated cost [us]"] = cost
+        values["budget [us]"] = budget
+        if 0.0 < budget < cost:
+            what = f"no model is within the budget; allow {cost:.3g} us for {values['chosen']}"
+            return Status("model", WARN, what, values)
+        if worst.choice.error > worst.tolerance:
+            nearest = f"allow {worst.choice.error:.2g} m for {worst.choice.name}"
+            what = f"no model is within the tolerance; {nearest}"
+            return Status("model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values)
+    return Status("model", OK, simulator.rung, values)
+
+
+def _gusts(history: Any) -> Status:
+    """How late the trees of a forest feel the wind."""
+    values = {
+        "longest delay [s]": float(history.delay.max()),
+        "trees upwind of the anemometer": history.n_ahead,
+        "trees beyond the memory": history.n_forgotten,
+    }
+    if history.n_ahead:
+        what = f"{history.n_ahead} trees stand upwind of the anemometer and feel the wind at once"
+        return Status("gusts", WARN, what, values)
+    if history.n_forgotten:
+        what = f"{history.n_forgotten} trees stand too far downwind: they feel the oldest wind kept"
+        return Status("gusts", WARN, what, values)
+    return Status("gusts", OK, f"up to {values['longest delay [s]']:.1f} s late", values)

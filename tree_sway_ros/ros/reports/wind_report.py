@@ -1,0 +1,79 @@
+"""Is the wind there? Rate and age of the samples, and what to call their state."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
+
+_WINDOW = 5.0
+STALE_AFTER = 5.0
+"""In time-outs: a wind that was lost for so long is stale, the trees are at rest again."""
+
+
+class WindReport:
+    """Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with stamps."""
+
+    def __init__(self) -> None:
+        self._arrivals: deque[float] = deque(maxlen=1000)
+        self._latest: float | None = None
+
+    def add(self, is_accepted: bool) -> None:
+        """Count a sample."""
+        now = time.monotonic()
+        self._arrivals.append(now)
+        if is_accepted:
+            self._latest = now
+
+    @property
+    def age(self) -> float | None:
+        """Time since the last good sample in [s]; None if there was none."""
+        return None if self._latest is None else time.monotonic() - self._latest
+
+    @property
+    def rate(self) -> float:
+        """Samples a second over the last five seconds in [Hz]."""
+        now = time.monotonic()
+        recent = [arrival for arrival in list(self._arrivals) if now - arrival <= _WINDOW]
+        if len(recent) < 2 or now - recent[-1] > 1.0 + 2.0 * (recent[-1] - recent[-2]):
+            return 0.0
+        return (len(recent) - 1) / max(1e-9, recent[-1] - recent[0])
+
+    def status(
+        self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()
+    ) -> Status:
+        """
+        Report.
+
+        Parameters
+        ----------
+        timeout
+            Age of the last good sample from which on the wind counts as lost [s].
+        gate
+            Which counted what was refused or odd.
+        types_not_read
+            Message types on the topic that the node is not set to read.
+
+        """
+        age = self.age
+        values: dict[str, object] = {
+            "rate [Hz]": self.rate,
+            "age [s]": "never" if age is None else age,
+            "refused": gate.counts.refused,
+            **asdict(gate.counts),
+        }
+        if age is None:
+            refused = f"; {gate.counts.refused} samples refused" if gate.counts.refused else ""
+            others = f"; set input_type to read {', '.join(types_not_read)}" if types_not_read else ""
+            return Status("wind", WARN, f"no wind yet{refused}{others}", values)
+        if age > STALE_AFTER * timeout:
+            return Status("wind", STALE, f"no wind for {age:.0f} s", values)
+        if age > timeout:
+            return Status("wind", WARN, f"no wind for {age:.1f} s, its force decays", values)
+        if gate.is_frozen:
+            return Status("wind", WARN, "frozen: the sensor repeats the same sample", values)
+        return Status("wind", OK, f"{self.rate:.1f} Hz", values)

@@ -1,0 +1,99 @@
+"""
+The tree as JSON: what the poses do not say, once, for whoever draws them.
+
+Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of the old form
+would go wrong; new keys alone do not raise it.
+
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from tree_sway_ros.core.leaves.flutter import leaf_list
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.tree import Tree
+
+VERSION = 1
+REPEAT_PERIOD = 5.0
+"""From one description to the next [s]: bags and bridges lose a latched topic."""
+
+_LENGTHS = {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}}
+_NAMES = {"type": "array", "items": {"type": "string"}}
+_INDICES = {"type": "array", "items": {"type": "integer", "minimum": -1}}
+SCHEMA: dict[str, Any] = {
+    "$schema": "https://json-schema.org/draft/2020-12/schema",
+    "title": "tree_sway_ros tree_description",
+    "type": "object",
+    "required": ["version", "name", "species", "frame_id", "segments", "branches"],
+    "properties": {
+        "version": {"const": VERSION},
+        "name": {"type": "string"},
+        "species": {"type": "string"},
+        "frame_id": {"type": "string"},
+        "segments": {
+            "type": "object",
+            "description": "one item a segment; SI units",
+            "required": ["names", "parents", "lengths", "base_radii", "tip_radii", "branches"],
+            "properties": {
+                "names": _NAMES,
+                "parents": _INDICES,
+                "lengths": _LENGTHS,
+                "base_radii": _LENGTHS,
+                "tip_radii": _LENGTHS,
+                "branches": _INDICES,
+            },
+        },
+        "branches": {
+            "type": "object",
+            "description": "one item a branch, depth first",
+            "required": ["names", "parents", "first_segments"],
+            "properties": {"names": _NAMES, "parents": _INDICES, "first_segments": _INDICES},
+        },
+        "leaves": {
+            "type": "object",
+            "description": "one item a leaf cluster, carried by its segment; absent without leaves",
+            "required": ["segment", "flutter"],
+        },
+    },
+}
+
+
+def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
+    """
+    Describe a tree as JSON of `SCHEMA`.
+
+    Parameters
+    ----------
+    tree
+        The tree, or trees joined to one record: each begins with a segment whose parent is -1.
+    frame_id
+        Frame of the poses.
+    leaves
+        Its clusters of leaves; left out if None.
+
+    """
+    return json.dumps(
+        {
+            **({} if leaves is None else {"leaves": leaf_list(leaves)}),
+            "version": VERSION,
+            "name": tree.name,
+            "species": tree.species,
+            "frame_id": frame_id,
+            "segments": {
+                "names": list(tree.segment_names),
+                "parents": tree.segment_parent.tolist(),
+                "lengths": tree.length.tolist(),
+                "base_radii": (tree.base_diameter / 2.0).tolist(),
+                "tip_radii": (tree.tip_diameter / 2.0).tolist(),
+                "branches": tree.branch_of_segment.tolist(),
+            },
+            "branches": {
+                "names": list(tree.branch_names),
+                "parents": tree.branch_parent.tolist(),
+                "first_segments": tree.branch_first[:-1].tolist(),
+            },
+        },
+        separators=(",", ":"),
+    )

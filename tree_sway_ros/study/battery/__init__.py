@@ -1,0 +1,7 @@
+"""
+The cases where methods of integration fail, and what ours does there.
+
+One row per file in ``rows``.
+The methods live in ``study/methods``.
+
+"""

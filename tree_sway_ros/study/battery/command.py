@@ -1,0 +1,19 @@
+"""``tree-sway battery``: the cases where methods of integration fail, and what ours does there."""
+
+from __future__ import annotations
+
+import argparse
+
+from tree_sway_ros.study.battery.report import CASES, run_battery
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("case", nargs="*", help=f"{', '.join(CASES)}; all if left out")
+    parser.add_argument("--full", action="store_true", help="all steps and runs: some minutes")
+    parser.add_argument("--json", metavar="FILE", help="write the rows there")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the cases; 1 if a row is not as it should be."""
+    return run_battery(arguments.full, arguments.json, arguments.case or None)

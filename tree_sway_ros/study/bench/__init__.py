@@ -1,0 +1,7 @@
+"""
+What a step costs, against a stated baseline in the same run.
+
+Ratios first, as machines are noisy.
+No test asserts a time.
+
+"""

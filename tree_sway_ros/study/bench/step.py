@@ -1,0 +1,143 @@
+"""
+One step of a tree, timed: the compiled kernels against the same formulas in plain numpy.
+
+Both go through the same gusts; they must agree before anything is timed. Rounds alternate, so that whatever else
+the machine does meets both.
+
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.study.bench.numpy_twin import NumpyTwin
+
+_DT = 1.0 / 60.0
+_STEPS_A_ROUND, _TWIN_STEPS_A_ROUND = 200, 10
+_STEPS_TO_AGREE = 120
+#: Largest difference of any number of the pose block, [m] and [-].
+_AGREEMENT = 1e-9
+
+
+@dataclass(frozen=True)
+class StepTiming:
+    """
+    What one step costs, solving and placing, in [s].
+
+    Parameters
+    ----------
+    rung
+        Model.
+    median, minimum
+        Of the compiled step.
+    twin_median, twin_minimum
+        Of the step in numpy; None where there is no twin.
+    difference
+        Largest difference of the two pose blocks over the steps that were compared.
+
+    """
+
+    rung: str
+    median: float
+    minimum: float
+    twin_median: float | None = None
+    twin_minimum: float | None = None
+    difference: float = 0.0
+
+    @property
+    def ratio(self) -> float | None:
+        """How many times faster than numpy, by the medians; None without a twin."""
+        return None if self.twin_median is None else self.twin_median / self.median
+
+
+def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
+    """
+    Time a step of a tree.
+
+    Parameters
+    ----------
+    tree
+        The tree; no twig of it copies another.
+    rung
+        Model; ``branch`` and ``subtree`` have a twin to race.
+    rounds
+        Of 200 steps each.
+
+    Returns
+    -------
+    StepTiming
+        Medians and minima over all steps.
+
+    Raises
+    ------
+    TreeSwayError
+        If the two disagree, so that there is nothing to compare.
+
+    """
+    simulator = SwaySimulator(tree, rung=rung, twig_tolerance=-1.0)
+    twin = NumpyTwin(simulator) if rung in ("branch", "subtree") else None
+    winds = gusts(_STEPS_A_ROUND)
+    poses = np.zeros((tree.n_segments, 7))
+    difference = 0.0 if twin is None else _agree(simulator, twin, winds, poses)
+
+    def own_step(wind: Floats) -> None:
+        simulator.step(wind, _DT)
+        simulator.place(poses)
+
+    def twin_step(wind: Floats) -> None:
+        assert twin is not None
+        twin.step(wind, _DT)
+        twin.place(poses)
+
+    own_step(winds[0])
+    own: list[float] = []
+    others: list[float] = []
+    for _ in range(rounds):
+        own += _timed(own_step, winds)
+        if twin is not None:
+            others += _timed(twin_step, winds[:_TWIN_STEPS_A_ROUND])
+    if not others:
+        return StepTiming(rung, float(np.median(own)), min(own))
+    return StepTiming(
+        rung, float(np.median(own)), min(own), float(np.median(others)), min(others), difference
+    )
+
+
+def gusts(count: int) -> Floats:
+    """Wind of a gusty day around 8 m/s, the same in every run, (count, 3)."""
+    rng = np.random.default_rng(0)
+    return np.array([8.0, 0.0, 0.0]) + rng.normal(0.0, [2.0, 1.5, 0.5], (count, 3))
+
+
+def _agree(simulator: SwaySimulator, twin: NumpyTwin, winds: Floats, poses: Floats) -> float:
+    """Largest difference over some steps; raises where it is more than rounding."""
+    difference = 0.0
+    for wind in winds[:_STEPS_TO_AGREE]:
+        simulator.step(wind, _DT)
+        twin.step(wind, _DT)
+        difference = max(difference, float(np.abs(simulator.place(poses) - twin.place()).max()))
+    if not difference <= _AGREEMENT:
+        raise TreeSwayError(
+            f"the kernels and their numpy twin differ by {difference:.2e}",
+            where=simulator.rung,
+            cure=f"find out which is wrong; {_AGREEMENT:g} is allowed",
+        )
+    return difference
+
+
+def _timed(step: Callable[[Floats], object], winds: Floats) -> list[float]:
+    """Time of each step in [s]."""
+    times = []
+    for wind in winds:
+        begin = time.perf_counter()
+        step(wind)
+        times.append(time.perf_counter() - begin)
+    return times

@@ -1,0 +1,7 @@
+"""
+Speed against accuracy as pictures and tables.
+
+One file per chart.
+The numbers come from benches and references.
+
+"""

@@ -1,0 +1,184 @@
+"""
+The ladder of models against the truth: error of each rung, and what it costs a frame.
+
+The truth solves every segment, each in two pieces, at four times the frame rate; trees are the three of 40
+branches in `example_trees`, in turbulent wind of the spectrum that engineers use, or in a record.
+
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.reference.articulated import ArticulatedTree
+from tree_sway_ros.core.reference.measure import Swaying, frame_means, record_tips, tip_error
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.study.bench.frame_time import frame_times
+from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, RATIOS, forked_tree
+from tree_sway_ros.view.plotting import new_figure, save_figure
+
+FRAME = 1.0 / 60.0
+DAMPING_RATIO = 0.05
+EXAMPLE_WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY)
+
+LADDER: dict[str, dict[str, Any]] = {
+    "branch": {"rung": "branch"},
+    "subtree": {"rung": "subtree"},
+    "modes 3": {"rung": "modes", "n_modes": 3},
+    "modes 6": {"rung": "modes", "n_modes": 6},
+    "modes 12": {"rung": "modes", "n_modes": 12},
+    "coupled": {"rung": "coupled"},
+}
+"""Rungs of the chart, and how a simulator is told."""
+
+_COLOURS = ("#1f6fb4", "#c0682b", "#2f6b2f")
+_MARKERS = ("o", "s", "^")
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One point: tree, model, tip error over tip motion in [-], time a frame in [ns]."""
+
+    tree: str
+    model: str
+    error: float
+    nanoseconds: float
+
+
+def chart_fidelity(
+    out_dir: str | Path,
+    *,
+    wind: tuple[Floats, Floats] | None = None,
+    duration: float = 20.0,
+    trees: Iterable[Tree] | None = None,
+    gravity: float = 9.81,
+    seed: int = 1,
+) -> list[Rung]:
+    """
+    Measure and draw ``fidelity.csv`` and ``fidelity.png``.
+
+    Parameters
+    ----------
+    out_dir
+        Folder to write into; made if it is not there.
+    wind
+        Times in [s], (m,), and velocities in [m/s], (m, 3), of a record; simulated at 20 Hz and 7 m/s if None.
+    duration
+        How much of it, in [s].
+    trees
+        The three of 40 branches if None.
+    gravity
+        In [m/s^2].
+    seed
+        Of the simulated wind.
+
+    """
+    times, velocity = wind if wind is not None else simulated_wind(duration, seed)
+    part = times <= times[0] + duration
+    means = frame_means(times[part], velocity[part], FRAME)
+    forest = list(trees) if trees is not None else [forked_tree(*ratio) for ratio in RATIOS]
+    points = [point for tree in forest for point in climb(tree, means, gravity)]
+    folder = Path(out_dir)
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "fidelity.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, ["tree", "model", "error", "nanoseconds"])
+        writer.writeheader()
+        writer.writerows(asdict(point) for point in points)
+    _draw(points, folder / "fidelity.png")
+    return points
+
+
+def simulated_wind(duration: float, seed: int) -> tuple[Floats, Floats]:
+    """Kaimal turbulence about 7 m/s at 20 Hz: times in [s] and velocities in [m/s]."""
+    rate = 20.0
+    velocity = simulate_turbulence(
+        7.0, rate=rate, duration=duration + 1.0, rng=np.random.default_rng(seed)
+    )
+    return np.arange(len(velocity)) / rate, velocity
+
+
+def climb(tree: Tree, wind: Floats, gravity: float) -> list[Rung]:
+    """Every rung of the ladder on one tree in one wind, mean of each frame in [m/s], (t, 3)."""
+    truth = record_tips(articulated(tree, gravity, pieces=2), tree, wind, FRAME, substeps=4)
+    models: dict[str, Swaying] = {
+        name: SwaySimulator(
+            tree,
+            EXAMPLE_WOOD,
+            damping_ratio=DAMPING_RATIO,
+            gravity=gravity,
+            twig_tolerance=-1.0,
+            **how,
+        )
+        for name, how in LADDER.items()
+    }
+    models["segments"] = articulated(tree, gravity, pieces=1)
+    tips = {name: record_tips(model, tree, wind, FRAME) for name, model in models.items()}
+    cost = frame_times(models, tree, wind, FRAME)
+    return [
+        Rung(
+            tree.name,
+            name,
+            tip_error(tree, tips[name], truth),
+            cost[name].step + cost[name].place,
+        )
+        for name in models
+    ]
+
+
+def articulated(tree: Tree, gravity: float, *, pieces: int) -> ArticulatedTree:
+    """Make the truth's model of a tree of example wood."""
+    wood = EXAMPLE_WOOD
+    return ArticulatedTree(
+        tree,
+        wood.modulus,
+        wood.density,
+        DAMPING_RATIO,
+        wood.bare_drag_coefficient,
+        gravity=gravity,
+        subdivisions=pieces,
+        twist_ratio=2.0 * wood.shear_ratio,
+    )
+
+
+def _draw(points: list[Rung], path: Path) -> None:
+    figure = new_figure(8.4, 5.2)
+    axes = figure.add_axes((0.09, 0.11, 0.88, 0.8))
+    names = list(dict.fromkeys(point.tree for point in points))
+    for number, name in enumerate(names):
+        here = [point for point in points if point.tree == name]
+        x, y = [p.nanoseconds / 1e3 for p in here], [p.error for p in here]
+        colour, marker = _COLOURS[number % 3], _MARKERS[number % 3]
+        axes.plot(x, y, marker=marker, color=colour, ms=7, lw=0.6, alpha=0.9, label=name)
+    for model in dict.fromkeys(point.model for point in points):
+        here = [point for point in points if point.model == model]
+        lowest = min(here, key=lambda p: p.error)
+        place = lowest.nanoseconds / 1e3, lowest.error
+        way, side = ((-9, -4), "right") if model.startswith("modes") else ((0, -15), "center")
+        text = axes.annotate(model, place, xytext=way, textcoords="offset points", ha=side, fontsize=10)
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8})
+    errors, costs = [p.error for p in points], [p.nanoseconds / 1e3 for p in points]
+    axes.set(xscale="log", yscale="log")
+    axes.set(xlim=(min(costs) / 1.5, 1.6 * max(costs)), ylim=(min(errors) / 2, 1.5))
+    axes.set_xlabel("CPU time a frame, solving and placing [us]", fontsize=11)
+    axes.set_ylabel("tip error over tip motion [-]", fontsize=11)
+    ticks = [m * 10**e for e in range(5) for m in (1, 2, 5)]
+    low, high = axes.get_xlim()
+    axes.set_xticks([t for t in ticks if low <= t <= high])
+    axes.minorticks_off()
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.grid(alpha=0.25)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(title="length and diameter ratio", frameon=False, loc="upper right")
+    figure.suptitle("Each rung of the ladder against every segment solved")
+    save_figure(figure, path)

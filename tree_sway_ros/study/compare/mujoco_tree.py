@@ -1,0 +1,254 @@
+"""
+The tree in MuJoCo: the same bodies, springs and drag in an engine that nobody here wrote.
+
+The bodies are those of the articulated reference: each segment bends at one place, on two hinges of stiffness
+``1 / integral(ds / EI)`` across it. Joints so far apart are a little stiff (1 to 2 % at six segments a branch), so all
+springs are scaled by one factor, the one that gives the beam's static sway of the stem's tip in a steady wind; the
+first frequency then is within .5 % of the beam's (`agreement` measures both). Needs ``pip install mujoco``.
+
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
+from tree_sway_ros.core.reference.articulated_bodies import Bodies, articulated_bodies
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.study.frame.frame import frame_model
+
+_NO_TWIST = 500.0
+"""Shear modulus over Young's by which the beam does not twist either: the hinges do not."""
+
+
+def mujoco_module() -> Any:
+    """
+    Import MuJoCo.
+
+    Raises
+    ------
+    MissingDependencyError
+        If it is not installed.
+
+    """
+    try:
+        import mujoco
+    except ModuleNotFoundError as error:
+        raise MissingDependencyError("MuJoCo is not installed", cure="pip install mujoco") from error
+    return mujoco
+
+
+class MujocoTree:
+    """
+    A tree that MuJoCo steps.
+
+    Parameters
+    ----------
+    tree, species
+        The tree and its wood.
+    damping_ratio
+        In [-]: of each of the lowest 40 modes if `even`, else of the first, by dampers in proportion to the springs.
+    even
+        Whether the modes above the first get the same ratio. That takes a step of 1/500 s or less, as the
+        dampers then no longer hold the stiff joints at long steps.
+    match_beam
+        Whether the springs are scaled to the beam's static sway; if not, they are the articulated reference's.
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        species: Species,
+        damping_ratio: float,
+        *,
+        even: bool = True,
+        match_beam: bool = True,
+    ) -> None:
+        mujoco = mujoco_module()
+        self.tree, self.species = tree, species
+        self.bodies = articulated_bodies(tree, species.modulus, species.density, 0.0, 1.0)
+        self.model = mujoco.MjModel.from_xml_string(_mjcf(self.bodies))
+        self.data = mujoco.MjData(self.model)
+        # The engine numbers its bodies as they nest; here they stand as segments do, the ground first.
+        names = ["world", *(f"s{i}" for i in range(tree.n_segments))]
+        self._body = np.array([self.model.body(name).id for name in names])
+        self._step, self._forward = mujoco.mj_step, mujoco.mj_forward
+        self._forward(self.model, self.data)
+        self._stem_tip = int(tree.branch_first[1]) - 1
+        self._beam = frame_model(
+            tree, species.modulus, species.density, subdivisions=4, shear_ratio=_NO_TWIST
+        )
+        self._momentum, self._gain = np.zeros((0, self.model.nv)), np.zeros(0)
+        self._mass, self._stiffness = self._matrices(mujoco)
+        self._expected = self._beam_sway()
+        self._stiffness *= self._sway() / self._expected if match_beam else 1.0
+        self.model.jnt_stiffness[:] = self._stiffness
+        self._momentum, self._gain = self._set_damping(damping_ratio, 40 if even else 1)
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        self.data.qpos[:] = 0.0
+        self.data.qvel[:] = 0.0
+        self._forward(self.model, self.data)
+
+    def step(self, wind: Floats, dt: float) -> None:
+        """Advance by dt in [s] under a wind in [m/s], (3,)."""
+        self.blow(wind)
+        self.advance(dt)
+
+    def advance(self, dt: float) -> None:
+        """Let MuJoCo step by dt in [s] under the forces as they stand."""
+        self.model.opt.timestep = dt
+        self._step(self.model, self.data)
+
+    def blow(self, wind: Floats) -> None:
+        """Set the forces of the wind in [m/s], (3,), and of what damping the joints do not do."""
+        bodies, data = self.bodies, self.data
+        joint, turn, velocity, spin = self._motion()
+        carrier = bodies.carrier + 1
+        root_side = np.einsum("nij,nj->ni", turn[carrier], bodies.axis) * bodies.reach[:, :1]
+        tip_side = np.einsum("nij,nj->ni", turn[1:], bodies.axis) * bodies.reach[:, 1:]
+        chord = root_side + tip_side
+        chord /= np.linalg.norm(chord, axis=1)[:, None]
+        middle = velocity[1:] + 0.5 * np.cross(spin[1:], tip_side)
+        middle -= 0.5 * np.cross(spin[carrier], root_side)
+        air = wind - middle
+        across = air - np.einsum("ni,ni->n", air, chord)[:, None] * chord
+        speed = float(np.clip(np.linalg.norm(wind), STREAMLINING_FROM, STREAMLINING_TO))
+        coefficient, exponent = self.species.drag_law(in_leaf=False)
+        pressure = 0.5 * AIR_DENSITY * coefficient * speed**-exponent
+        force = pressure * np.linalg.norm(across, axis=1)[:, None] * across
+        wrench, centre = np.zeros((len(joint), 6)), data.xipos[self._body]
+        tip_force, root_force = bodies.area[:, 1:] * force, bodies.area[:, :1] * force
+        _push(wrench, np.arange(1, len(joint)), joint[1:] + 0.5 * tip_side, tip_force, centre)
+        _push(wrench, carrier, joint[1:] - 0.5 * root_side, root_force, centre)
+        wrench[0] = 0.0
+        data.xfrc_applied[self._body] = wrench
+        rate = self._gain * (self._momentum @ data.qvel)
+        data.qfrc_applied[:] = -self._momentum.T @ rate
+
+    def tips(self) -> Floats:
+        """Tip of each branch in [m], (b, 3)."""
+        last = self.tree.branch_first[1:] - 1
+        body = self._body[1 + last]
+        turn = self.data.xmat.reshape(-1, 3, 3)[body]
+        ahead = self.bodies.reach[last, 1:] * self.bodies.axis[last]
+        tips: Floats = self.data.xpos[body] + np.einsum("nij,nj->ni", turn, ahead)
+        return tips
+
+    def agreement(self) -> tuple[float, float]:
+        """First frequency, and static sway of the stem's tip in a steady wind, over the beam model's."""
+        lowest = float(self._beam.frequencies(1)[0])
+        return float(self._circular[0]) / (2.0 * math.pi) / lowest, self._sway() / self._expected
+
+    def _beam_sway(self) -> float:
+        """Sway of the stem's tip by the beam model, for a unit of wind pressure along x."""
+        axis = self.bodies.axis
+        across = np.array([1.0, 0.0, 0.0]) - axis[:, :1] * axis
+        force = self.bodies.area.sum(axis=1) * np.linalg.norm(across, axis=1)
+        moved = self._beam.static(force[:, None] * across)
+        return float(moved[self._beam.end_node[self._stem_tip], 0])
+
+    def _sway(self) -> float:
+        """Sway of the stem's tip by the engine's own Jacobians, for a unit of wind pressure along x."""
+        tiny = 1e-3
+        self.reset()
+        self.blow(np.array([1.0, 0.0, 0.0]))
+        coefficient, exponent = self.species.drag_law(in_leaf=False)
+        pressure = 0.5 * AIR_DENSITY * coefficient * STREAMLINING_FROM**-exponent
+        self.data.qpos[:] = tiny / pressure * self._generalised() / self._stiffness
+        self._forward(self.model, self.data)
+        sway = float(self.tips()[0, 0] - self.tree.end[self._stem_tip, 0]) / tiny
+        self.reset()
+        return sway
+
+    def _generalised(self) -> Floats:
+        mujoco = mujoco_module()
+        out = np.zeros(self.model.nv)
+        for body in range(1, self.model.nbody):
+            wrench = self.data.xfrc_applied[body]
+            mujoco.mj_applyFT(
+                self.model, self.data, wrench[:3], wrench[3:], self.data.xipos[body], body, out
+            )
+        return out
+
+    def _motion(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Joint, rotation, velocity of the joint and angular velocity of each body, the ground's first."""
+        data = self.data
+        centre = data.subtree_com[self.model.body_rootid]
+        spin = data.cvel[:, :3]
+        velocity = data.cvel[:, 3:] + np.cross(spin, data.xpos - centre)
+        turn = data.xmat.reshape(-1, 3, 3)
+        return data.xpos[self._body], turn[self._body], velocity[self._body], spin[self._body]
+
+    def _matrices(self, mujoco: Any) -> tuple[Floats, Floats]:
+        # Row by row: the call for the whole matrix differs between versions.
+        mass = np.zeros((self.model.nv, self.model.nv))
+        for row, unit in zip(mass, np.eye(self.model.nv), strict=True):
+            mujoco.mj_mulM(self.model, self.data, row, unit)
+        return mass, np.array(self.model.jnt_stiffness)
+
+    def _set_damping(self, ratio: float, count: int) -> tuple[Floats, Floats]:
+        """Dampers by which the last of these modes has the ratio; the rest for those below as modal forces."""
+        root = np.sqrt(self._stiffness)
+        inverse_square, vectors = np.linalg.eigh(self._mass / np.outer(root, root))
+        self._circular: Floats = 1.0 / np.sqrt(inverse_square[::-1][:count])
+        modes = vectors[:, ::-1][:, :count] / root[:, None] * self._circular
+        by_stiffness = 2.0 * ratio / self._circular[-1]
+        self.model.dof_damping[:] = by_stiffness * self._stiffness
+        gain = 2.0 * ratio * self._circular - by_stiffness * self._circular**2
+        return (self._mass @ modes).T, gain
+
+
+def _push(wrench: Floats, body: Any, place: Floats, force: Floats, centre: Floats) -> None:
+    np.add.at(wrench, body, np.hstack([force, np.cross(place - centre[body], force)]))
+
+
+def _mjcf(bodies: Bodies) -> str:
+    """Write the model: a body a segment, with its frame at its joint and its axes the world's."""
+    children: list[list[int]] = [[] for _ in range(len(bodies.mass) + 1)]
+    for i, carrier in enumerate(bodies.carrier):
+        children[carrier + 1].append(i)
+    lines = [
+        '<mujoco><compiler angle="radian"/><option gravity="0 0 0" integrator="implicitfast">',
+        '<flag contact="disable"/></option><size memory="256M"/><worldbody>',
+    ]
+    stack = [(i, False) for i in reversed(children[0])]
+    while stack:
+        i, is_done = stack.pop()
+        if is_done:
+            lines.append("</body>")
+            continue
+        lines.append(_body(bodies, i))
+        stack.append((i, True))
+        stack += [(k, False) for k in reversed(children[i + 1])]
+    lines.append("</worldbody></mujoco>")
+    return "\n".join(lines)
+
+
+def _body(bodies: Bodies, i: int) -> str:
+    t = bodies.axis[i]
+    aside = np.array([0.0, 0.0, 1.0]) if abs(t[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
+    first = np.cross(t, aside)
+    first /= np.linalg.norm(first)
+    hinges = "".join(
+        f'<joint type="hinge" axis="{_text(axis)}" stiffness="{bodies.bend[i]:.17g}"/>'
+        for axis in (first, np.cross(t, first))
+    )
+    J = bodies.inertia[i]
+    inertia = _text(J[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])
+    return (
+        f'<body name="s{i}" pos="{_text(bodies.arm[i])}">{hinges}<inertial '
+        f'pos="{_text(bodies.centre[i])}" mass="{bodies.mass[i]:.17g}" fullinertia="{inertia}"/>'
+    )
+
+
+def _text(values: Floats) -> str:
+    return " ".join(f"{v:.17g}" for v in values)

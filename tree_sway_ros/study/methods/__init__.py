@@ -1,0 +1,7 @@
+"""
+Methods of time integration side by side, in the multiplier form and in the minimal form.
+
+Each declares its order, limit and source.
+The rules that the solver runs are in ``core/oscillators/step_rules``.
+
+"""

@@ -1,0 +1,7 @@
+"""
+Methods on the paper's coordinates with Lagrange multipliers: one step per file.
+
+The constraint is kept, stabilised or projected.
+Shared mechanics in ``multiplier_form``.
+
+"""
