@@ -140,7 +140,8 @@ def link_resources():
     for folder in (share, executables):  # what has gone from the checkout goes here too
         shutil.rmtree(folder, ignore_errors=True)
     links = {index / "tree_sway_ros": ROOT / "resource" / "tree_sway_ros"}
-    # File by file: `ros2 launch` looks for its files where os.walk goes, which passes linked folders by.
+    # File by file: `ros2 launch` looks for its files where os.walk goes, which passes linked
+    # folders by.
     shared = [ROOT / "package.xml", *ROOT.glob("launch/*.py"), *ROOT.glob("config/*")]
     links.update({share / path.relative_to(ROOT): path for path in shared})
     for entry_points in VENV.glob("lib/python*/site-packages/tree_sway_ros-*/entry_points.txt"):

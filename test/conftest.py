@@ -1,8 +1,13 @@
-"""For all tests: repeatable Hypothesis, one thread per test, small trees, and derivatives against differences."""
+"""
+For all tests: repeatable Hypothesis, one thread per test, small trees, and derivatives against
+differences.
+
+"""
 
 import os
 
-# Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the test beside.
+# Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the
+# test beside.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -62,7 +67,10 @@ class _Sketch:
 
 
 def _fork(fine=1):
-    """Stem, two limbs and a twig, none in one plane, the limbs bent; segments cut `fine` times finer."""
+    """
+    Stem, two limbs and a twig, none in one plane, the limbs bent; segments cut `fine` times finer.
+
+    """
     s = _Sketch()
     stem = s.add(None, 0, (0.05, 0.0, 1.0), 2.0, 0.030, 0.012, 4 * fine, sag=0.05)
     limb = s.add(stem, 2 * fine, (1.0, 0.3, 0.6), 0.9, 0.014, 0.006, 3 * fine, sag=0.08)
@@ -87,7 +95,10 @@ def _mirror_fork():
 
 
 def _random_tree(seed, n=12):
-    """Segments in random order, each on an earlier one's end; returns start, end, diameter, parent."""
+    """
+    Segments in random order, each on an earlier one's end; returns start, end, diameter, parent.
+
+    """
     rng = np.random.default_rng(seed)
     start, end = np.zeros((n, 3)), np.zeros((n, 3))
     parent = np.full(n, -1)

@@ -1,4 +1,7 @@
-"""The contract of the code's layout: layers, sizes, names, docstrings; read from the source, not run."""
+"""
+The contract of the code's layout: layers, sizes, names, docstrings; read from the source, not run.
+
+"""
 
 from __future__ import annotations
 
@@ -90,7 +93,9 @@ def code_lines(source: str) -> int:
         if token.type not in NO_CODE:
             code.update(range(token.start[0], token.end[0] + 1))
     for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(
+            node
+        ):
             first, last = node.body[0].lineno, node.body[0].end_lineno
             assert last is not None
             code.difference_update(range(first, last + 1))
@@ -154,9 +159,7 @@ def test_the_core_check_sees_what_it_looks_for(text: str) -> None:
 
 
 def test_no_import_cycle() -> None:
-    graph = {
-        name_of(path): {m for _, m, _ in imports_of(path) if m in MODULES} for path in FILES
-    }
+    graph = {name_of(path): {m for _, m, _ in imports_of(path) if m in MODULES} for path in FILES}
     done: set[str] = set()
 
     def visit(module: str, trail: tuple[str, ...]) -> None:
@@ -208,7 +211,8 @@ def test_every_room_says_what_lives_in_it() -> None:
     mute = [
         str(path)
         for path in FILES
-        if path.stem == "__init__" and path.parent != PACKAGE
+        if path.stem == "__init__"
+        and path.parent != PACKAGE
         and len((ast.get_docstring(ast.parse(path.read_text("utf-8"))) or "").splitlines()) < 2
     ]
     assert not mute, "\n".join(mute)
@@ -225,8 +229,8 @@ def test_the_core_is_tested_as_much_as_it_is_written() -> None:
     """
     At least .7 lines of tests a line of the core.
 
-    Counted are lines of code, on both sides alike: no blank lines, no comments, no docstrings. The core is
-    tree_sway_ros/core; its tests are test/core and test/golden (other solvers).
+    Counted are lines of code, on both sides alike: no blank lines, no comments, no docstrings. The
+    core is tree_sway_ros/core; its tests are test/core and test/golden (other solvers).
 
     """
     source = code_lines_under(PACKAGE / "core")
@@ -285,7 +289,9 @@ def docstring_faults(source: str) -> Iterator[tuple[int, str]]:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_docstrings(path: Path) -> None:
-    faults = [f"{path}:{line}: {fault}" for line, fault in docstring_faults(path.read_text("utf-8"))]
+    faults = [
+        f"{path}:{line}: {fault}" for line, fault in docstring_faults(path.read_text("utf-8"))
+    ]
     assert not faults, "\n".join(faults)
 
 

@@ -60,7 +60,11 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
 OPTIONAL = {"PIL", "h5py", "mpl_toolkits", "mpmath", "mujoco", "rosbags", "sksundae", "trimesh"}
 
 
-NO_BUILDER = ("No module named 'setuptools'", "invalid command 'bdist_wheel'", "setuptools.build_meta")
+NO_BUILDER = (
+    "No module named 'setuptools'",
+    "invalid command 'bdist_wheel'",
+    "setuptools.build_meta",
+)
 
 
 def copy_of_source(folder: Path) -> Path:

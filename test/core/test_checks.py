@@ -37,7 +37,9 @@ def test_three_numbers_need_not_be_finite():
     assert (y, z) == (math.inf, 1e300)
 
 
-@pytest.mark.parametrize("vector", [1.0, (1, 2), (1, 2, 3, 4), np.eye(3), "abc", None, (1, 2, 10**400)])
+@pytest.mark.parametrize(
+    "vector", [1.0, (1, 2), (1, 2, 3, 4), np.eye(3), "abc", None, (1, 2, 10**400)]
+)
 def test_what_is_not_three_numbers_is_refused(vector):
     with pytest.raises(ParameterError, match=r"wind: .* is not three numbers"):
         three_numbers("wind", vector)

@@ -1,4 +1,7 @@
-"""How hot functions are compiled: numpy's division, one precision in and out, the plain function kept."""
+"""
+How hot functions are compiled: numpy's division, one precision in and out, the plain function kept.
+
+"""
 
 from __future__ import annotations
 

@@ -54,8 +54,12 @@ def mutated(content: bytes, mutations) -> bytes:
         elif kind == "cut":
             content = content[: max(at, 1)]
         elif kind == "number":  # a cell, as a whole
-            begin = max((content.rfind(c, 0, at) for c in (b",", b"\t", b" ", b"\n")), default=0) + 1
-            ends = [e for c in (b",", b"\t", b" ", b"\n", b"]") if (e := content.find(c, begin)) > 0]
+            begin = (
+                max((content.rfind(c, 0, at) for c in (b",", b"\t", b" ", b"\n")), default=0) + 1
+            )
+            ends = [
+                e for c in (b",", b"\t", b" ", b"\n", b"]") if (e := content.find(c, begin)) > 0
+            ]
             content = content[:begin] + token + content[min(ends, default=begin) :]
     return content
 
@@ -139,7 +143,9 @@ def check(path: Path, name: str, content: bytes, format: str | None) -> None:
             assert_sound_wind(read_wind(path, format=format))
         else:
             if name == "glade.yaml":
-                trees = parse_forest(path.read_text(errors="replace"), lambda *_: SEEDLING, name).trees
+                trees = parse_forest(
+                    path.read_text(errors="replace"), lambda *_: SEEDLING, name
+                ).trees
             else:
                 trees = read_trees(path, format=format)
             for tree_file in trees:
@@ -190,7 +196,10 @@ def test_ten_thousand_damaged_files(samples, tmp_path):
     [
         (".yaml", b"branches: " + b"[" * 200_000),
         (".yaml", b"branches:\n" + b"- " * 200_000),
-        (".yaml", b"segments: [" + b"{start: [0, 0, 0], end: [0, 0, 1], diameter: 1}," * 5_000 + b"]"),
+        (
+            ".yaml",
+            b"segments: [" + b"{start: [0, 0, 0], end: [0, 0, 1], diameter: 1}," * 5_000 + b"]",
+        ),
         (".csv", b"segment,parent,x0,y0,z0,x1,y1,z1,d0\n" + b'0,-1,"' + b"0" * 1_000_000),
         (".swc", b"\n".join(b"%d 1 0 0 %d 1 %d" % (i, i, i - 1 or -1) for i in range(1, 20_000))),
         (".swc", b"1 1 0 0 0 1 -1\n" + b"\n".join(b"%d 1 0 0 1 1 1" % i for i in range(2, 10_000))),
@@ -205,7 +214,9 @@ def test_large_and_nasty(tmp_path, suffix, content):
 
 def nasty_mtg(n: int) -> bytes:
     """A chain of vertices without diameters, and mostly without positions."""
-    head = "CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\nENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n"
+    head = (
+        "CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\nENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n"
+    )
     chain = "".join(f"\t^<S{i}\n" for i in range(n))
     return (head + chain + "\t^<S9\t0\t0\t1\n").encode()
 

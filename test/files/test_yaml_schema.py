@@ -47,7 +47,9 @@ def test_another_validator_agrees():
     jsonschema.Draft202012Validator.check_schema(tree_schema())
 
 
-@pytest.mark.parametrize(("text", "value"), [("1", 1.0), ("-.5e-3", -0.5e-3), ("[1, 2]", [1.0, 2.0])])
+@pytest.mark.parametrize(
+    ("text", "value"), [("1", 1.0), ("-.5e-3", -0.5e-3), ("[1, 2]", [1.0, 2.0])]
+)
 def test_number_or_pair(text, value):
     node = parse_yaml(text, "t")
     assert SchemaCheck(tree_schema(), "t").value(node, tree_schema()["$defs"]["diameter"]) == value

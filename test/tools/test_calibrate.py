@@ -60,7 +60,16 @@ def test_info_shows_the_frequency_that_was_given(
     tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], leaves: str
 ) -> None:
     out = tmp_path / "fitted.yaml"
-    command = ["calibrate", str(tree), "--frequency", "1.2", "--damping", "0.09", "--leaves", leaves]
+    command = [
+        "calibrate",
+        str(tree),
+        "--frequency",
+        "1.2",
+        "--damping",
+        "0.09",
+        "--leaves",
+        leaves,
+    ]
     assert cli.main([*command, "-o", str(out)]) == 0
     text = capsys.readouterr().out
     assert "-> 1.2 Hz, most in branch 'stem'" in text
@@ -76,7 +85,10 @@ def test_info_shows_the_frequency_that_was_given(
 def test_a_pull_and_release_gives_the_tree_back(
     tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A wind holds the tree aside and stops; from another guess the record leads back to its wood."""
+    """
+    A wind holds the tree aside and stops; from another guess the record leads back to its wood.
+
+    """
     truth = open_tree(tree)
     sim = SwaySimulator(truth.tree, truth.species, rung="modes")
     held, free = round(15.0 / DT), round(20.0 / DT)
@@ -102,7 +114,10 @@ def test_an_ambient_record_gives_the_tree_back(
     winds = simulate_turbulence(0.6, rate=20.0, duration=400.0, intensity=0.4, rng=rng)
     record(tmp_path / "wind.csv", sim, winds, 0.05, held=400)
     out = tmp_path / "fitted.yaml"
-    assert cli.main(["calibrate", str(tree), "--record", str(tmp_path / "wind.csv"), "-o", str(out)]) == 0
+    assert (
+        cli.main(["calibrate", str(tree), "--record", str(tmp_path / "wind.csv"), "-o", str(out)])
+        == 0
+    )
     assert ", ambient (" in capsys.readouterr().out
     facts = info(out, capsys)
     assert facts["frequencies"][0] == pytest.approx(float(sim.frequencies()[0]), rel=0.03)
@@ -113,7 +128,10 @@ def test_the_wood_of_the_tree_is_kept_but_for_what_was_measured(
     tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "fitted.yaml"
-    assert cli.main(["calibrate", str(tree), "--density", "777", "--frequency", "1", "-o", str(out)]) == 0
+    assert (
+        cli.main(["calibrate", str(tree), "--density", "777", "--frequency", "1", "-o", str(out)])
+        == 0
+    )
     assert "damping    0.06 bare, as it was" in capsys.readouterr().out
     before, after = open_tree(tree), open_tree(out)
     assert after.species.density == 777.0
@@ -124,7 +142,9 @@ def test_the_wood_of_the_tree_is_kept_but_for_what_was_measured(
 def test_a_modulus_that_no_wood_has_is_said(
     tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert cli.main(["calibrate", str(tree), "--frequency", "9", "-o", str(tmp_path / "x.yaml")]) == 0
+    assert (
+        cli.main(["calibrate", str(tree), "--frequency", "9", "-o", str(tmp_path / "x.yaml")]) == 0
+    )
     text = capsys.readouterr().out
     assert "times the table's for ash; all species there: 5.9 to 11.3 GPa" in text
     assert "no green wood has such a modulus" in text
@@ -135,7 +155,9 @@ def sample(path: Path, motion: str) -> str:
     rng = np.random.default_rng(0)
     t = np.arange(0.0, 60.0, 0.05)
     values = eval(motion, {"t": t, "rng": rng, "np": np})
-    path.write_text("\n".join(["time,x", *(f"{a:.3f},{b:.6g}" for a, b in zip(t, values, strict=False))]))
+    path.write_text(
+        "\n".join(["time,x", *(f"{a:.3f},{b:.6g}" for a, b in zip(t, values, strict=False))])
+    )
     return str(path)
 
 

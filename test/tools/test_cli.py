@@ -40,7 +40,10 @@ def one_line(text: str) -> str:
         (["info", "benjamina", "--seed", "-1"], "seed -1 is negative"),
         (["plot", "--seconds", "0"], "--seconds: 0 s"),
         (["plot", "--wind", "/no/such.csv"], "/no/such.csv: no such file"),
-        (["grow", "--species", "oak", "--height", "tall", "-o", "x"], "invalid float value: 'tall'"),
+        (
+            ["grow", "--species", "oak", "--height", "tall", "-o", "x"],
+            "invalid float value: 'tall'",
+        ),
         (["grow", "--species", "oak", "--height", "12", "-o", "x.doc"], "cannot write '.doc'"),
         (["bench", "jog"], "invalid choice: 'jog'"),
         (["bench", "step", "--rounds", "0"], "--rounds: 0"),
@@ -88,7 +91,9 @@ def test_a_missing_package_is_one_line(
     assert "No module named 'numba'; install" in one_line(capsys.readouterr().err)
 
 
-def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def missing(name: str) -> object:
         raise ModuleNotFoundError("gone", name="tree_sway_ros.core.gone")
 

@@ -79,7 +79,9 @@ def test_it_runs_for_the_seconds_it_was_given(environment: dict[str, str]) -> No
 
 @pytest.mark.long
 @pytest.mark.skipif(not SONIC.exists(), reason=f"needs the record {SONIC}")
-def test_a_second_process_receives_every_pose_of_a_recorded_wind(environment: dict[str, str]) -> None:
+def test_a_second_process_receives_every_pose_of_a_recorded_wind(
+    environment: dict[str, str],
+) -> None:
     demo = start(environment, "demo", "--wind", str(SONIC), "--seconds", "30")
     assert any("| poses " in line for line in lines_until(demo, "| poses "))
     listener = start(environment, "listen", "--seconds", "10")

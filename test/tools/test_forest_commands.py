@@ -37,7 +37,9 @@ def test_info_sums_up(forest: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert text.count(" Hz") == 2
 
 
-@pytest.mark.parametrize("arguments", [["--tree", "{}"], ["{}", "--seconds", "1", "--rung", "branch"]])
+@pytest.mark.parametrize(
+    "arguments", [["--tree", "{}"], ["{}", "--seconds", "1", "--rung", "branch"]]
+)
 def test_plot_draws_it(forest: str, tmp_path: Path, arguments: list[str]) -> None:
     pytest.importorskip("matplotlib")
     picture = tmp_path / "glade.png"
@@ -62,7 +64,10 @@ def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -
         (["compare", "{}"], "a forest, where one tree is asked for"),
         (["info", str(SCAN), "--option", "taper"], "write NAME=VALUE"),
         (["info", str(SCAN), "--option", "taper=1"], "option taper is '1.0'; give true or false"),
-        (["info", str(SCAN), "--option", "merge_below=x"], "option merge_below is 'x'; give a number"),
+        (
+            ["info", str(SCAN), "--option", "merge_below=x"],
+            "option merge_below is 'x'; give a number",
+        ),
         (["info", str(SCAN), "--option", "tapper=true"], "no option 'tapper'; it has: "),
         (["info", "benjamina", "--option", "taper=true"], "option 'taper' for a built-in tree"),
     ],

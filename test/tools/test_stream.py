@@ -64,7 +64,14 @@ def test_a_line_about_now(record: StreamRecord) -> None:
 
 @pytest.mark.parametrize(
     ("to", "name"),
-    [((1, 0), "W"), ((0, 1), "S"), ((-1, 0), "E"), ((0, -1), "N"), ((1, -1), "NW"), ((0, 0.01), None)],
+    [
+        ((1, 0), "W"),
+        ((0, 1), "S"),
+        ((-1, 0), "E"),
+        ((0, -1), "N"),
+        ((1, -1), "NW"),
+        ((0, 0.01), None),
+    ],
 )
 def test_winds_are_named_by_where_they_come_from(
     record: StreamRecord, to: tuple[float, float], name: str | None

@@ -121,7 +121,9 @@ def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
         picture_in_wind(tree, leaning(tree, 0.3), [8, 0, 0], tmp_path / "w.png", leaves=leaves)
     )
     left, right = np.split(is_green(beside)[:, : beside.shape[1] // 2 * 2], 2, axis=1)
-    middle = [np.average(np.arange(side.shape[1]), weights=side.sum(axis=0)) for side in (left, right)]
+    middle = [
+        np.average(np.arange(side.shape[1]), weights=side.sum(axis=0)) for side in (left, right)
+    ]
     assert middle[1] > middle[0] + 30
 
 

@@ -1,4 +1,7 @@
-"""The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker."""
+"""
+The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker.
+
+"""
 
 from __future__ import annotations
 
@@ -17,8 +20,8 @@ def kernel(function: _F) -> _F:
     """
     Compile a function of numbers and arrays to machine code at its first call.
 
-    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released; the
-    code is cached beside the module. The plain function stays reachable as ``py_func``.
+    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released;
+    the code is cached beside the module. The plain function stays reachable as ``py_func``.
 
     """
     return cast(_F, njit(cache=True, error_model="numpy", nogil=True)(function))
@@ -26,10 +29,11 @@ def kernel(function: _F) -> _F:
 
 def fused(function: _F) -> _F:
     """
-    Compile like `kernel`, but let a product and a sum be one instruction and sums of a loop run side by side.
+    Compile like `kernel`, but let a product and a sum be one instruction and sums of a loop run
+    side by side.
 
-    For what is placed and summed, where the last bit does not matter; the result is still the same bit for bit
-    on one machine. Not for code that counts on rounding.
+    For what is placed and summed, where the last bit does not matter; the result is still the same
+    bit for bit on one machine. Not for code that counts on rounding.
 
     """
     flags = {"contract", "reassoc", "nsz"}
@@ -38,19 +42,25 @@ def fused(function: _F) -> _F:
 
 def inlined(function: _F) -> _F:
     """
-    Compile like `fused` and paste the body into each caller, so that a loop of calls becomes one of vectors.
+    Compile like `fused` and paste the body into each caller, so that a loop of calls becomes one of
+    vectors.
 
     For short functions of numbers in the innermost loop; callers compile longer.
 
     """
     flags = {"contract", "reassoc", "nsz"}
-    return cast(_F, njit(cache=True, error_model="numpy", nogil=True, fastmath=flags,
-                         inline="always")(function))
+    return cast(
+        _F,
+        njit(cache=True, error_model="numpy", nogil=True, fastmath=flags, inline="always")(
+            function
+        ),
+    )
 
 
 def like(value: float, model: Any) -> Any:
     """
-    Return a constant in the precision of a model number, so that a kernel serves float32 and float64.
+    Return a constant in the precision of a model number, so that a kernel serves float32 and
+    float64.
 
     Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
 

@@ -17,8 +17,12 @@ from tree_sway_ros.core.kernel import fused, inlined
 SERIES_LIMIT = 2.25
 """Square of half an angle in [rad^2] up to which `half_angle_series` holds: 1.5 rad."""
 
-_C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = ((-1.0) ** k / math.factorial(2 * k) for k in range(9))
-_S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = ((-1.0) ** k / math.factorial(2 * k + 1) for k in range(9))
+_C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
+    (-1.0) ** k / math.factorial(2 * k) for k in range(9)
+)
+_S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = (
+    (-1.0) ** k / math.factorial(2 * k + 1) for k in range(9)
+)
 
 
 @inlined
@@ -39,7 +43,8 @@ def half_angle_series(t: float) -> tuple[float, float]:
 @fused
 def half_angle(t: float) -> tuple[float, float]:
     """
-    Cosine of ``sqrt(t)`` and sine over ``sqrt(t)``: by series up to 1.5 rad (error below 3e-13), exact beyond.
+    Cosine of ``sqrt(t)`` and sine over ``sqrt(t)``: by series up to 1.5 rad (error below 3e-13),
+    exact beyond.
 
     Parameters
     ----------
@@ -134,7 +139,9 @@ def quaternions_from_x(direction: Floats) -> Floats:
     """
     x, y, z = direction.T
     across = y * y + z * z
-    w = np.where(x < 0.0, across / (1.0 - np.minimum(x, 0.0)), 1.0 + x)  # 1 + x without cancellation
+    w = np.where(
+        x < 0.0, across / (1.0 - np.minimum(x, 0.0)), 1.0 + x
+    )  # 1 + x without cancellation
     q = np.stack([w, np.zeros_like(x), -z, y], axis=1)
     q[(x < 0.0) & (across < 1e-30)] = [0.0, 0.0, 0.0, 1.0]
     q /= np.linalg.norm(q, axis=1)[:, None]

@@ -130,8 +130,6 @@ def parse_table(lines: Sequence[str], source: str, comment: str = "#") -> TextTa
     separator = separator_of(numbered[0][1])
     columns = split_row(numbered[0][1], separator)
     if len(columns) > _MAX_COLUMNS:
-        raise FormatError(
-            f"a header of {len(columns)} columns", where=f"{source}:{numbered[0][0]}"
-        )
+        raise FormatError(f"a header of {len(columns)} columns", where=f"{source}:{numbered[0][0]}")
     rows = tuple((number, split_row(line, separator)) for number, line in numbered[1:])
     return TextTable(columns, rows, source)

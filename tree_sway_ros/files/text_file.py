@@ -1,8 +1,8 @@
 """
 Text of a file, or one error that says why not.
 
-Every importer reads through here, so that a missing file, a folder, a binary file or a huge one gives
-the same short answer for each format.
+Every importer reads through here, so that a missing file, a folder, a binary file or a huge one
+gives the same short answer for each format.
 
 """
 

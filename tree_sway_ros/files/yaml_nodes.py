@@ -1,9 +1,9 @@
 """
 YAML text as nodes that know their line.
 
-PyYAML's event parser, put together here rather than by its constructor: each value keeps its line for
-the errors, a key that stands twice is refused and not silently overwritten, an anchor cannot blow a
-small file up, and depth has a bound.
+PyYAML's event parser, put together here rather than by its constructor: each value keeps its line
+for the errors, a key that stands twice is refused and not silently overwritten, an anchor cannot
+blow a small file up, and depth has a bound.
 
 """
 

@@ -3,8 +3,8 @@ Check YAML nodes against the published schema, and turn them into plain values.
 
 The schema that users' editors read is the one that is enforced here, so that the two cannot drift.
 The part of JSON Schema 2020-12 in use: type, properties, required, additionalProperties, items,
-minItems, maxItems, minimum, maximum, exclusiveMinimum, minLength, anyOf, $ref. A ``oneOf`` of required
-keys is left to the reader, which can say it better.
+minItems, maxItems, minimum, maximum, exclusiveMinimum, minLength, anyOf, $ref. A ``oneOf`` of
+required keys is left to the reader, which can say it better.
 
 """
 
@@ -140,7 +140,9 @@ class SchemaCheck:
             raise self._error(node, f"{name} is {node.kind}", f"give {kind}")
         number = finite(node.value) if node.is_plain else None
         if number is None or (schema["type"] == "integer" and not number.is_integer()):
-            cure = f"give {'a finite number' if kind == 'a number' else kind} without quotes or unit"
+            cure = (
+                f"give {'a finite number' if kind == 'a number' else kind} without quotes or unit"
+            )
             raise self._error(node, f"{name} is '{node.value[:40]}', not {kind}", cure)
         low, high = schema.get("minimum"), schema.get("maximum")
         above = schema.get("exclusiveMinimum")
@@ -152,7 +154,14 @@ class SchemaCheck:
         return int(number) if schema["type"] == "integer" else number
 
 
-_TYPES = {"object": dict, "array": list, "string": str, "number": str, "integer": str, "boolean": str}
+_TYPES = {
+    "object": dict,
+    "array": list,
+    "string": str,
+    "number": str,
+    "integer": str,
+    "boolean": str,
+}
 
 
 def _inside(name: str, key: str) -> str:

@@ -1,8 +1,9 @@
 """
 Trees to measure on: three of 40 branches, one of 121, and plain stems, made of numbers alone.
 
-How a tree sways is decided by how children compare with their parent. A child of length ratio l and diameter
-ratio d has d / l^2 times its parent's frequency: near 1 they swing together, and coupling is strongest.
+How a tree sways is decided by how children compare with their parent. A child of length ratio l and
+diameter ratio d has d / l^2 times its parent's frequency: near 1 they swing together, and coupling
+is strongest.
 
 """
 
@@ -33,7 +34,8 @@ def forked_tree(
     """
     Make a tree of 1 + 3 + 9 + 27 branches in 3D, or of another number of generations.
 
-    Every branch but the last bears three, at 1/2, 2/3 and 5/6 of its length, and tapers to two fifths.
+    Every branch but the last bears three, at 1/2, 2/3 and 5/6 of its length, and tapers to two
+    fifths.
 
     Parameters
     ----------
@@ -105,7 +107,11 @@ def tapered_stem(
 
 
 class _Order(NamedTuple):
-    """Branches of one order: length, diameters at base and tip, and where along them their children sit."""
+    """
+    Branches of one order: length, diameters at base and tip, and where along them their children
+    sit.
+
+    """
 
     length: float
     base: float
@@ -114,7 +120,10 @@ class _Order(NamedTuple):
 
 
 def _grown(orders: list[_Order], segments: int, angle: float, name: str) -> Tree:
-    """Grow straight branches, each a golden angle round from the one before and so many degrees off."""
+    """
+    Grow straight branches, each a golden angle round from the one before and so many degrees off.
+
+    """
     place = np.linspace(0.0, 1.0, segments + 1)
     shoots = [(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0, -1)]
     turns = 0

@@ -26,10 +26,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_leaves_argument(parser)
     parser.add_argument("--frequency", type=float, metavar="HZ", help="measured slowest sway [Hz]")
     parser.add_argument(
-        "--damping", type=float, metavar="Z", help="measured damping ratio [-]; wins over the record's"
+        "--damping",
+        type=float,
+        metavar="Z",
+        help="measured damping ratio [-]; wins over the record's",
     )
     parser.add_argument(
-        "--record", metavar="FILE", help="CSV of the sway instead: time and x, y or tilt_x or ax ..."
+        "--record",
+        metavar="FILE",
+        help="CSV of the sway instead: time and x, y or tilt_x or ax ...",
     )
     parser.add_argument("--kind", choices=KINDS, help="of the record; found from it if left out")
     parser.add_argument(
@@ -40,7 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where in the record's spectrum to look for the sway [Hz]",
     )
     parser.add_argument(
-        "-o", "--output", required=True, metavar="FILE", help="tree with the fitted wood to write: .yaml"
+        "-o",
+        "--output",
+        required=True,
+        metavar="FILE",
+        help="tree with the fitted wood to write: .yaml",
     )
 
 
@@ -103,7 +112,11 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     """What changed, for people; `error` is the relative standard error of the frequency."""
     after, table = fitted.species, species_named(before.key)
     moduli = [species_named(key).modulus / 1e9 for key in species_keys()]
-    was = "could not stand" if fitted.frequency_before is None else f"{fitted.frequency_before:.4g} Hz"
+    was = (
+        "could not stand"
+        if fitted.frequency_before is None
+        else f"{fitted.frequency_before:.4g} Hz"
+    )
     spread = f" +- {100.0 * fitted.sensitivity * error:.1f} %" if error else ""
     lines = [
         f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",

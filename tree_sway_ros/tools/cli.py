@@ -1,8 +1,8 @@
 """
 The command line ``tree-sway``: one module a command, imported when it is asked for.
 
-A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the user can
-mend ends as one line on standard error and exit code 2.
+A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the user
+can mend ends as one line on standard error and exit code 2.
 
 """
 
@@ -79,7 +79,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        return _fail(command, f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        return _fail(
+            command, f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        )
     except KeyboardInterrupt:
         return _INTERRUPTED
 
@@ -95,7 +97,10 @@ def _module(command: str) -> Any:
 
 
 def _parser(chosen: str) -> argparse.ArgumentParser:
-    """Parser of all commands; only the chosen one's arguments, as the others' modules may be slow."""
+    """
+    Parser of all commands; only the chosen one's arguments, as the others' modules may be slow.
+
+    """
     parser = _OneLineParser(prog="tree-sway", description="Trees that sway in measured wind.")
     version = importlib.import_module("tree_sway_ros").__version__
     parser.add_argument("--version", action="version", version=version)

@@ -27,12 +27,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="benjamina",
         help="benjamina, goldcrest, broadleaf, or a file of a tree or a forest (%(default)s)",
     )
-    parser.add_argument("--wind", metavar="FILE", help="a wind record to play; simulated if left out")
     parser.add_argument(
-        "--speed", type=float, default=6.0, metavar="U", help="mean of the simulated wind [m/s] (%(default)s)"
+        "--wind", metavar="FILE", help="a wind record to play; simulated if left out"
     )
-    parser.add_argument("--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C")
-    parser.add_argument("--rate", type=float, default=60.0, help="poses a second [Hz] (%(default)s)")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=6.0,
+        metavar="U",
+        help="mean of the simulated wind [m/s] (%(default)s)",
+    )
+    parser.add_argument(
+        "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
+    )
+    parser.add_argument(
+        "--rate", type=float, default=60.0, help="poses a second [Hz] (%(default)s)"
+    )
     fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
     parser.add_argument(
         "--fidelity",
@@ -50,7 +60,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
     tree = open_scene(arguments.tree).tree
-    print(f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)", flush=True)
+    print(
+        f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
+        flush=True,
+    )
     try:
         with interrupted_once(), Composition({}) as nodes:
             monitor = StreamMonitor(nodes.context, tree)
@@ -80,7 +93,11 @@ def size_of(tree: Tree) -> str:
 
 
 def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
-    solver: dict[str, Value] = {"tree": arguments.tree, "rate": arguments.rate, "fidelity": arguments.fidelity}
+    solver: dict[str, Value] = {
+        "tree": arguments.tree,
+        "rate": arguments.rate,
+        "fidelity": arguments.fidelity,
+    }
     solver["leaf_on"] = leaves_are_on(arguments)
     if arguments.gravity == "off":
         solver["gravity"] = 0.0

@@ -1,8 +1,9 @@
 """
-``tree-sway docs``: the tables of topics, parameters and species, taken from the code and put into the pages.
+``tree-sway docs``: the tables of topics, parameters and species, taken from the code and put into
+the pages.
 
-A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between them is
-replaced.
+A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
+them is replaced.
 
 """
 
@@ -30,7 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "files", nargs="*", default=PAGES, help=f"files with tables ({', '.join(PAGES)})"
     )
-    parser.add_argument("--check", action="store_true", help="change nothing; exit 2 if not up to date")
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit 2 if not up to date"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -84,7 +87,11 @@ def with_tables(text: str, where: str = "text") -> str:
 
 
 def markdown_tables() -> dict[str, str]:
-    """Every table by its name: ``topics``, ``species``, and the parameters of each node by the node's name."""
+    """
+    Every table by its name: ``topics``, ``species``, and the parameters of each node by the node's
+    name.
+
+    """
     tables = {"topics": topics.markdown_table(), "species": species_table()}
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters.markdown_table(table)

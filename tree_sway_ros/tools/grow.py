@@ -15,13 +15,20 @@ from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("--species", required=True, help=f"{', '.join(species_keys())}, or a species file")
+    parser.add_argument(
+        "--species", required=True, help=f"{', '.join(species_keys())}, or a species file"
+    )
     parser.add_argument("--height", type=float, required=True, metavar="M", help="height [m]")
     parser.add_argument(
-        "--diameter", type=float, metavar="M", help="at breast height [m]; from the height if left out"
+        "--diameter",
+        type=float,
+        metavar="M",
+        help="at breast height [m]; from the height if left out",
     )
     parser.add_argument("--habit", choices=HABITS, help="the species' own if left out")
-    parser.add_argument("--seed", type=int, default=0, help="another seed, another tree (%(default)s)")
+    parser.add_argument(
+        "--seed", type=int, default=0, help="another seed, another tree (%(default)s)"
+    )
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
 
 

@@ -41,7 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print what a tree is."""
     if arguments.count < 1:
-        raise ParameterError(f"{arguments.count} frequencies", where="--count", cure="ask for 1 or more")
+        raise ParameterError(
+            f"{arguments.count} frequencies", where="--count", cure="ask for 1 or more"
+        )
     scene = opened_scene(arguments)
     if isinstance(scene, ForestFile):
         facts = forest_facts(scene, partial(_facts, arguments), leaves_are_on(arguments))

@@ -18,9 +18,14 @@ from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("--namespace", default="", help="of the tree's nodes")
-    parser.add_argument("--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C")
     parser.add_argument(
-        "--rate", type=float, default=60.0, help="poses a second that should come [Hz] (%(default)s)"
+        "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
+    )
+    parser.add_argument(
+        "--rate",
+        type=float,
+        default=60.0,
+        help="poses a second that should come [Hz] (%(default)s)",
     )
 
 

@@ -1,5 +1,6 @@
 """
-Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that bends most.
+Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that
+bends most.
 
 """
 
@@ -32,7 +33,8 @@ class ModeRow:
     damping_ratio
         Of the wood and leaves, without air, in [-].
     axis
-        Direction that most of the moving mass sways in, a unit vector whose sign means nothing, (3,).
+        Direction that most of the moving mass sways in, a unit vector whose sign means nothing,
+        (3,).
     branch
         Name of the branch that bends most.
 

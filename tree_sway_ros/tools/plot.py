@@ -1,5 +1,6 @@
 """
-``tree-sway plot``: the wind and the motion of the tip over time, or with ``--tree`` the tree itself.
+``tree-sway plot``: the wind and the motion of the tip over time, or with ``--tree`` the tree
+itself.
 
 """
 
@@ -31,7 +32,11 @@ _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "tree", nargs="?", default="benjamina", metavar="TREE", help="name, or file of a tree or a forest (%(default)s)"
+        "tree",
+        nargs="?",
+        default="benjamina",
+        metavar="TREE",
+        help="name, or file of a tree or a forest (%(default)s)",
     )
     parser.add_argument(
         "--tree",
@@ -44,10 +49,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_wood_arguments(parser)
     add_leaves_argument(parser)
     parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
-    parser.add_argument("--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --tree)")
-    parser.add_argument("--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)")
-    parser.add_argument("--rung", choices=RUNGS, default="modes", help="model of the sway (%(default)s)")
-    parser.add_argument("-o", "--output", default="sway.png", metavar="FILE", help="picture (%(default)s)")
+    parser.add_argument(
+        "--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --tree)"
+    )
+    parser.add_argument(
+        "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
+    )
+    parser.add_argument(
+        "--rung", choices=RUNGS, default="modes", help="model of the sway (%(default)s)"
+    )
+    parser.add_argument(
+        "-o", "--output", default="sway.png", metavar="FILE", help="picture (%(default)s)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

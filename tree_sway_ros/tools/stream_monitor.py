@@ -39,8 +39,8 @@ class StreamRecord:
     arrival, stamp
         When each pose array arrived and what time it shows, in [s].
     tip
-        Displacement of the highest tip from rest in each pose array in [m], (3,); empty if no tree is
-        followed.
+        Displacement of the highest tip from rest in each pose array in [m], (3,); empty if no tree
+        is followed.
     wind_stamp, wind
         When each wind sample was measured in [s], and the sample in [m/s], (3,).
 

@@ -48,7 +48,9 @@ def checked_seconds(seconds: float | None) -> float:
     if seconds is None:
         return float("inf")
     if not seconds > 0.0:
-        raise ParameterError(f"{seconds:g} s is no time to run", where="--seconds", cure="give more than 0")
+        raise ParameterError(
+            f"{seconds:g} s is no time to run", where="--seconds", cure="give more than 0"
+        )
     return seconds
 
 

@@ -28,8 +28,12 @@ def add_tree_arguments(parser: argparse.ArgumentParser, *, forests: bool = False
 def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what can be said of the wood of a tree, and of how its file is to be read."""
     parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
-    parser.add_argument("--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}")
-    parser.add_argument("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")
+    parser.add_argument(
+        "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"
+    )
+    parser.add_argument(
+        "--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]"
+    )
     parser.add_argument("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
     parser.add_argument(
         "--option",
@@ -47,10 +51,13 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Raises
     ------
     TreeSwayError
-        No such tree or species, a file that cannot be read, a modulus or density that is not positive.
+        No such tree or species, a file that cannot be read, a modulus or density that is not
+        positive.
 
     """
-    return _of_wood(open_tree(arguments.tree, arguments.seed, **_options(arguments.option)), arguments)
+    return _of_wood(
+        open_tree(arguments.tree, arguments.seed, **_options(arguments.option)), arguments
+    )
 
 
 def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
@@ -86,7 +93,9 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     changed = {name: value for name, value in given.items() if value is not None}
     for name, value in changed.items():
         if not 0.0 < value < float("inf"):
-            raise ParameterError(f"{value:g} is not positive", where=f"--{name}", cure="give an SI value")
+            raise ParameterError(
+                f"{value:g} is not positive", where=f"--{name}", cure="give an SI value"
+            )
     return changed
 
 

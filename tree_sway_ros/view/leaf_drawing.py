@@ -61,9 +61,7 @@ _GREENS = {
 _SUN = np.array([-0.35, -0.5, 0.8])
 
 # A blade of unit length along x, from its stalk to its tip.
-_BLADE = np.array(
-    [[0.0, 0.0], [0.3, 0.19], [0.6, 0.2], [1.0, 0.0], [0.6, -0.2], [0.3, -0.19]]
-)
+_BLADE = np.array([[0.0, 0.0], [0.3, 0.19], [0.6, 0.2], [1.0, 0.0], [0.6, -0.2], [0.3, -0.19]])
 
 
 def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floats]:

@@ -122,7 +122,9 @@ def picture_in_wind(
     draw_scale(rest, frame)
     draw_wind(windy, frame, camera, blowing)
     rest.text(0.03, 0.97, "at rest", transform=rest.transAxes, va="top", color="#555555")
-    windy.text(0.97, 0.97, "in wind", transform=windy.transAxes, ha="right", va="top", color="#555555")
+    windy.text(
+        0.97, 0.97, "in wind", transform=windy.transAxes, ha="right", va="top", color="#555555"
+    )
     figure.suptitle(title if title is not None else _caption(trees), y=0.985)
     return save_figure(figure, path)
 

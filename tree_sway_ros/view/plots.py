@@ -91,7 +91,11 @@ def _plot_speed(axes: Axes, t: Floats, blowing: Floats) -> None:
     axes.plot(t, speed, color=_WIND, lw=1.2)
     axes.axhline(speed.mean(), color=_WIND, lw=0.8, ls="--")
     axes.annotate(
-        f"mean {speed.mean():.1f} m/s", (1.0, 1.03), xycoords="axes fraction", ha="right", color=_WIND
+        f"mean {speed.mean():.1f} m/s",
+        (1.0, 1.03),
+        xycoords="axes fraction",
+        ha="right",
+        color=_WIND,
     )
     axes.set(ylabel="wind [m/s]", ylim=(0.0, max(1.1 * float(speed.max()), 0.1)))
     axes.tick_params(labelbottom=False)
@@ -119,6 +123,4 @@ def _plot_from_above(axes: Axes, moved: Floats, mean: Floats, unit: str) -> None
         along = 0.22 * reach * mean[:2] / level
         middle = np.array([-0.68, 0.8]) * reach
         arrow = {"arrowstyle": "-|>", "lw": 2.0, "color": _WIND}
-        axes.annotate(
-            "", xy=tuple(middle + along), xytext=tuple(middle - along), arrowprops=arrow
-        )
+        axes.annotate("", xy=tuple(middle + along), xytext=tuple(middle - along), arrowprops=arrow)

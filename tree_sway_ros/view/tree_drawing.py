@@ -131,7 +131,10 @@ def draw_tree(
 
 
 def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
-    """Draw the tree at rest as a pale shape behind whatever else is drawn, to see how far it moved."""
+    """
+    Draw the tree at rest as a pale shape behind whatever else is drawn, to see how far it moved.
+
+    """
     from matplotlib.collections import PolyCollection
 
     base, tip = camera.project(tree.start), camera.project(tree.end)
@@ -144,7 +147,9 @@ def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
 def draw_scale(axes: Axes, frame: Frame) -> None:
     """Draw a bar of a round length in the lower right corner."""
     size = frame.top - frame.bottom
-    length = max(v for v in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 0.02) if v <= max(0.2 * size, 0.02))
+    length = max(
+        v for v in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 0.02) if v <= max(0.2 * size, 0.02)
+    )
     right, low = frame.right - 0.03 * size, frame.bottom + 0.045 * size
     axes.plot([right - length, right], [low, low], color="black", lw=1.6, solid_capstyle="butt")
     axes.text(right - 0.5 * length, low + 0.012 * size, f"{length:g} m", ha="center", va="bottom")

@@ -1,4 +1,7 @@
-"""Quadrature along a branch: exact where it should be, whatever the cut, and the beam's own shapes."""
+"""
+Quadrature along a branch: exact where it should be, whatever the cut, and the beam's own shapes.
+
+"""
 
 from __future__ import annotations
 
@@ -70,7 +73,8 @@ def test_the_share_of_inertia_is_what_is_known_of_it(stem):
         branch_models(stem(tip=0.02 * (1 - tau), cuts=12), 900.0, carries=False)[0].inertia_share
         for tau in (0.0, 0.9)
     ]
-    # Rayleigh's quotient of the static shape, 3.2 * 405 / 104, over the exact 3.516^2; never below 1.
+    # Rayleigh's quotient of the static shape, 3.2 * 405 / 104, over the exact 3.516^2; never below
+    # 1.
     assert shares[0] == pytest.approx(3.2 * 405 / 104 / 3.51602**2, rel=1e-5)
     assert 1.0 <= shares[1] < 1.1
 
@@ -160,7 +164,11 @@ def test_a_child_within_a_segment_bends_the_rest_as_if_it_were_cut_there(stem, f
     still = np.zeros_like(one.place)
     by_force = one.unit_shape(one.bending_moment(still, np.ones(1), np.zeros(1)))
     # A force at c turns the tip by c^2 / 2 EI and moves it by c^2 (3 L - c) / 6 EI.
-    assert by_force.node_deflection[-1] / by_force.node_slope[-1] == pytest.approx(3.0 - place / 3.0)
+    assert by_force.node_deflection[-1] / by_force.node_slope[-1] == pytest.approx(
+        3.0 - place / 3.0
+    )
     by_moment = one.unit_shape(one.bending_moment(still, np.zeros(1), np.ones(1)))
     # A moment at c turns it by c / EI and moves it by c (L - c / 2) / EI.
-    assert by_moment.node_deflection[-1] / by_moment.node_slope[-1] == pytest.approx(3.0 - place / 2.0)
+    assert by_moment.node_deflection[-1] / by_moment.node_slope[-1] == pytest.approx(
+        3.0 - place / 2.0
+    )

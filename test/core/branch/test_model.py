@@ -22,7 +22,9 @@ def test_models_stand_in_the_order_of_branches(fork):
 def test_a_child_sits_at_the_foot_of_its_perpendicular():
     start = [[0, 0, 0], [0.1, 0, 0.3], [0.1, 0, 1.2], [-0.1, 0, -0.4]]
     end = [[0, 0, 1], [1, 0, 0.3], [1, 0, 1.2], [-1, 0, -0.4]]
-    tree = tree_from_segments(start, end, [0.1, 0.02, 0.02, 0.02], parent=[-1, 0, 0, 0], branch=range(4))
+    tree = tree_from_segments(
+        start, end, [0.1, 0.02, 0.02, 0.02], parent=[-1, 0, 0, 0], branch=range(4)
+    )
     stem = branch_models(tree, 900.0, carries=True)[0]
     place = dict(zip(tree.source_index[1:], stem.beam.child_place, strict=True))
     assert place == {1: pytest.approx(0.3), 2: pytest.approx(1.0), 3: pytest.approx(0.0)}

@@ -1,4 +1,8 @@
-"""The ways a branch moves: orthogonal, right-handed, the static one first, and closer to the truth the more there are."""
+"""
+The ways a branch moves: orthogonal, right-handed, the static one first, and closer to the truth the
+more there are.
+
+"""
 
 from __future__ import annotations
 
@@ -45,11 +49,15 @@ def test_an_enriched_branch_has_pairs_and_what_carries_twists(fork):
 def test_shapes_are_orthogonal_in_bending_energy(fork):
     for model in branch_models(fork(), 900.0, carries=True, enriched=frozenset(range(4))):
         for kind in (False, True):
-            shapes = list({id(w.shape): w.shape for w in model.coordinates if w.is_twist == kind}.values())
+            shapes = list(
+                {id(w.shape): w.shape for w in model.coordinates if w.is_twist == kind}.values()
+            )
             energy = np.array([[a.stiffness(b, 1.0) for b in shapes] for a in shapes])
             if len(shapes):
                 scale = 1.0 / np.sqrt(np.diag(energy))
-                assert energy * np.outer(scale, scale) == pytest.approx(np.eye(len(shapes)), abs=1e-6)
+                assert energy * np.outer(scale, scale) == pytest.approx(
+                    np.eye(len(shapes)), abs=1e-6
+                )
 
 
 def test_a_uniform_stem_converges_to_the_beams_roots(stem):
@@ -87,4 +95,6 @@ def test_a_carried_crown_bends_the_branch_as_a_tip_load(sketch):
     u = model.beam.place
     assert model.coordinates[0].shape.slope == pytest.approx(1.5 * (2 * u - u**2), abs=0.01)
     alone = branch_models(drawn.tree(), 900.0, carries=False)[0]
-    assert alone.coordinates[0].shape.slope == pytest.approx(4 / 3 * (3 * u - 3 * u**2 + u**3), abs=1e-9)
+    assert alone.coordinates[0].shape.slope == pytest.approx(
+        4 / 3 * (3 * u - 3 * u**2 + u**3), abs=1e-9
+    )

@@ -21,7 +21,13 @@ def whole():
 
 
 def test_richer_models_cost_more(whole):
-    models = (("frozen", None), ("branch", None), ("subtree", None), ("modes", 6), ("coupled", None))
+    models = (
+        ("frozen", None),
+        ("branch", None),
+        ("subtree", None),
+        ("modes", 6),
+        ("coupled", None),
+    )
     costs = [frame_cost(whole.bank(*model), whole.tree) for model in models]
     assert all(less < more for less, more in pairwise(costs))
 

@@ -56,14 +56,18 @@ def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_
 
 def test_a_rung_with_more_modes_errs_less(ladder):
     found = {e.name: e for e in ladder.estimates(WindClimate.steady(6.0, 0.3))}
-    errors = [found[name].error for name in ("subtree", "modes 3", "modes 6", "modes 12", "coupled")]
+    errors = [
+        found[name].error for name in ("subtree", "modes 3", "modes 6", "modes 12", "coupled")
+    ]
     assert errors == sorted(errors, reverse=True)
     assert found["frozen"].error > found["frozen"].motion
 
 
 def test_the_more_is_frozen_the_less_it_costs_and_the_more_it_errs(ladder):
     estimates = ladder.estimates(WindClimate.steady(6.0, 0.3))
-    modes = sorted((e for e in estimates if e.name.startswith("modes 12")), key=lambda e: e.n_frozen)
+    modes = sorted(
+        (e for e in estimates if e.name.startswith("modes 12")), key=lambda e: e.n_frozen
+    )
     assert len(modes) >= 3
     assert [e.cost for e in modes] == sorted((e.cost for e in modes), reverse=True)
     assert modes[-1].cost < 0.7 * modes[0].cost

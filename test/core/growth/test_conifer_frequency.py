@@ -2,7 +2,8 @@
 Grown conifers sway as often as measured ones of the same size.
 
 602 conifers of eight species: f0 = .0766 + 3.1219 DBH / H^2 in Hz, cm and m (Moore & Maguire 2004,
-Trees 18). One factor for all trees is allowed, as roots give way and the model is clamped; it is told here.
+Trees 18). One factor for all trees is allowed, as roots give way and the model is clamped; it is
+told here.
 
 """
 
@@ -23,7 +24,9 @@ from tree_sway_ros.core.tree.tree import Tree
 
 SUBTREE = SimulatorSettings(rung="subtree")
 FEW = (("spruce", 6.0, 55.0), ("pine", 12.0, 55.0), ("sitka", 24.0, 60.0))
-MANY = tuple(product(("spruce", "douglas_fir", "sitka", "pine"), (6.0, 10.0, 15.0, 20.0, 28.0), (50.0, 70.0)))
+MANY = tuple(
+    product(("spruce", "douglas_fir", "sitka", "pine"), (6.0, 10.0, 15.0, 20.0, 28.0), (50.0, 70.0))
+)
 
 
 def stem_of(tree: Tree) -> Tree:
@@ -33,7 +36,11 @@ def stem_of(tree: Tree) -> Tree:
 
 
 def frequencies(species: str, height: float, slenderness: float) -> tuple[float, float, float]:
-    """Measured on trees of this size, of the grown tree with its needles, and of its bare stem alone, in [Hz]."""
+    """
+    Measured on trees of this size, of the grown tree with its needles, and of its bare stem alone,
+    in [Hz].
+
+    """
     diameter = height / slenderness
     tree = grow(species, height, diameter, rng=np.random.default_rng(0))
     wood, stem = species_named(species), stem_of(tree)
@@ -46,11 +53,17 @@ def against_measured(measured: np.ndarray, model: np.ndarray) -> tuple[float, fl
     """Correlation of the logarithms, the one factor, and the median error after it."""
     correlation = np.corrcoef(np.log(measured), np.log(model))[0, 1]
     factor = np.exp(np.median(np.log(measured / model)))
-    return float(correlation), float(factor), float(np.median(np.abs(factor * model / measured - 1.0)))
+    return (
+        float(correlation),
+        float(factor),
+        float(np.median(np.abs(factor * model / measured - 1.0))),
+    )
 
 
 @pytest.mark.parametrize("sizes", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
-def test_conifers_sway_as_often_as_measured_ones(sizes: tuple[tuple[str, float, float], ...]) -> None:
+def test_conifers_sway_as_often_as_measured_ones(
+    sizes: tuple[tuple[str, float, float], ...],
+) -> None:
     measured, whole, stem = np.array([frequencies(*size) for size in sizes]).T
     for model, factor in ((whole, 0.74), (stem, 0.46)):
         correlation, found, error = against_measured(measured, model)

@@ -89,9 +89,12 @@ def test_an_unknown_species_is_refused() -> None:
 
 
 def test_greenhill_of_a_wooden_rod() -> None:
-    """Against the lowest zero of the Bessel function J_{-1/3}, 1.8664, from which the law follows."""
+    """
+    Against the lowest zero of the Bessel function J_{-1/3}, 1.8664, from which the law follows.
+
+    """
     oak = species_named("oak")
     stiffness = oak.modulus * np.pi * 0.1**4 / 64.0
     weight = oak.density * 9.81 * np.pi * 0.1**2 / 4.0
-    expected = (2.25 * 1.8663508 ** 2 * stiffness / weight) ** (1.0 / 3.0)
+    expected = (2.25 * 1.8663508**2 * stiffness / weight) ** (1.0 / 3.0)
     assert greenhill_length(oak.modulus, oak.density, 0.1) == pytest.approx(expected, rel=1e-3)

@@ -7,7 +7,11 @@ from tree_sway_ros.core.growth.skeleton import Skeleton
 
 
 def tripod() -> Skeleton:
-    """A stem of three segments; a branch of two on its first node, which carries a twig; one at the top."""
+    """
+    A stem of three segments; a branch of two on its first node, which carries a twig; one at the
+    top.
+
+    """
     skeleton = Skeleton()
     stem = skeleton.add(np.array([[1.0, 1, 0], [1, 1, 1], [1, 1, 2], [1, 1, 3]]))
     low = skeleton.add(np.array([[1.0, 1, 1], [2, 1, 1], [3, 1, 1]]), stem, 1)
@@ -18,7 +22,8 @@ def tripod() -> Skeleton:
 
 def some_diameters(skeleton: Skeleton) -> list[np.ndarray]:
     return [
-        np.linspace(0.1, 0.05, len(shoot.nodes)) / (i + 1) for i, shoot in enumerate(skeleton.shoots)
+        np.linspace(0.1, 0.05, len(shoot.nodes)) / (i + 1)
+        for i, shoot in enumerate(skeleton.shoots)
     ]
 
 

@@ -25,9 +25,7 @@ def test_carried_length_counts_everything_beyond() -> None:
 
 
 def test_areas_add_up_with_exponent_two() -> None:
-    stem, left, _ = node_diameters(
-        fork(), 0.04, at_height=0.0, tip_diameter=0.01, exponent=2.0
-    )
+    stem, left, _ = node_diameters(fork(), 0.04, at_height=0.0, tip_diameter=0.01, exponent=2.0)
     assert stem[0] == pytest.approx(0.04)
     assert stem[-1] == pytest.approx(0.01)
     # Area in units of the tip's: 1 + 15 W / 4.

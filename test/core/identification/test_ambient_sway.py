@@ -16,8 +16,12 @@ def driven(damping, seed, duration=600.0, colour=0.0):
     rng = np.random.default_rng(seed)
     n = int(2 * duration / DT)
     f = np.fft.rfftfreq(n, DT)
-    load = (rng.normal(size=len(f)) + 1j * rng.normal(size=len(f))) * np.maximum(f, 0.02) ** (colour / 2)
-    motion = np.fft.irfft(load / (1.0 - (f / 0.7) ** 2 + 2j * damping * f / 0.7), n)[n // 4 : 3 * n // 4]
+    load = (rng.normal(size=len(f)) + 1j * rng.normal(size=len(f))) * np.maximum(f, 0.02) ** (
+        colour / 2
+    )
+    motion = np.fft.irfft(load / (1.0 - (f / 0.7) ** 2 + 2j * damping * f / 0.7), n)[
+        n // 4 : 3 * n // 4
+    ]
     return (motion / motion.std())[:, None]
 
 
@@ -40,7 +44,9 @@ def test_the_peak_is_that_of_an_oscillator():
 def test_unbiased_and_as_uncertain_as_it_says(damping, colour):
     found = [ambient_sway(driven(damping, seed, colour=colour), DT, 0.68) for seed in range(16)]
     for name, truth in (("frequency", 0.7), ("damping", damping)):
-        values = np.array([one.frequency if name == "frequency" else one.damping_ratio for one in found])
+        values = np.array(
+            [one.frequency if name == "frequency" else one.damping_ratio for one in found]
+        )
         error = np.mean([getattr(one, f"{name}_error") for one in found])
         scatter = np.sqrt(np.mean((values - truth) ** 2))
         assert abs(values.mean() - truth) < 0.1 * truth
@@ -48,7 +54,11 @@ def test_unbiased_and_as_uncertain_as_it_says(damping, colour):
 
 
 def test_the_uncertainty_is_that_of_theory():
-    """Au (2014): relative standard errors of sqrt(zeta / 2 pi N) and 1 / sqrt(2 pi zeta N) at best, N cycles."""
+    """
+    Au (2014): relative standard errors of sqrt(zeta / 2 pi N) and 1 / sqrt(2 pi zeta N) at best, N
+    cycles.
+
+    """
     found = ambient_sway(driven(0.05, 1, duration=2000.0), DT, 0.7)
     assert 1.0 < found.frequency_error / 0.7 / np.sqrt(0.05 / (2 * np.pi * found.cycles)) < 1.6
     assert 1.0 < found.damping_error / 0.05 * np.sqrt(2 * np.pi * 0.05 * found.cycles) < 2.5

@@ -59,7 +59,9 @@ def test_damping_is_that_of_the_season(fork):
 
 def test_leaves_weigh_on_the_answer(fork):
     tree = fork()
-    leaves = SimulatorSettings(leaf_mass=np.full(tree.n_branches, 0.05), leaf_area=np.full(tree.n_branches, 0.01))
+    leaves = SimulatorSettings(
+        leaf_mass=np.full(tree.n_branches, 0.05), leaf_area=np.full(tree.n_branches, 0.01)
+    )
     fitted = calibrate(tree, OAK, 1.0, settings=leaves)
     assert fitted.modulus_ratio > calibrate(tree, OAK, 1.0).modulus_ratio
     assert slowest(tree, fitted.species, leaves) == pytest.approx(1.0, rel=1e-8)
@@ -82,7 +84,9 @@ def test_a_tree_that_could_not_stand_gets_a_modulus_that_holds_it(stem):
 
 
 def test_too_slow_a_sway_would_buckle_the_tree(stem):
-    with pytest.raises(TreeError, match=r"1e-05 Hz is out of reach: .* when branch '.*' is about to buckle"):
+    with pytest.raises(
+        TreeError, match=r"1e-05 Hz is out of reach: .* when branch '.*' is about to buckle"
+    ):
         calibrate(stem(), OAK, 1e-5)
 
 

@@ -17,7 +17,9 @@ def decay(modes, duration=40.0, noise=0.0, seed=0):
     motion = noise * np.random.default_rng(seed).normal(size=len(time))
     for frequency, damping, amplitude in modes:
         w = 2.0 * np.pi * frequency
-        motion += amplitude * np.exp(-damping * w * time) * np.sin(w * np.sqrt(1 - damping**2) * time)
+        motion += (
+            amplitude * np.exp(-damping * w * time) * np.sin(w * np.sqrt(1 - damping**2) * time)
+        )
     return motion[:, None]
 
 

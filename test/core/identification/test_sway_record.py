@@ -13,7 +13,9 @@ from tree_sway_ros.errors import FormatError, ParameterError
 RATE = 20.0
 
 
-def release(frequency=0.7, damping=0.05, *, duration=40.0, held=5.0, noise=0.002, seed=0, second=0.15):
+def release(
+    frequency=0.7, damping=0.05, *, duration=40.0, held=5.0, noise=0.002, seed=0, second=0.15
+):
     """Held aside, let go: the sway and a quicker mode, on a rest that is not zero."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, duration, 1.0 / RATE)
@@ -26,7 +28,9 @@ def release(frequency=0.7, damping=0.05, *, duration=40.0, held=5.0, noise=0.002
     return time, motion + noise * rng.normal(size=len(time))
 
 
-def ambient(frequency=0.7, damping=0.05, *, duration=900.0, seed=0, acceleration=False, second=0.05):
+def ambient(
+    frequency=0.7, damping=0.05, *, duration=900.0, seed=0, acceleration=False, second=0.05
+):
     """Driven by turbulence of slope -5/3, exact in the frequency domain, cut from a longer run."""
     rng = np.random.default_rng(seed)
     n = int(2 * duration * RATE)
@@ -88,7 +92,9 @@ def test_the_other_axis_does_not_bend_the_answer():
     """Two sways 4 % apart beat on any one axis; the slower and stronger is found."""
     time, along = release(0.70, 0.03)
     _, across = release(0.73, 0.03, seed=1)
-    found = estimate_sway(time, np.stack([along + 0.3 * across, 0.2 * along - 0.5 * across], axis=1))
+    found = estimate_sway(
+        time, np.stack([along + 0.3 * across, 0.2 * along - 0.5 * across], axis=1)
+    )
     assert found.frequency == pytest.approx(0.70, rel=5e-3)
     assert found.damping_ratio == pytest.approx(0.03, rel=0.1)
 

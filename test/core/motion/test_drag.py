@@ -1,4 +1,8 @@
-"""Drag on a branch: the integral along it, nothing along the grain, and never so much that it overshoots."""
+"""
+Drag on a branch: the integral along it, nothing along the grain, and never so much that it
+overshoots.
+
+"""
 
 from __future__ import annotations
 
@@ -70,7 +74,11 @@ def test_a_bent_branch_is_met_wherever_the_wind_comes_from(sketch):
 @settings(deadline=None)
 @given(st.floats(0.0, 1e4), st.floats(1e-6, 1e6), st.integers(0, 1000))
 def test_implicit_drag_never_overshoots(stem_record, speed, compliance, seed):
-    """What the force does to the branch within the step leaves the air still faster than it, and just so much."""
+    """
+    What the force does to the branch within the step leaves the air still faster than it, and just
+    so much.
+
+    """
     record = stem_record.copy()
     record["compliance"] = compliance
     free = np.random.default_rng(seed).normal(size=3)

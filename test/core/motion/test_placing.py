@@ -1,4 +1,8 @@
-"""Placing: rest is the input, lengths are kept, children stay where they grow, the chord turns by the key rotation."""
+"""
+Placing: rest is the input, lengths are kept, children stay where they grow, the chord turns by the
+key rotation.
+
+"""
 
 from __future__ import annotations
 
@@ -30,7 +34,15 @@ class Puppet:
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bank, origin = self.bank, self.tree.start[0].copy()
-        place(bank.branches, bank.segments, bank.heads, bank.oscillators.work, np.array(x, float), origin, out)
+        place(
+            bank.branches,
+            bank.segments,
+            bank.heads,
+            bank.oscillators.work,
+            np.array(x, float),
+            origin,
+            out,
+        )
         return out
 
     def nodes(self, x):
@@ -40,7 +52,11 @@ class Puppet:
         return out[:, :3], out[:, :3] + self.tree.length[:, None] * ahead
 
     def random(self, seed, largest=1.5):
-        """Key rotations of up to a size in every branch, and of a tenth of it in its further ways to move."""
+        """
+        Key rotations of up to a size in every branch, and of a tenth of it in its further ways to
+        move.
+
+        """
         rng = np.random.default_rng(seed)
         x = rng.uniform(-0.1, 0.1, self.n) * largest
         for branch in self.bank.branches:
@@ -56,7 +72,10 @@ def puppet(fork, request):
 
 @pytest.fixture(scope="module")
 def gappy(random_tree):
-    """A random tree whose segments end a little before the next ones start, away from the origin."""
+    """
+    A random tree whose segments end a little before the next ones start, away from the origin.
+
+    """
     start, end, diameter, parent = random_tree(5, 30)
     return tree_from_segments(start + 3.0, end + 3.0 - 0.1 * (end - start), diameter, parent=parent)
 
@@ -165,7 +184,10 @@ def test_the_chord_goes_on_with_the_key_where_the_shapes_change_over(stem, taper
 
 @pytest.mark.parametrize("taper", [0.0, 0.5])
 def test_the_bent_branch_is_the_beams_curve(stem, taper):
-    """The static slope, drawn with lengths kept: angles of segments over the key's, at a small angle."""
+    """
+    The static slope, drawn with lengths kept: angles of segments over the key's, at a small angle.
+
+    """
     tree = stem(length=1.0, tip=0.02 * (1 - taper), cuts=40)
     doll = Puppet(tree, "branch")
     small = 1e-3
@@ -182,7 +204,10 @@ def test_the_bent_branch_is_the_beams_curve(stem, taper):
 
 
 def test_a_whole_turn_of_the_heading_is_even(stem):
-    """Two axes, no singular direction: bent to any side, an upright stem is the same curve turned."""
+    """
+    Two axes, no singular direction: bent to any side, an upright stem is the same curve turned.
+
+    """
     doll = Puppet(stem())
     reference = doll.nodes([0.6, 0.0])[1]
     for heading in np.linspace(0, 2 * np.pi, 7):
@@ -203,4 +228,6 @@ def test_a_twist_turns_children_and_leaves_the_stem(sketch):
     x[last] = 0.5
     start, end = doll.nodes(x)
     assert end[:4] == pytest.approx(tree.end[:4], abs=1e-12)
-    assert end[-1] - start[4] == pytest.approx(0.5 * np.array([np.cos(0.5), np.sin(0.5), 0]), abs=1e-9)
+    assert end[-1] - start[4] == pytest.approx(
+        0.5 * np.array([np.cos(0.5), np.sin(0.5), 0]), abs=1e-9
+    )

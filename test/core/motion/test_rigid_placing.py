@@ -27,7 +27,9 @@ def test_as_branches_whose_keys_are_zero(rung):
     x = np.zeros(whole.layer(rung).reduction.n_coordinates)
     x[keep] = np.random.default_rng(3).normal(0.0, 0.1, len(keep))
     expected, found = np.zeros((2, tree.n_segments, 7))
-    place(full.branches, full.segments, full.heads, full.oscillators.work, x, tree.start[0], expected)
+    place(
+        full.branches, full.segments, full.heads, full.oscillators.work, x, tree.start[0], expected
+    )
     work = part.oscillators.work
     place(part.branches, part.segments, part.heads, work, x[keep], tree.start[0], found)
     part.frozen.place(part.branches, work, x[keep], found)

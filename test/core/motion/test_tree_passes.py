@@ -1,4 +1,7 @@
-"""How branches ride and hand on loads: virtual work, balance of forces, and momentum of a rigid ride."""
+"""
+How branches ride and hand on loads: virtual work, balance of forces, and momentum of a rigid ride.
+
+"""
 
 from __future__ import annotations
 
@@ -96,7 +99,8 @@ def test_what_is_carried_pulls_at_its_own_height(sketch):
     tree = Loaded(drawn.tree())
     slope = tree.branches["twist"][1, 0, 3:]
     turn = np.linalg.norm(slope)
-    # A level child swings with the tip; one that rises by h further by its parent's slope there times h.
+    # A level child swings with the tip; one that rises by h further by its parent's slope there
+    # times h.
     assert tree.branches["axial_lever"][1] == pytest.approx(1.0, rel=1e-9)
     rise = tree.branches["centre"][2, 2] - 1.0
     assert tree.branches["axial_lever"][2] == pytest.approx(1.0 + turn * rise, rel=1e-9)

@@ -1,4 +1,8 @@
-"""Every branch an oscillator of its own: the exact propagator at work, carried loads, the paper's equation."""
+"""
+Every branch an oscillator of its own: the exact propagator at work, carried loads, the paper's
+equation.
+
+"""
 
 from __future__ import annotations
 
@@ -23,7 +27,10 @@ def oscillators(tree, dt=1 / 60, **changes):
 
 
 def test_a_planar_sway_is_the_papers_equation(stem):
-    """I theta'' + k2 theta' + k1 theta = c (Py cos - Px sin), the drag met as the branch now stands."""
+    """
+    I theta'' + k2 theta' + k1 theta = c (Py cos - Px sin), the drag met as the branch now stands.
+
+    """
     bank = oscillators(stem(length=1.0, base=0.003, cuts=4), dt=1 / 480, damping_ratio=0.1)
     branch = bank.branches[0]
     inertia, damping, stiffness = bank.inertia[0], bank.damping[0], bank.stiffness[0]
@@ -35,7 +42,8 @@ def test_a_planar_sway_is_the_papers_equation(stem):
 
     def rate(t, state):
         angle, speed = state
-        # The wind sees the branch turned by Cayley's map of its mean slope; only what crosses it pushes.
+        # The wind sees the branch turned by Cayley's map of its mean slope; only what crosses it
+        # pushes.
         seen = 2.0 * np.arctan(turn * angle / 2.0)
         across = (wind(t) - flow * speed) * np.cos(seen)
         force = DRAG * branch["area"] * abs(across) * across
@@ -85,7 +93,8 @@ def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
     assert bank.advance(5.0, 0.0, 0.0, 1e12) == 0
     held = [bank.advance(5.0, 0.0, 0.0, 1e12) for _ in range(500)]
     assert max(held) > 0
-    # The most that a bounded moment can do, turned over at every swing; the margin is that of the whole moment.
+    # The most that a bounded moment can do, turned over at every swing; the margin is that of the
+    # whole moment.
     z = WOOD.damping_bare
     most = 1.5 * LOAD_MAX / np.tanh(np.pi * z / (2.0 * np.sqrt(1.0 - z * z)))
     assert np.linalg.norm(bank.rotations().reshape(-1, 2), axis=1).max() < most

@@ -28,7 +28,10 @@ def found(alpha, kappa):
 
 
 def exact(alpha, kappa):
-    """The same from the textbook formulas in 80 digits; and the size of what g and d are a sum of."""
+    """
+    The same from the textbook formulas in 80 digits; and the size of what g and d are a sum of.
+
+    """
     with mpmath.workdps(80):
         a, k = mpmath.mpf(alpha), mpmath.mpf(kappa)
         root = mpmath.sqrt(mpmath.mpc(a * a - k))
@@ -43,7 +46,9 @@ def exact(alpha, kappa):
 
 
 @pytest.mark.parametrize("kappa", [1e-12, 1e-4, 0.3, 2.0, 2.3, 50.0, 1e4, 1e8])
-@pytest.mark.parametrize("ratio", [0.0, 1e-6, 0.05, 0.9999999, 1.0, 1.0000001, 1.06, 1.5, 30.0, 1e3])
+@pytest.mark.parametrize(
+    "ratio", [0.0, 1e-6, 0.05, 0.9999999, 1.0, 1.0000001, 1.06, 1.5, 30.0, 1e3]
+)
 def test_six_numbers_to_twelve_digits(kappa, ratio):
     alpha = ratio * math.sqrt(kappa)
     values, sizes = exact(alpha, kappa)
@@ -63,10 +68,14 @@ def test_limits_at_nothing():
 def test_what_the_six_owe_each_other(alpha, kappa):
     """Determinant e^(-2 alpha), trace by s, and the two recurrences of the differences."""
     g, d, s, p, q, p_minus_q = found(alpha, kappa)
-    assert g * d + kappa * s * s == pytest.approx(math.exp(-2.0 * alpha), abs=1e-11 * (g * g + kappa * s * s))
+    assert g * d + kappa * s * s == pytest.approx(
+        math.exp(-2.0 * alpha), abs=1e-11 * (g * g + kappa * s * s)
+    )
     assert g - d == pytest.approx(2.0 * alpha * s, abs=1e-12 * (abs(g) + abs(d)))
     assert g == pytest.approx(1.0 - kappa * p, abs=1e-12 * (1.0 + kappa * p))
-    assert s == pytest.approx(1.0 - 2.0 * alpha * p - kappa * q, abs=1e-12 * (1.0 + alpha * p + kappa * q))
+    assert s == pytest.approx(
+        1.0 - 2.0 * alpha * p - kappa * q, abs=1e-12 * (1.0 + alpha * p + kappa * q)
+    )
     assert p - q == pytest.approx(p_minus_q, rel=1e-9)
 
 

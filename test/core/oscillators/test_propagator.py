@@ -39,8 +39,9 @@ def test_coefficients_agree_with_mpmath(exponent):
         w = 10.0**exponent / dt
         damping, stiffness = 2 * ratio * w * inertia, inertia * w * w
         exact, scale = textbook(inertia, damping, stiffness, dt)
-        for name, value, true in zip(range(8), propagator(inertia, damping, stiffness, dt)[0], exact,
-                                     strict=True):
+        for name, value, true in zip(
+            range(8), propagator(inertia, damping, stiffness, dt)[0], exact, strict=True
+        ):
             if abs(true) < 1e-290:
                 assert abs(value) < 1e-290
                 continue
@@ -57,7 +58,7 @@ def augmented(inertia, damping, stiffness, dt):
     e = expm(a)
     row = np.empty(8)
     for at, line in ((0, 0), (4, 1)):
-        row[at:at + 4] = e[line, 0], e[line, 1], e[line, 2] - e[line, 3], e[line, 3]
+        row[at : at + 4] = e[line, 0], e[line, 1], e[line, 2] - e[line, 3], e[line, 3]
     return row
 
 
@@ -74,7 +75,8 @@ def test_any_oscillator_agrees_with_the_matrix_exponential(inertia, damping, sti
 def test_free_body_and_free_damped_body():
     h, i = 0.1, 2.0
     assert propagator(i, 0, 0, h)[0] == pytest.approx(
-        [1, h, h * h / i / 3, h * h / i / 6, 0, 1, h / i / 2, h / i / 2], rel=1e-15)
+        [1, h, h * h / i / 3, h * h / i / 6, 0, 1, h / i / 2, h / i / 2], rel=1e-15
+    )
     assert propagator(i, 3.0, 0, h)[0] == pytest.approx(augmented(i, 3.0, 0, h), rel=1e-13)
 
 

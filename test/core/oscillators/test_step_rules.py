@@ -26,9 +26,18 @@ def test_the_default_is_the_exact_propagator():
     assert filled == pytest.approx(exact, rel=1e-15)
 
 
-@pytest.mark.parametrize(("name", "limit"), [
-    ("semi_implicit_euler", 2.0), ("verlet", 2.0), ("rk4", 8**0.5), ("implicit_midpoint", np.inf),
-    ("tr_bdf2", np.inf), ("exact_zoh", np.inf), ("exact_foh", np.inf)])
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [
+        ("semi_implicit_euler", 2.0),
+        ("verlet", 2.0),
+        ("rk4", 8**0.5),
+        ("implicit_midpoint", np.inf),
+        ("tr_bdf2", np.inf),
+        ("exact_zoh", np.inf),
+        ("exact_foh", np.inf),
+    ],
+)
 def test_limits_are_those_of_theory(name, limit):
     assert stability_limit(name) == pytest.approx(limit, rel=1e-4)
 
@@ -40,7 +49,9 @@ def test_damping_lowers_the_limit_of_semi_implicit_euler():
 
 
 def test_a_step_beyond_the_limit_is_refused_with_the_limit():
-    with pytest.raises(ParameterError, match=r"'rk4' is unstable for oscillator 1: w h is 3\.33, its limit 2\.8"):
+    with pytest.raises(
+        ParameterError, match=r"'rk4' is unstable for oscillator 1: w h is 3\.33, its limit 2\.8"
+    ):
         stable_steps("rk4", [1.0, 1.0], 0.0, [100.0, 4e4], 1 / 60)
     assert stable_steps("rk4", [1.0, 1.0], 0.0, [100.0, 2e4], 1 / 60).shape == (2, 8)
 

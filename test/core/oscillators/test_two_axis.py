@@ -1,4 +1,7 @@
-"""The two-axis branch: its formulas against Lagrange's own, its step against a numpy twin, its guard."""
+"""
+The two-axis branch: its formulas against Lagrange's own, its step against a numpy twin, its guard.
+
+"""
 
 from __future__ import annotations
 
@@ -46,8 +49,10 @@ def twin(state, force, row, guard):
         f = perp / sinc - force[0] * sinc * e
         if t > 0:
             f = f + e * (e @ perp) * (cos - 1 / sinc) / t
-            f = f + guard[0] * ((sinc * cos - 1) * spin**2 / t**2 * e
-                                + 2 * (e @ v) * spin / t**2 * (1 - cos / sinc) * np.array([-y, x]))
+            f = f + guard[0] * (
+                (sinc * cos - 1) * spin**2 / t**2 * e
+                + 2 * (e @ v) * spin / t**2 * (1 - cos / sinc) * np.array([-y, x])
+            )
         size = np.hypot(*f)
         return f * min(1.0, guard[2] / size) if size > 0 else f
 
@@ -58,8 +63,12 @@ def twin(state, force, row, guard):
     e1 = row[0] * e + row[1] * v + (row[2] + row[3]) * m0
     v1 = row[4] * e + row[5] * v + (row[6] + row[7]) * m0
     m1 = moment(*e1, *v1)
-    return np.concatenate([row[0] * e + row[1] * v + row[2] * m0 + row[3] * m1,
-                           row[4] * e + row[5] * v + row[6] * m0 + row[7] * m1])
+    return np.concatenate(
+        [
+            row[0] * e + row[1] * v + row[2] * m0 + row[3] * m1,
+            row[4] * e + row[5] * v + row[6] * m0 + row[7] * m1,
+        ]
+    )
 
 
 @settings(max_examples=200, deadline=None)
@@ -87,7 +96,9 @@ def test_gyroscopic_term_keeps_to_geodesics(x, y, vx, vy):
     assert two_axis.gyroscopic(x, y, vx, vy) == pytest.approx(expected, abs=1e-5)
 
 
-@pytest.mark.parametrize(("theta", "bound"), [(0.05, 1e-14), (0.5, 1e-11), (1.57, 1e-9), (2.35, 5e-9)])
+@pytest.mark.parametrize(
+    ("theta", "bound"), [(0.05, 1e-14), (0.5, 1e-11), (1.57, 1e-9), (2.35, 5e-9)]
+)
 def test_the_series_keeps_its_promise(theta, bound):
     w = (0.3, 0.8, -0.5)
     x, y = theta * 0.6, theta * 0.8
@@ -103,7 +114,12 @@ def bank(n, seed, dt=1 / 60):
     stiffness = inertia * w * w
     rows = propagator(inertia, 2 * 0.05 * w * inertia, stiffness, dt)
     state = np.vstack([rng.uniform(-0.8, 0.8, (2, n)), rng.uniform(-2, 2, (2, n))])
-    return state, rng.normal(0, 0.7, (3, n)) * stiffness, rows, two_axis.guards(inertia, stiffness, dt)
+    return (
+        state,
+        rng.normal(0, 0.7, (3, n)) * stiffness,
+        rows,
+        two_axis.guards(inertia, stiffness, dt),
+    )
 
 
 def test_bank_agrees_with_its_twin():
@@ -160,7 +176,10 @@ def test_no_load_keeps_rest():
 
 
 def test_guards_follow_the_step():
-    """The gyroscopic term goes at w h = .5; the load followed falls as 3 / (w h)^2, within .8 and 10."""
+    """
+    The gyroscopic term goes at w h = .5; the load followed falls as 3 / (w h)^2, within .8 and 10.
+
+    """
     stiffness = np.array([0.04, 0.24, 0.26, 1.0, 100.0, 0.0])
     guard = two_axis.guards(np.ones(6), stiffness, 1.0)
     assert guard[:, 0].tolist() == [1.0, 1.0, 0.0, 0.0, 0.0, 1.0]
@@ -174,4 +193,5 @@ def test_beyond_the_guard_the_force_is_the_circles():
     edge = np.sqrt(two_axis.T_MAX)
     for theta in (2.5, 7.0, 1e6):
         assert two_axis.true_force(theta, 0.0, 0.3, 1.0, 0.0) == pytest.approx(
-            two_axis.true_force(edge, 0.0, 0.3, 1.0, 0.0))
+            two_axis.true_force(edge, 0.0, 0.3, 1.0, 0.0)
+        )

@@ -1,8 +1,8 @@
 """
 Matrices of the key rotations, against differences of placed segments.
 
-Placing knows nothing of mass or weight, and the matrices nothing of quaternions: the kinetic energy of the placed
-segments and the second variation of their height must be what the matrices say.
+Placing knows nothing of mass or weight, and the matrices nothing of quaternions: the kinetic energy
+of the placed segments and the second variation of their height must be what the matrices say.
 
 """
 
@@ -33,9 +33,7 @@ class Reduced:
         self.models = branch_models(
             tree, DENSITY, carries=carries, enriched=frozenset(enriched), **leaves
         )
-        self.reduction = reduce_tree(
-            tree, self.models, MODULUS, SHEAR, gravity, carries=carries
-        )
+        self.reduction = reduce_tree(tree, self.models, MODULUS, SHEAR, gravity, carries=carries)
         self.branches = np.zeros(tree.n_branches, dtype=BRANCH)
         fill_branch_geometry(tree, self.models, self.branches)
         self.branches["coordinate"] = self.reduction.first[:-1]

@@ -1,4 +1,8 @@
-"""Natural modes: orthonormal, equal by both ways to find them, softened by weight, refused when they buckle."""
+"""
+Natural modes: orthonormal, equal by both ways to find them, softened by weight, refused when they
+buckle.
+
+"""
 
 from __future__ import annotations
 
@@ -85,7 +89,9 @@ def test_weight_slows_an_upright_stem(stem, rung, share, ratio):
 @pytest.mark.parametrize("rung", ["branch", "subtree", "modes", "coupled"])
 def test_a_stem_beyond_greenhills_length_is_refused_by_name(stem, rung):
     tree, wood = flagpole(stem, 1.02)
-    with pytest.raises(TreeError, match=r"branch 'stem': buckles under its own weight.*thick") as error:
+    with pytest.raises(
+        TreeError, match=r"branch 'stem': buckles under its own weight.*thick"
+    ) as error:
         SwaySimulator(tree, wood, rung=rung, n_modes=1)
     assert "9" in error.value.what
     assert SwaySimulator(tree, wood, rung=rung, n_modes=1, gravity=0.0).frequencies(1)[0] > 0.0
@@ -151,7 +157,11 @@ def test_frequencies_do_not_depend_on_where_a_stem_points(stem, direction):
 
 
 def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
-    """.7154 .7254 1.4084 1.7586 Hz: Euler-Bernoulli frame of 17,424 degrees of freedom, E 8 GPa, 900 kg/m^3."""
+    """
+    .7154 .7254 1.4084 1.7586 Hz: Euler-Bernoulli frame of 17,424 degrees of freedom, E 8 GPa, 900
+    kg/m^3.
+
+    """
     if not TREE_121.exists():
         pytest.skip(f"the tree of 121 branches is not at {TREE_121}")
     rows = np.genfromtxt(TREE_121, delimiter=",", names=True)

@@ -57,7 +57,11 @@ def test_matrices_lose_rows_and_nothing_else(whole):
 
 
 def test_an_even_wind_pushes_as_hard_as_before(whole):
-    """The drag of branches that point all ways, as one load: within two percent, mean of its parts within six."""
+    """
+    The drag of branches that point all ways, as one load: within two percent, mean of its parts
+    within six.
+
+    """
     pruning, full = Pruning(whole.tree, twigs_of(whole.tree)), whole.coupled
     records = pruning.branches(full.branches)
     n, keep = full.reduction.n_coordinates, pruning.coordinates(full.reduction)

@@ -113,7 +113,9 @@ def test_step_is_of_second_order():
 
 
 def test_undamped_tree_keeps_its_energy_and_falls_as_gravity_says():
-    model = ArticulatedTree(bush(), E / 30, RHO, gravity=9.81, twist_ratio=0.8, drag_coefficient=0.0, rayleigh=UNDAMPED)
+    model = ArticulatedTree(
+        bush(), E / 30, RHO, gravity=9.81, twist_ratio=0.8, drag_coefficient=0.0, rayleigh=UNDAMPED
+    )
     for _ in range(60):
         model.step(np.zeros(3), DT)
     assert np.abs(model.state.rate).max() < 1e-12, "rest is the loaded shape"
@@ -194,7 +196,9 @@ def test_poses_join_and_point_along_the_chords():
 
 
 def test_mass_matrix_is_that_of_the_algorithm():
-    model = ArticulatedTree(bush(), E, RHO, drag_coefficient=0.0, rayleigh=UNDAMPED, twist_ratio=0.8)
+    model = ArticulatedTree(
+        bush(), E, RHO, drag_coefficient=0.0, rayleigh=UNDAMPED, twist_ratio=0.8
+    )
     n = bush().n_segments
     mass = joint_mass(model.bodies).toarray()
     room = room_of(n)

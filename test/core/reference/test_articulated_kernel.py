@@ -44,7 +44,18 @@ def model(**changes):
 
 def accelerations(m, turn, rate):
     n, out = len(turn), np.empty_like(rate)
-    respond(m.bodies, m.laws, turn, rate, np.zeros((n, 3)), 0.0, motion_of(n), articulation_of(n), room_of(n), out)
+    respond(
+        m.bodies,
+        m.laws,
+        turn,
+        rate,
+        np.zeros((n, 3)),
+        0.0,
+        motion_of(n),
+        articulation_of(n),
+        room_of(n),
+        out,
+    )
     return out
 
 
@@ -177,7 +188,9 @@ def test_modes_are_orthonormal_in_mass_and_diagonal_in_stiffness():
     turn = modes.turn.reshape(6, -1)
     assert turn @ joint_mass(m.bodies) @ turn.T == pytest.approx(np.eye(6), abs=1e-8)
     square = (2.0 * np.pi * modes.frequency) ** 2
-    assert turn @ joint_stiffness(m.bodies, G) @ turn.T == pytest.approx(np.diag(square), abs=1e-6 * square[-1])
+    assert turn @ joint_stiffness(m.bodies, G) @ turn.T == pytest.approx(
+        np.diag(square), abs=1e-6 * square[-1]
+    )
     assert modes.momentum.reshape(6, -1) == pytest.approx((joint_mass(m.bodies) @ turn.T).T)
     assert np.all(np.diff(modes.frequency) >= 0.0)
 
@@ -194,7 +207,10 @@ def test_end_displacements_are_the_slope_of_the_places():
 
 
 def test_one_segment_is_a_pendulum_on_a_spring():
-    """A rod hinged at its middle: half of it swings, k = EI / L, and a weight above it softens that."""
+    """
+    A rod hinged at its middle: half of it swings, k = EI / L, and a weight above it softens that.
+
+    """
     stem = tapered_stem(2.0, [0.05, 0.05])
     inertia = np.pi / 64 * 0.05**4
     half = RHO * np.pi / 4 * 0.05**2

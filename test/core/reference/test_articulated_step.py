@@ -23,7 +23,9 @@ def stability(z):
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 30.0])
 def test_a_small_swing_grows_as_the_stability_function_says(ratio, damping):
     """One joint is linear for small turns, and its spring and damper are the whole Jacobian."""
-    model = ArticulatedTree(tapered_stem(2.0, [0.05, 0.05]), E, RHO, 0.0, 0.0, rayleigh=(0.0, damping))
+    model = ArticulatedTree(
+        tapered_stem(2.0, [0.05, 0.05]), E, RHO, 0.0, 0.0, rayleigh=(0.0, damping)
+    )
     w = 2.0 * np.pi * model.linear_modes(1)[0][0]
     dt, tiny, columns = ratio / w, 1e-7, []
     for turn, rate in ((tiny, 0.0), (0.0, tiny)):
@@ -49,10 +51,14 @@ def test_drag_is_across_the_segment_and_with_the_square():
     assert drag(laws(), up, (3.0, 4.0, 9.0), still) == pytest.approx((9.0, 12.0, 0.0))
     assert drag(laws(), up, (0.0, 0.0, 9.0), still) == (0.0, 0.0, 0.0)
     assert drag(laws(), up, (3.0, 4.0, 0.0), (3.0, 4.0, 7.0)) == (0.0, 0.0, 0.0), "carried along"
-    assert drag(laws(), up, still, (2.0, 0.0, 0.0)) == pytest.approx((-2.4, 0.0, 0.0)), "still air brakes"
+    assert drag(laws(), up, still, (2.0, 0.0, 0.0)) == pytest.approx((-2.4, 0.0, 0.0)), (
+        "still air brakes"
+    )
 
 
-@pytest.mark.parametrize(("speed", "counted"), [(1.0, 4.0), (4.0, 4.0), (9.0, 9.0), (20.0, 20.0), (50.0, 20.0)])
+@pytest.mark.parametrize(
+    ("speed", "counted"), [(1.0, 4.0), (4.0, 4.0), (9.0, 9.0), (20.0, 20.0), (50.0, 20.0)]
+)
 def test_crowns_streamline_between_two_speeds(speed, counted):
     found = drag(laws(0.5), (0.0, 0.0, 1.0), (speed, 0.0, 0.0), (0.0, 0.0, 0.0))[0]
     assert found == pytest.approx(0.6 * speed**2 * counted**-0.5)

@@ -63,4 +63,6 @@ def test_means_over_frames_keep_the_integral():
     whole = trapezoid(wind, time, axis=0)
     assert frame_means(time, wind, dt).sum(axis=0) * dt == pytest.approx(whole, abs=1e-12)
     steady = frame_means([0.0, 1.0], np.tile([3.0, 0.0, 1.0], (2, 1)), 0.3)
-    assert steady == pytest.approx(np.tile([3.0, 0.0, 1.0], (3, 1))), "a frame that is not full is left out"
+    assert steady == pytest.approx(np.tile([3.0, 0.0, 1.0], (3, 1))), (
+        "a frame that is not full is left out"
+    )

@@ -111,7 +111,10 @@ def test_twist_of_a_pure_twist_and_of_a_pure_swing():
 
 @pytest.mark.parametrize("size", [1e-6, 0.9e-2, 1.1e-2, 1.0, 3.0])
 def test_held_torque_works_as_a_constant_one(size, differences):
-    """Its work on a small turn more is the constant torque's on the change of the rotation vector."""
+    """
+    Its work on a small turn more is the constant torque's on the change of the rotation vector.
+
+    """
     torque = np.array([1.0, -2.0, 0.5])
     v = size * np.array(vector(3, 1.0)) / np.linalg.norm(vector(3, 1.0))
     q = quaternion(v)

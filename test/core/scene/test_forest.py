@@ -22,7 +22,10 @@ DT = 1.0 / 60.0
 
 
 def gusts(n, mean=8.0):
-    return np.array([mean, 0.0, 0.0]) + Turbulence(mean).record(36_000, 60.0, np.random.default_rng(2))[:n]
+    return (
+        np.array([mean, 0.0, 0.0])
+        + Turbulence(mean).record(36_000, 60.0, np.random.default_rng(2))[:n]
+    )
 
 
 def turned(wind, yaw):
@@ -32,7 +35,10 @@ def turned(wind, yaw):
 
 def test_one_tree_at_the_anemometer_moves_as_alone(fork):
     tree = fork()
-    forest, alone = Forest([StandingTree("tree", tree)], rung="subtree"), SwaySimulator(tree, rung="subtree")
+    forest, alone = (
+        Forest([StandingTree("tree", tree)], rung="subtree"),
+        SwaySimulator(tree, rung="subtree"),
+    )
     for wind in gusts(120):
         assert forest.step(wind, DT) == alone.step(wind, DT) == OK
         assert forest.place() == pytest.approx(alone.place(), abs=1e-12)
@@ -99,7 +105,9 @@ def test_at_rest_the_block_is_that_of_the_joined_tree(fork, stem):
 def test_each_tree_may_have_a_species_and_a_model_of_its_own(stem):
     trees = [
         StandingTree("a", stem()),
-        StandingTree("b", stem(), species=species_named("oak"), settings=SimulatorSettings(rung="branch")),
+        StandingTree(
+            "b", stem(), species=species_named("oak"), settings=SimulatorSettings(rung="branch")
+        ),
     ]
     forest = Forest(trees, rung="subtree")
     assert forest.rung == "subtree, branch"
@@ -109,7 +117,9 @@ def test_each_tree_may_have_a_species_and_a_model_of_its_own(stem):
 
 @pytest.mark.parametrize("bad", [(np.nan, 0, 0), (np.inf, 0, 0), (1e300, 0, 0), (500.0, 0, 0)])
 def test_a_wind_that_cannot_be_is_refused_and_forgotten(fork, bad):
-    forests = [Forest([StandingTree(n, fork(), x=x) for n, x in (("a", 0.0), ("b", 9.0))]) for _ in "12"]
+    forests = [
+        Forest([StandingTree(n, fork(), x=x) for n, x in (("a", 0.0), ("b", 9.0))]) for _ in "12"
+    ]
     winds = gusts(200)
     for i, wind in enumerate(winds):
         status = forests[0].step(bad if i == 50 else wind, DT)
@@ -130,7 +140,7 @@ def test_reset_brings_every_tree_to_rest(fork):
         runs.append(forest.place().copy())
         forest.reset()
         assert (forest.place() == rest).all()
-        assert (forest.tip_displacements == pytest.approx(0.0, abs=1e-14))
+        assert forest.tip_displacements == pytest.approx(0.0, abs=1e-14)
     assert (runs[0] == runs[1]).all()
 
 
@@ -162,7 +172,10 @@ def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
 
 
 def test_every_tree_finds_the_model_it_needs(fork, stem):
-    trees = [StandingTree("fork", fork()), StandingTree("twig", stem(length=0.1, base=0.02, tip=0.01))]
+    trees = [
+        StandingTree("fork", fork()),
+        StandingTree("twig", stem(length=0.1, base=0.02, tip=0.01)),
+    ]
     forest = Forest(trees, fidelity="auto", tolerance=1e-3)
     chosen = [each.choice.name for each in simulators_of(forest)]
     assert chosen[1] == "frozen"

@@ -1,4 +1,7 @@
-"""Trees where they stand: turned and moved without a change to anything else; joined to one record."""
+"""
+Trees where they stand: turned and moved without a change to anything else; joined to one record.
+
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,10 @@ def test_the_wind_profile_counts_from_the_ground_it_stands_on(fork):
 
 
 def test_joined_trees_keep_their_order_and_names(fork, stem):
-    trees = [StandingTree("a", fork()).placed(), StandingTree("b", stem(species="oak"), x=5.0).placed()]
+    trees = [
+        StandingTree("a", fork()).placed(),
+        StandingTree("b", stem(species="oak"), x=5.0).placed(),
+    ]
     both = joined(trees, "park")
     n, b = trees[0].n_segments, trees[0].n_branches
     assert (both.name, both.species) == ("park", "mixed")

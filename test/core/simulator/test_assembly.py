@@ -46,7 +46,10 @@ def test_leaves_slow_the_branches_they_sit_on(stem, share):
 
 
 def test_stiffness_goes_with_modulus_and_mass_with_density(fork):
-    species = [OAK, *(OAK.__class__("x", "x", m * OAK.modulus, d * OAK.density) for m, d in ((4, 1), (1, 4)))]
+    species = [
+        OAK,
+        *(OAK.__class__("x", "x", m * OAK.modulus, d * OAK.density) for m, d in ((4, 1), (1, 4))),
+    ]
     settings = SimulatorSettings(rung="subtree", gravity=0.0)
     wood, stiff, heavy = (build_bank(fork(), s, settings).frequencies for s in species)
     assert stiff == pytest.approx(2.0 * wood, rel=1e-9)

@@ -1,4 +1,8 @@
-"""Leaves on or off: lower frequencies, more damping, a load that grows less than the square of the wind."""
+"""
+Leaves on or off: lower frequencies, more damping, a load that grows less than the square of the
+wind.
+
+"""
 
 from __future__ import annotations
 
@@ -48,7 +52,9 @@ def test_leaves_weigh_catch_and_damp(fork):
     leafy = in_season(tree, usual, leaf_on=True)
     assert (leafy.leaf_mass == foliage.mass).all()
     assert (leafy.leaf_area == foliage.drag_area).all()
-    assert leafy == replace(usual, in_leaf=True, leaf_mass=leafy.leaf_mass, leaf_area=leafy.leaf_area)
+    assert leafy == replace(
+        usual, in_leaf=True, leaf_mass=leafy.leaf_mass, leaf_area=leafy.leaf_area
+    )
     bare, full = (SwaySimulator(tree, settings=each) for each in (usual, leafy))
     assert full.mass - bare.mass == pytest.approx(foliage.mass.sum())
 
@@ -67,8 +73,12 @@ def test_leaves_may_be_given(fork):
 
 
 #: What is missed, and by how much, is in the reason.
-_too_heavy = pytest.mark.xfail(strict=True, reason="leaves at 60 % of the branches' mass bring it to .69")
-_too_light = pytest.mark.xfail(strict=True, reason="leaves at 15 % of the branches' mass leave it at .9504")
+_too_heavy = pytest.mark.xfail(
+    strict=True, reason="leaves at 60 % of the branches' mass bring it to .69"
+)
+_too_light = pytest.mark.xfail(
+    strict=True, reason="leaves at 15 % of the branches' mass leave it at .9504"
+)
 
 
 @pytest.mark.parametrize(
@@ -86,12 +96,17 @@ _too_light = pytest.mark.xfail(strict=True, reason="leaves at 15 % of the branch
     ],
 )
 def test_leaves_lower_the_first_frequency(name, shares):
-    """Leaves of 15 to 60 % of the branches' mass bring it to .70 to .95 of that of the bare tree."""
+    """
+    Leaves of 15 to 60 % of the branches' mass bring it to .70 to .95 of that of the bare tree.
+
+    """
     tree = tree_named(name)
     leafy = in_season(tree, leaf_on=True)
     mass = leafy.leaf_mass / leafy.leaf_mass.sum() * branch_wood(tree)
     bare = first_frequency(tree, SimulatorSettings())
-    most, least = (first_frequency(tree, replace(leafy, leaf_mass=mass * share)) / bare for share in shares)
+    most, least = (
+        first_frequency(tree, replace(leafy, leaf_mass=mass * share)) / bare for share in shares
+    )
     assert 0.70 <= least < most <= 0.95
 
 
@@ -113,7 +128,12 @@ def growth_of_load(tree, settings):
 
 
 @pytest.mark.parametrize(
-    "name", ["benjamina", "pine", *(pytest.param(each, marks=_long) for each in ("oak", "birch", "spruce"))]
+    "name",
+    [
+        "benjamina",
+        "pine",
+        *(pytest.param(each, marks=_long) for each in ("oak", "birch", "spruce")),
+    ],
 )
 def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
     tree, usual = tree_named(name), SimulatorSettings(rung="subtree")

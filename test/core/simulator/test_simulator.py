@@ -100,8 +100,14 @@ def test_mirrored_wind_gives_mirrored_motion(mirror_fork, rung):
 @pytest.mark.parametrize("heading", [0.7, np.pi])
 @pytest.mark.parametrize(
     ("rung", "within", "gravity"),
-    # What is left: the inertia a branch gives way with, and the static rest under weight, go by each axis.
-    [("branch", 1e-12, 9.81), ("subtree", 1e-5, 9.81), ("modes", 1e-12, 0.0), ("coupled", 1e-12, 9.81)],
+    # What is left: the inertia a branch gives way with, and the static rest under weight, go by
+    # each axis.
+    [
+        ("branch", 1e-12, 9.81),
+        ("subtree", 1e-5, 9.81),
+        ("modes", 1e-12, 0.0),
+        ("coupled", 1e-12, 9.81),
+    ],
 )
 def test_a_turned_tree_in_turned_wind_moves_alike(fork, rung, within, gravity, heading):
     tree = fork()

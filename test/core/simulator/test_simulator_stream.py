@@ -1,4 +1,8 @@
-"""What a live stream may throw at a simulator: bad winds, storms, stalls, steps of any length, restarts."""
+"""
+What a live stream may throw at a simulator: bad winds, storms, stalls, steps of any length,
+restarts.
+
+"""
 
 from __future__ import annotations
 
@@ -38,7 +42,9 @@ def swaying(tree, rung, **changes):
 
 
 @pytest.mark.parametrize(
-    "bad", [np.nan, np.inf, -np.inf, 1e300, 1e6, -1e6], ids=["nan", "inf", "-inf", "1e300", "1e6", "-1e6"]
+    "bad",
+    [np.nan, np.inf, -np.inf, 1e300, 1e6, -1e6],
+    ids=["nan", "inf", "-inf", "1e300", "1e6", "-1e6"],
 )
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_a_wind_that_cannot_be_is_refused_and_the_last_one_held(fork, bad, axis):
@@ -108,6 +114,7 @@ def test_a_stall_is_one_long_step(stem):
 
 def test_a_change_of_step_does_not_move_the_tree(fork, rung):
     """Half steps, then whole ones: the same motion to the second order of the step."""
+
     def wind(t):
         return np.array([5.0 + 2.0 * np.sin(3.0 * t), 0.0, 0.0])
 

@@ -36,7 +36,10 @@ def tip_motion(tree, rung, winds):
 
 
 def limbs(sketch, cuts):
-    """Stem, two limbs and a twig, straight and tapered; children sit in the middle of their parents."""
+    """
+    Stem, two limbs and a twig, straight and tapered; children sit in the middle of their parents.
+
+    """
     s = sketch()
     stem = s.add(None, 0, (0.05, 0.0, 1.0), 2.0, 0.030, 0.012, cuts)
     limb = s.add(stem, cuts // 2, (1.0, 0.3, 0.6), 0.9, 0.014, 0.006, cuts)
@@ -49,7 +52,9 @@ def limbs(sketch, cuts):
 @pytest.mark.parametrize("kind", ["one branch", "four branches"])
 def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty, rung, kind):
     # Cut in 4, so that a cut in 3 leaves the twig within a segment.
-    tree = stem(length=2.0, base=0.02, tip=0.006, cuts=4) if kind == "one branch" else limbs(sketch, 4)
+    tree = (
+        stem(length=2.0, base=0.02, tip=0.006, cuts=4) if kind == "one branch" else limbs(sketch, 4)
+    )
     finest, *others = [tip_motion(resegment(tree, cut), rung, gusty) for cut in CUTS[::-1]]
     size = np.sqrt(np.square(finest).sum(axis=1).mean())
     assert size > 0.005
@@ -71,16 +76,23 @@ def test_finer_cuts_change_no_frequency(fork, rung):
 @settings(max_examples=40, deadline=None)
 def test_what_is_kept(random_tree, seed, cut):
     start, end, diameter, parent = random_tree(seed)
-    tree = tree_from_segments(start, end, np.stack([diameter, 0.8 * diameter], axis=1), parent=parent)
+    tree = tree_from_segments(
+        start, end, np.stack([diameter, 0.8 * diameter], axis=1), parent=parent
+    )
     anew = resegment(tree, cut)
     assert (np.diff(anew.branch_first) == cut).all()
     assert sorted(anew.branch_names) == sorted(tree.branch_names)
     ours = [anew.branch_names.index(name) for name in tree.branch_names]
     assert anew.start[anew.branch_first[ours]] == pytest.approx(tree.start[tree.branch_first[:-1]])
-    assert anew.end[anew.branch_first[1:][ours] - 1] == pytest.approx(tree.end[tree.branch_first[1:] - 1])
+    assert anew.end[anew.branch_first[1:][ours] - 1] == pytest.approx(
+        tree.end[tree.branch_first[1:] - 1]
+    )
     for old, new in enumerate(ours):
         carriers = [each.branch_parent[b] for each, b in ((tree, old), (anew, new))]
-        names = [each.branch_names[c] if c >= 0 else "" for each, c in zip((tree, anew), carriers, strict=True)]
+        names = [
+            each.branch_names[c] if c >= 0 else ""
+            for each, c in zip((tree, anew), carriers, strict=True)
+        ]
         assert names[0] == names[1]
         if cut >= tree.branch_first[old + 1] - tree.branch_first[old]:
             # Finer cuts keep every node, and so length and volume.
@@ -113,7 +125,12 @@ def test_a_longest_length_is_kept_to(fork):
     anew = resegment(tree, max_segment_length=0.1)
     assert anew.length.max() <= 0.1 + 1e-9
     # A branch as long as two segments to rounding gets two.
-    assert resegment(tree_from_segments([[0, 0, 0]], [[0, 0, 0.6]], [0.1]), max_segment_length=0.3).n_segments == 2
+    assert (
+        resegment(
+            tree_from_segments([[0, 0, 0]], [[0, 0, 0.6]], [0.1]), max_segment_length=0.3
+        ).n_segments
+        == 2
+    )
 
 
 def test_children_sit_on_the_segment_beside_them():
@@ -123,7 +140,9 @@ def test_children_sit_on_the_segment_beside_them():
         first = anew.branch_first[1:-1]
         seat = anew.segment_parent[first]
         # Their start lies within the seat's length, a kept node at either end of it included.
-        along = np.einsum("ij,ij->i", anew.start[first] - anew.start[seat], anew.end[seat] - anew.start[seat])
+        along = np.einsum(
+            "ij,ij->i", anew.start[first] - anew.start[seat], anew.end[seat] - anew.start[seat]
+        )
         share = along / anew.length[seat] ** 2
         assert share.min() > -0.35
         assert share.max() < 1.35

@@ -32,7 +32,9 @@ def test_drag_at_ten_metres_a_second_is_that_of_a_crown():
 
 
 def test_an_unknown_species_is_refused_with_those_that_exist():
-    with pytest.raises(SpeciesError, match=r"unknown species 'mahogany'; use one of: ash, .*walnut"):
+    with pytest.raises(
+        SpeciesError, match=r"unknown species 'mahogany'; use one of: ash, .*walnut"
+    ):
         species_named("mahogany")
 
 

@@ -17,7 +17,9 @@ def smooth(t):
     return np.array([5.0 + 2.0 * math.sin(1.3 * t), 1.5 * math.cos(2.1 * t), 0.0])
 
 
-def run(average, duration, *, source=smooth, period=PERIOD, latency=0.0, hears=lambda t: True, since=0.0):
+def run(
+    average, duration, *, source=smooth, period=PERIOD, latency=0.0, hears=lambda t: True, since=0.0
+):
     """Feed samples as they arrive to a 60 Hz solver; return ends of the steps and means."""
     means, ends, k = [], [], 0
     for frame in range(round(duration / FRAME)):

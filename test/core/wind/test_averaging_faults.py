@@ -15,7 +15,9 @@ def smooth(t):
     return np.array([5.0 + 2.0 * math.sin(1.3 * t), 1.5 * math.cos(2.1 * t), 0.0])
 
 
-def run(average, duration, *, source=smooth, period=PERIOD, latency=0.0, hears=lambda t: True, since=0.0):
+def run(
+    average, duration, *, source=smooth, period=PERIOD, latency=0.0, hears=lambda t: True, since=0.0
+):
     """Feed samples as they arrive to a 60 Hz solver; return ends of the steps and means."""
     means, ends, k = [], [], 0
     for frame in range(round(duration / FRAME)):
@@ -68,7 +70,9 @@ class TestDropouts:
         np.testing.assert_allclose(means[held][:, 0], 6.0, rtol=1e-12)
         tail = ends > 3.1
         start = ends[tail] - FRAME
-        exact = 6.0 * 3.0 / FRAME * (np.exp(-(start - 3.0) / 3.0) - np.exp(-(ends[tail] - 3.0) / 3.0))
+        exact = (
+            6.0 * 3.0 / FRAME * (np.exp(-(start - 3.0) / 3.0) - np.exp(-(ends[tail] - 3.0) / 3.0))
+        )
         np.testing.assert_allclose(means[tail][:, 0], exact, rtol=1e-6)
 
     def test_the_states_of_a_dropout_in_order(self):
@@ -103,7 +107,9 @@ class TestDropouts:
 
     def test_the_very_first_sample_is_blended_too_if_calm_was_shown(self):
         average = WindAverage()
-        _, means = run(average, 3.0, source=lambda t: np.array([9.0, 0, 0]), hears=lambda t: t > 1.0)
+        _, means = run(
+            average, 3.0, source=lambda t: np.array([9.0, 0, 0]), hears=lambda t: t > 1.0
+        )
         assert not means[:59].any()
         assert np.abs(np.diff(means[:, 0])).max() <= 9.0 * FRAME / 0.5 + 1e-9
         assert means[-1, 0] == pytest.approx(9.0)
@@ -119,7 +125,9 @@ class TestDropouts:
                 k += 1
             means.append(average.mean(end - FRAME, end))
         # At most the fade of what was lost while it lasted.
-        lost = max(np.abs(smooth(4.0)).max(), np.ptp([smooth(t / 10) for t in range(100)], axis=0).max())
+        lost = max(
+            np.abs(smooth(4.0)).max(), np.ptp([smooth(t / 10) for t in range(100)], axis=0).max()
+        )
         limit = 4.1 * FRAME / 0.75 + lost * FRAME / min(stall, 0.5)
         assert np.abs(np.diff(means[30:], axis=0)).max() < limit
         assert average.state(20.0) == "live"

@@ -30,7 +30,13 @@ def test_a_westerly_blows_to_the_east_from_every_kind_of_source():
 
 @pytest.mark.parametrize(
     ("bearing", "blows_to"),
-    [(0.0, (0, -1, 0)), (90.0, (-1, 0, 0)), (180.0, (0, 1, 0)), (270.0, (1, 0, 0)), (360.0, (0, -1, 0))],
+    [
+        (0.0, (0, -1, 0)),
+        (90.0, (-1, 0, 0)),
+        (180.0, (0, 1, 0)),
+        (270.0, (1, 0, 0)),
+        (360.0, (0, -1, 0)),
+    ],
 )
 def test_meteorological_bearings(bearing, blows_to):
     wind = WindConvention().from_speed_and_bearing(1.0, bearing)

@@ -22,14 +22,19 @@ def felt(history, winds, dt=DT):
 
 
 def gusts(n, mean=8.0, seed=1):
-    return np.array([mean, 0.0, 0.0]) + Turbulence(mean).record(36_000, 1 / DT, np.random.default_rng(seed))[:n]
+    return (
+        np.array([mean, 0.0, 0.0])
+        + Turbulence(mean).record(36_000, 1 / DT, np.random.default_rng(seed))[:n]
+    )
 
 
 def test_a_place_feels_a_gust_when_it_has_travelled_there():
     # The mean is 8 m/s for a minute before a front passes the anemometer: 40 m take 5 s.
     winds = np.tile([8.0, 0.0, 0.0], (4500, 1))
     winds[3600:3630] = [12.0, 0.0, 1.0]
-    history = GustHistory([[40.0, 0.0, 0.0], [80.0, 300.0, 9.0]], np.zeros(3), averaging_time=3600.0)
+    history = GustHistory(
+        [[40.0, 0.0, 0.0], [80.0, 300.0, 9.0]], np.zeros(3), averaging_time=3600.0
+    )
     speed = felt(history, winds)[:, :, 0]
     for column, way in zip(speed.T, (40.0, 80.0), strict=True):
         above = np.flatnonzero(column > 10.0)
@@ -82,7 +87,9 @@ def test_upwind_of_the_anemometer_the_wind_is_felt_at_once_and_told():
 
 
 def test_beyond_its_memory_the_oldest_wind_is_felt_and_told():
-    history = GustHistory([[100.0, 0.0, 0.0], [1e6, 0.0, 0.0]], np.zeros(3), memory=20.0, capacity=64)
+    history = GustHistory(
+        [[100.0, 0.0, 0.0], [1e6, 0.0, 0.0]], np.zeros(3), memory=20.0, capacity=64
+    )
     result = felt(history, gusts(1000))
     assert history.n_forgotten == 1
     assert np.isfinite(result).all()
@@ -112,7 +119,8 @@ def test_as_the_wind_turns_time_goes_on_for_every_place(seed, turn, place):
 
 
 def test_no_wind_is_lost_or_felt_twice():
-    # As delays change the wind is stretched, but a place's run of wind ends where the anemometer's did so long ago.
+    # As delays change the wind is stretched, but a place's run of wind ends where the anemometer's
+    # did so long ago.
     rng = np.random.default_rng(4)
     winds, steps = gusts(2000), rng.uniform(0.2, 3.0, 2000) * DT
     history = GustHistory([[30.0, 0.0, 0.0], [90.0, 10.0, 0.0]], np.zeros(3), averaging_time=10.0)
@@ -132,7 +140,9 @@ def test_no_wind_is_lost_or_felt_twice():
         assert end == pytest.approx(ends[-1] - before[i])
         for k in range(3):
             # Before the start it blew as in the first step.
-            expected = np.interp(end, np.r_[0.0, ends], np.r_[0.0, runs[:, k]]) - begin * winds[0, k]
+            expected = (
+                np.interp(end, np.r_[0.0, ends], np.r_[0.0, runs[:, k]]) - begin * winds[0, k]
+            )
             assert run[i, k] == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
@@ -165,7 +175,9 @@ def test_a_step_allocates_nothing():
         history.push(wind, DT)
     grown = tracemalloc.take_snapshot().compare_to(before, "filename")
     tracemalloc.stop()
-    assert sum(each.size_diff for each in grown if "gust_travel" in each.traceback[0].filename) < 1000
+    assert (
+        sum(each.size_diff for each in grown if "gust_travel" in each.traceback[0].filename) < 1000
+    )
 
 
 def test_reset_forgets():
@@ -176,7 +188,8 @@ def test_reset_forgets():
 
 
 @pytest.mark.parametrize(
-    ("wind", "dt"), [((np.nan, 0, 0), DT), ((np.inf, 0, 0), DT), ((1, 0, 0), 0.0), ((1, 0, 0), -1.0), ((1, 0), DT)]
+    ("wind", "dt"),
+    [((np.nan, 0, 0), DT), ((np.inf, 0, 0), DT), ((1, 0, 0), 0.0), ((1, 0, 0), -1.0), ((1, 0), DT)],
 )
 def test_what_would_poison_the_history_is_refused(wind, dt):
     history = GustHistory([[10.0, 0.0, 0.0]], np.zeros(3))
@@ -186,7 +199,13 @@ def test_what_would_poison_the_history_is_refused(wind, dt):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"places": [[np.nan, 0, 0]]}, {"convection_ratio": 0.0}, {"averaging_time": 0.0}, {"capacity": 1}]
+    "wrong",
+    [
+        {"places": [[np.nan, 0, 0]]},
+        {"convection_ratio": 0.0},
+        {"averaging_time": 0.0},
+        {"capacity": 1},
+    ],
 )
 def test_a_history_that_cannot_be_is_refused(wrong):
     with pytest.raises(ParameterError):

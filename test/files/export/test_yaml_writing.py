@@ -30,7 +30,9 @@ def random_tree(seed: int, n: int = 30, joined: bool = False) -> Tree:
     for i in range(1, n):
         start[i] = end[parent[i]] + (0.0 if joined else rng.normal(scale=0.01, size=3))
         end[i] += start[i]
-    return tree_from_segments(start, end, rng.uniform(0.01, 0.1, (n, 2)), parent=parent, name="a: 'b'")
+    return tree_from_segments(
+        start, end, rng.uniform(0.01, 0.1, (n, 2)), parent=parent, name="a: 'b'"
+    )
 
 
 @pytest.mark.parametrize("joined", [False, True])
@@ -42,7 +44,9 @@ def test_reading_back_is_the_identity(joined, seed):
 
 
 @settings(deadline=None, max_examples=30)
-@given(name=st.text(min_size=1).filter(lambda text: not any(0xD800 <= ord(c) < 0xE000 for c in text)))
+@given(
+    name=st.text(min_size=1).filter(lambda text: not any(0xD800 <= ord(c) < 0xE000 for c in text))
+)
 def test_any_name_survives(name):
     tree = replace(random_tree(0, n=1), name=name, branch_names=(name,))
     back = parse_yaml_tree(yaml_of_tree(tree)).tree

@@ -13,7 +13,9 @@ from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.trees.tree_file import read_tree
 
 TREES = Path(__file__).parents[4] / "shared/data/trees"
-pytestmark = pytest.mark.skipif(not TREES.exists(), reason="recorded trees are not at ../shared/data")
+pytestmark = pytest.mark.skipif(
+    not TREES.exists(), reason="recorded trees are not at ../shared/data"
+)
 
 
 def table(name, skip=1):
@@ -86,7 +88,9 @@ def test_equal_to_the_files_own_sums(name, sums):
 
 
 def test_tree121_from_mean_radii_is_nearly_the_same():
-    one, other = (read_tree(TREES / f"tree121{suffix}").tree for suffix in (".csv", ".simpleforest.csv"))
+    one, other = (
+        read_tree(TREES / f"tree121{suffix}").tree for suffix in (".csv", ".simpleforest.csv")
+    )
     np.testing.assert_allclose(other.end, one.end, atol=1e-6)
     np.testing.assert_array_equal(other.branch_parent, one.branch_parent)
 
@@ -106,13 +110,18 @@ def test_walnut():
     assert np.count_nonzero(tree.segment_parent < 0) == 1
     # Every vertex of the finest scale with a position is a segment, or was merged.
     merged = int(re.match(r"\d+", tree_file.notes[1])[0])
-    fine = [row for row in cells if re.search(r"[SU]\d+", "".join(row[:10])) and "".join(row[15:18])]
+    fine = [
+        row for row in cells if re.search(r"[SU]\d+", "".join(row[:10])) and "".join(row[15:18])
+    ]
     assert tree.n_segments + merged == len(fine)
     assert tree.base_diameter[0] == pytest.approx(0.270)
 
 
 def test_the_walnut_sways_as_walnuts_do():
-    """f1 within 1.2 to 1.9 Hz, and 20 modes or more below 2.9 Hz, with the walnut wood of the table."""
+    """
+    f1 within 1.2 to 1.9 Hz, and 20 modes or more below 2.9 Hz, with the walnut wood of the table.
+
+    """
     tree_file = read_tree(TREES / "walnut.mtg", species="walnut")
     settings = SimulatorSettings(rung="modes", n_modes=20, mode_choice="slowest")
     slowest = build_bank(tree_file.tree, tree_file.species, settings).frequencies

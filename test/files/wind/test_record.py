@@ -45,7 +45,9 @@ def test_impossible_speed_and_time_are_refused():
 def test_no_good_row():
     rows = WindRows("file")
     rows.refuse(5, "NAN")
-    with pytest.raises(FormatError, match="file: no good row of wind, 1 refused; first line 5: NAN"):
+    with pytest.raises(
+        FormatError, match="file: no good row of wind, 1 refused; first line 5: NAN"
+    ):
         rows.record()
 
 

@@ -38,7 +38,9 @@ def test_quantities_and_units(tmp_path, header, quantity, factor):
 
 
 def test_other_columns_are_left_alone(tmp_path):
-    record = read(tmp_path, "wind_speed,time_of_day,t [ms],battery (V),z\n4,noon,0,12,1\nn/a,noon,50,12,2\n")
+    record = read(
+        tmp_path, "wind_speed,time_of_day,t [ms],battery (V),z\n4,noon,0,12,1\nn/a,noon,50,12,2\n"
+    )
     np.testing.assert_allclose(record.time, [0.0, 0.05])
     np.testing.assert_allclose(record.motion, [[1.0], [2.0]])
 

@@ -10,7 +10,8 @@ DATA = Path(__file__).parents[1] / "data"
 
 
 @pytest.mark.parametrize(
-    ("name", "n"), [("sonic.toa5.dat", 6), ("mast.nmea", 5), ("wind.csv", 3), ("wind_components.csv", 2)]
+    ("name", "n"),
+    [("sonic.toa5.dat", 6), ("mast.nmea", 5), ("wind.csv", 3), ("wind_components.csv", 2)],
 )
 @pytest.mark.parametrize("suffix", [None, ".txt", ""])
 def test_content_decides(tmp_path, name, n, suffix):
@@ -32,7 +33,9 @@ def test_line_ends_and_byte_order_mark(tmp_path):
 def test_options_and_formats_are_checked():
     with pytest.raises(ParameterError, match="no option 'rate'; it has: columns, yaw"):
         read_wind(DATA / "sonic.toa5.dat", rate=2.0)
-    with pytest.raises(ParameterError, match="unknown wind format 'grib'; use toa5, nmea, bag, csv"):
+    with pytest.raises(
+        ParameterError, match="unknown wind format 'grib'; use toa5, nmea, bag, csv"
+    ):
         read_wind(DATA / "sonic.toa5.dat", format="grib")
     assert len({known.name for known in WIND_FORMATS}) == len(WIND_FORMATS)
 

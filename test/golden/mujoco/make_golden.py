@@ -1,14 +1,16 @@
 """
 Tips of a 40-branch tree in a turning, gusty wind, by MuJoCo at a step that has converged.
 
-Run from the root of the repository, some five minutes, with MuJoCo installed (``pip install mujoco``)::
+Run from the root of the repository, some five minutes, with MuJoCo installed (``pip install
+mujoco``)::
 
     python test/golden/mujoco/make_golden.py
 
-Writes ``forked_tips.npz`` beside this file: `wind` (t, 3) in [m/s], one mean a frame of 1/60 s; tips (t / 2, 40, 3)
-in [m] at every other frame, `same` with the springs of the articulated reference and `beam` with all of them
-scaled to the beam's static sway; `agreement` of the latter with the beam model (first frequency, static sway);
-and `step_error`, tip error over tip motion when the step is doubled.
+Writes ``forked_tips.npz`` beside this file: `wind` (t, 3) in [m/s], one mean a frame of 1/60 s;
+tips (t / 2, 40, 3) in [m] at every other frame, `same` with the springs of the articulated
+reference and `beam` with all of them scaled to the beam's static sway; `agreement` of the latter
+with the beam model (first frequency, static sway); and `step_error`, tip error over tip motion when
+the step is doubled.
 
 """
 

@@ -1,4 +1,7 @@
-"""The articulated reference and the reduced model against tips that MuJoCo found (`make_golden.py`)."""
+"""
+The articulated reference and the reduced model against tips that MuJoCo found (`make_golden.py`).
+
+"""
 
 from pathlib import Path
 
@@ -38,7 +41,12 @@ def test_golden_data_is_converged_and_agrees_with_the_beam(golden):
 
 def test_articulated_tree_is_the_same_mechanism(golden, tree):
     model = ArticulatedTree(
-        tree, SPECIES.modulus, SPECIES.density, DAMPING, air_density=AIR_DENSITY, drag_coefficient=1.2
+        tree,
+        SPECIES.modulus,
+        SPECIES.density,
+        DAMPING,
+        air_density=AIR_DENSITY,
+        drag_coefficient=1.2,
     )
     assert error_of(model, tree, golden["wind"], golden["same"], substeps=2) < 5e-3
 

@@ -1,12 +1,13 @@
 """
 Make the golden poses: every built-in tree in 60 s of simulated wind, in each reduced model.
 
-    python test/golden/poses/make_golden.py            # write golden.npz and digests.json beside this file
-    python test/golden/poses/make_golden.py --check    # exit 1 where a digest differs from the stored one
+    python test/golden/poses/make_golden.py            # write golden.npz and digests.json beside
+    this file python test/golden/poses/make_golden.py --check    # exit 1 where a digest differs
+    from the stored one
 
-The digest of all frames is the same bit for bit only on one kind of processor with one version of numba; a
-restructuring is checked by it, on one machine, before and after. What the test compares on any machine are the
-sampled poses in golden.npz, within rounding.
+The digest of all frames is the same bit for bit only on one kind of processor with one version of
+numba; a restructuring is checked by it, on one machine, before and after. What the test compares on
+any machine are the sampled poses in golden.npz, within rounding.
 
 """
 

@@ -1,10 +1,11 @@
 """
-Make `spectra.csv` with PyConTurb (J. Rinker, DTU, MIT licence), an independent turbulence generator.
+Make `spectra.csv` with PyConTurb (J. Rinker, DTU, MIT licence), an independent turbulence
+generator.
 
     python -m pip install pyconturb==2.7.4 && python make_spectra.py > spectra.csv
 
-One hour at 20 Hz, 7 m/s at 10 m, IEC class B, Kaimal: for each frequency the closed form of PyConTurb and
-the Welch estimate of its record, of u, v, w, both in m^2/s^2/Hz. Takes some minutes.
+One hour at 20 Hz, 7 m/s at 10 m, IEC class B, Kaimal: for each frequency the closed form of
+PyConTurb and the Welch estimate of its record, of u, v, w, both in m^2/s^2/Hz. Takes some minutes.
 """
 
 from itertools import pairwise
@@ -23,7 +24,9 @@ CASE = {"u_ref": 7.0, "z_ref": 10.0, "turb_class": "B"}
 
 def main() -> None:
     """Print the table."""
-    points = pd.DataFrame([[0, 1, 2], [0, 0, 0], [0, 0, 0], [10, 10, 10]], index=["k", "x", "y", "z"])
+    points = pd.DataFrame(
+        [[0, 1, 2], [0, 0, 0], [0, 0, 0], [10, 10, 10]], index=["k", "x", "y", "z"]
+    )
     points.columns = ["u_p0", "v_p0", "w_p0"]
     record = gen_turb(
         points, T=DURATION, dt=1.0 / RATE, seed=1, wsp_func=constant_profile, verbose=False, **CASE

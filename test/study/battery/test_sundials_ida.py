@@ -37,8 +37,13 @@ def test_it_agrees_with_our_reference():
     loads = sample(wind, sundials_ida.NODES, 1 / 60, 60)
     run = sundials_ida.run_ida(CHAIN, loads, 1 / 60, wind(np.zeros(1))[0])
     reference = method_named("radau_ggl")
-    exact = integrate(reference, CHAIN, sample(wind, reference.nodes, 1 / 240, 240), 1 / 240,
-                      first=wind(np.zeros(1))[0]).theta[::4]
+    exact = integrate(
+        reference,
+        CHAIN,
+        sample(wind, reference.nodes, 1 / 240, 240),
+        1 / 240,
+        first=wind(np.zeros(1))[0],
+    ).theta[::4]
     assert np.sqrt(np.mean((run.theta - exact) ** 2)) < 1e-4
     assert run.flops > 1000
     assert run.seconds > 0.0

@@ -29,7 +29,9 @@ def tree():
     return segments_in_all_directions()
 
 
-@pytest.mark.parametrize(("name", "rung"), [("wild", "branch"), ("wild", "subtree"), ("bench", "subtree")])
+@pytest.mark.parametrize(
+    ("name", "rung"), [("wild", "branch"), ("wild", "subtree"), ("bench", "subtree")]
+)
 def test_two_hundred_random_steps_agree(tree, name, rung):
     sim = SwaySimulator(tree if name == "wild" else bench_tree(), rung=rung, gravity=0.0)
     twin = NumpyTwin(sim)

@@ -52,5 +52,7 @@ def test_frame_times_keep_models_apart():
             out[:] = 0.0
 
     tree = forked_tree(0.5, 0.6, generations=1)
-    times = frame_times({"idle": Busy(1), "busy": Busy(20_000)}, tree, np.zeros((1, 3)), 0.1, frames=40)
+    times = frame_times(
+        {"idle": Busy(1), "busy": Busy(20_000)}, tree, np.zeros((1, 3)), 0.1, frames=40
+    )
     assert times["busy"].step > 10.0 * times["idle"].step

@@ -37,9 +37,19 @@ def test_the_uniform_beam_is_the_textbooks(shapes, width):
     length, d = LENGTHS[UNIFORM], WIDTH[UNIFORM, 0]
     inertia, area = np.pi / 64 * d**4, np.pi / 4 * d**2
     h = length
-    bend = E * inertia / h**3 * np.array([
-        [12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-        [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]])
+    bend = (
+        E
+        * inertia
+        / h**3
+        * np.array(
+            [
+                [12, 6 * h, -12, 6 * h],
+                [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+                [-12, -6 * h, 12, -6 * h],
+                [6 * h, 2 * h * h, -6 * h, 4 * h * h],
+            ]
+        )
+    )
     assert k[np.ix_(BEND_Y, BEND_Y)] == pytest.approx(bend, rel=1e-12)
     mirror = np.diag([1, -1, 1, -1])  # a turn about y lowers what lies ahead
     assert k[np.ix_(BEND_Z, BEND_Z)] == pytest.approx(mirror @ bend @ mirror, rel=1e-12)
@@ -51,9 +61,18 @@ def test_the_uniform_mass_is_the_textbooks(shapes, width):
     m = element.consistent_mass(shapes, LENGTHS, width, RHO)[UNIFORM]
     h = LENGTHS[UNIFORM]
     total = RHO * np.pi / 4 * WIDTH[UNIFORM, 0] ** 2 * h
-    bend = total / 420 * np.array([
-        [156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h],
-        [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]])
+    bend = (
+        total
+        / 420
+        * np.array(
+            [
+                [156, 22 * h, 54, -13 * h],
+                [22 * h, 4 * h * h, 13 * h, -3 * h * h],
+                [54, 13 * h, 156, -22 * h],
+                [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
+            ]
+        )
+    )
     assert m[np.ix_(BEND_Y, BEND_Y)] == pytest.approx(bend, rel=1e-12)
     assert m[0, [0, 6]] == pytest.approx([total / 3, total / 6])
     polar = total * WIDTH[UNIFORM, 0] ** 2 / 8
@@ -65,9 +84,18 @@ def test_axial_force_stiffens_as_the_textbook_says(shapes):
     force[..., 0] = 40.0
     k = element.geometric_stiffness(shapes, LENGTHS, force, moment)[UNIFORM]
     h = LENGTHS[UNIFORM]
-    expected = 40.0 / (30 * h) * np.array([
-        [36, 3 * h, -36, 3 * h], [3 * h, 4 * h * h, -3 * h, -h * h],
-        [-36, -3 * h, 36, -3 * h], [3 * h, -h * h, -3 * h, 4 * h * h]])
+    expected = (
+        40.0
+        / (30 * h)
+        * np.array(
+            [
+                [36, 3 * h, -36, 3 * h],
+                [3 * h, 4 * h * h, -3 * h, -h * h],
+                [-36, -3 * h, 36, -3 * h],
+                [3 * h, -h * h, -3 * h, 4 * h * h],
+            ]
+        )
+    )
     assert k[np.ix_(BEND_Y, BEND_Y)] == pytest.approx(expected, rel=1e-12)
     assert np.abs(k[3]).max() == 0.0, "no twist without a moment"
 
@@ -104,11 +132,17 @@ def test_a_load_is_shared_as_it_lies(shapes):
         assert rows[[0, 6], 0] == pytest.approx([h / 2, h / 2])
     rising = element.load_rows(shapes, LENGTHS, np.tile(element.POINTS, (2, 1)))
     for rows, h in zip(rising, LENGTHS, strict=True):
-        assert rows[[1, 5, 7, 11], 1] == pytest.approx([3 * h / 20, h * h / 30, 7 * h / 20, -h * h / 20])
+        assert rows[[1, 5, 7, 11], 1] == pytest.approx(
+            [3 * h / 20, h * h / 30, 7 * h / 20, -h * h / 20]
+        )
 
 
 def test_moment_terms_are_the_second_variation(shapes):
-    """For linear turns -M . (theta x theta') is a product of their ends: M (a1 b2 - a2 b1) / L per length."""
+    """
+    For linear turns -M . (theta x theta') is a product of their ends: M (a1 b2 - a2 b1) / L per
+    length.
+
+    """
     moment = np.zeros((2, 5, 3))
     moment[..., 0] = 7.0
     k = element.geometric_stiffness(shapes, LENGTHS, np.zeros((2, 5, 3)), moment)[UNIFORM]

@@ -22,7 +22,10 @@ def dimensionless(frequency):
 
 
 def greenhill(width):
-    """Length at which an upright uniform stem buckles: 7.8373 EI / (rho A g) cubed (Greenhill 1881)."""
+    """
+    Length at which an upright uniform stem buckles: 7.8373 EI / (rho A g) cubed (Greenhill 1881).
+
+    """
     return (7.8373 * E * width**2 / (16.0 * RHO * 9.81)) ** (1 / 3)
 
 
@@ -90,15 +93,20 @@ def test_static_sway_is_the_cantilevers():
     assert spread == pytest.approx(2.0 * LENGTH**3 / (8.0 * stiffness), rel=1e-9)
     at_tip = np.zeros((3, 3))
     at_tip[-1, 1] = 1.0
-    assert model.static_nodal(at_tip)[-1, 1] == pytest.approx(LENGTH**3 / (3.0 * stiffness), rel=1e-9)
+    assert model.static_nodal(at_tip)[-1, 1] == pytest.approx(
+        LENGTH**3 / (3.0 * stiffness), rel=1e-9
+    )
 
 
 def test_branch_off_its_node_rides_on_a_rigid_offset():
-    # A child that starts beside the stem's tip, and the same with a stiff, light bracket in between.
+    # A child that starts beside the stem's tip, and the same with a stiff, light bracket in
+    # between.
     stem = ([0, 0, 0], [0, 0, 2.0])
     child = ([0.3, 0, 2.0], [0.3, 1.0, 2.5])
     bracket = ([0, 0, 2.0], [0.3, 0, 2.0])
-    loose = tree_from_segments([stem[0], child[0]], [stem[1], child[1]], [0.1, 0.05], parent=[-1, 0])
+    loose = tree_from_segments(
+        [stem[0], child[0]], [stem[1], child[1]], [0.1, 0.05], parent=[-1, 0]
+    )
     held = tree_from_segments(
         [stem[0], bracket[0], child[0]], [stem[1], bracket[1], child[1]], [0.1, 0.5, 0.05],
         parent=[-1, 0, 1],

@@ -30,7 +30,13 @@ def test_a_column_carries_what_stands_on_it():
 
 def test_a_level_beam_bears_the_cantilevers_moment():
     found = self_weight(
-        np.array([0]), np.zeros((1, 3)), ASIDE[None], np.array([2.0]), np.array([0.1]), np.zeros(1), DENSITY
+        np.array([0]),
+        np.zeros((1, 3)),
+        ASIDE[None],
+        np.array([2.0]),
+        np.array([0.1]),
+        np.zeros(1),
+        DENSITY,
     )
     left = 2.0 * (1.0 - POINTS)
     line = DENSITY * np.pi / 4 * 0.01
@@ -71,4 +77,6 @@ def test_offset_stiffness_is_the_curvature_of_the_loads_potential(seed, differen
     def slope(turn):
         return differences(potential, turn)
 
-    assert weight.offset_stiffness(offset)[0] == pytest.approx(differences(slope, np.zeros(3)), abs=1e-6)
+    assert weight.offset_stiffness(offset)[0] == pytest.approx(
+        differences(slope, np.zeros(3)), abs=1e-6
+    )

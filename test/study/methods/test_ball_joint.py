@@ -36,8 +36,9 @@ def test_motion_in_space_meets_its_goal(size, degrees, goal, kind):
 
 def test_the_ball_joint_keeps_its_energy():
     k = 100.0
-    u, v = swing(np.zeros((120, 129, 3)), 1 / 60, 1.0, 0.0, k, np.array([0.8, 0.0]),
-                 np.array([0.0, 5.0]), 64)
+    u, v = swing(
+        np.zeros((120, 129, 3)), 1 / 60, 1.0, 0.0, k, np.array([0.8, 0.0]), np.array([0.0, 5.0]), 64
+    )
     energy = 0.5 * (v**2).sum(1) + 0.5 * k * np.arccos(u[:, 0]) ** 2
     assert energy == pytest.approx(np.full(121, energy[0]), rel=1e-8)
 

@@ -16,7 +16,12 @@ def bank(n, seed=0, dt=1 / 60):
     stiffness = inertia * w * w
     state = np.vstack([rng.uniform(-0.8, 0.8, (2, n)), rng.uniform(-2, 2, (2, n))])
     load = rng.normal(0, 2.0, (3, n)) * stiffness
-    return state, load, propagator(inertia, 0.1 * w * inertia, stiffness, dt), guards(inertia, stiffness, dt)
+    return (
+        state,
+        load,
+        propagator(inertia, 0.1 * w * inertia, stiffness, dt),
+        guards(inertia, stiffness, dt),
+    )
 
 
 @pytest.mark.parametrize("n", [1, LANES, 3 * LANES + 5])

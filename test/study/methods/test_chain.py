@@ -35,7 +35,9 @@ def test_mass_matrix_is_twice_the_kinetic_energy():
         assert rate @ chain.mass_matrix @ rate == pytest.approx(energy, rel=1e-13)
 
 
-@pytest.mark.parametrize(("column", "name"), [(STIFFNESS, "stiffness_matrix"), (DAMPING, "damping_matrix")])
+@pytest.mark.parametrize(
+    ("column", "name"), [(STIFFNESS, "stiffness_matrix"), (DAMPING, "damping_matrix")]
+)
 def test_joint_matrices_are_sums_over_the_joints(column, name):
     chain, angle = uneven(), np.array([0.3, -1.0, 0.2, 0.9])
     bend = np.diff(angle, prepend=0.0)
@@ -53,7 +55,9 @@ def test_two_rods_swing_as_their_quadratic_says():
 def test_many_rods_near_the_cantilever():
     """Second over first frequency goes to (4.694 / 1.875)^2."""
     beam = (4.69409113 / 1.87510407) ** 2
-    coarse, fine = (uniform_chain(n).frequencies[1] / uniform_chain(n).frequencies[0] - beam for n in (20, 40))
+    coarse, fine = (
+        uniform_chain(n).frequencies[1] / uniform_chain(n).frequencies[0] - beam for n in (20, 40)
+    )
     assert abs(fine) < 0.001 * beam
     assert coarse / fine == pytest.approx(4.0, abs=0.2), "the ratio converges with the square"
 
@@ -82,7 +86,9 @@ def test_the_propagator_is_a_group_and_ends_at_the_static_answer(n):
     middle, start = 0.5 * (first + last), np.linspace(-0.2, 0.4, 2 * n)
     half = chain.first_order_hold(0.05)
     stepped = half @ [*(half @ [*start, *first, *middle]), *middle, *last]
-    assert stepped == pytest.approx(chain.first_order_hold(0.1) @ [*start, *first, *last], abs=1e-11)
+    assert stepped == pytest.approx(
+        chain.first_order_hold(0.1) @ [*start, *first, *last], abs=1e-11
+    )
     settled = chain.first_order_hold(200.0) @ [*start, *last, *last]
     assert settled[:n] == pytest.approx(np.linalg.solve(chain.stiffness_matrix, last), rel=1e-9)
     assert settled[n:] == pytest.approx(0.0, abs=1e-9)

@@ -30,7 +30,9 @@ def derivative(f, at, h=1e-6):
 def test_accelerations_and_reactions_agree_between_the_forms(table):
     q, v = multiplier_form.place(table, THETA, OMEGA)
     accel, lam = multiplier_form.index1(table, q, v, LOAD, 0.0, 0.0)
-    assert accel[2::3] == pytest.approx(minimal_form.acceleration(table, THETA, OMEGA, LOAD), rel=1e-10)
+    assert accel[2::3] == pytest.approx(
+        minimal_form.acceleration(table, THETA, OMEGA, LOAD), rel=1e-10
+    )
     reactions = minimal_form.reactions(table, THETA, OMEGA, LOAD)
     assert lam.reshape(3, 2) == pytest.approx(reactions, rel=1e-10)
 
@@ -69,7 +71,9 @@ def test_constraint_jacobians_against_differences(table):
     g = multiplier_form.jacobian(table, q)
     assert np.abs(multiplier_form.constraint(table, q)).max() < 1e-15
     assert g @ v == pytest.approx(np.zeros(6), abs=1e-14)
-    assert g == pytest.approx(derivative(lambda x: multiplier_form.constraint(table, x), q), abs=1e-8)
+    assert g == pytest.approx(
+        derivative(lambda x: multiplier_form.constraint(table, x), q), abs=1e-8
+    )
     rate = derivative(lambda x: multiplier_form.jacobian(table, x) @ v, q)[:, 2::3]
     assert multiplier_form.jacobian_rate(table, q, v) == pytest.approx(rate, abs=1e-7)
     slope = derivative(lambda x: multiplier_form.jacobian(table, x).T @ LAM, q)

@@ -75,7 +75,9 @@ def test_moments_are_the_loads_virtual_work(differences):
     def work(theta):
         return np.sum(LOAD * bodies(theta, OMEGA)[0][:, :2])
 
-    assert minimal_form.moments(TABLE, THETA, LOAD) == pytest.approx(differences(work, THETA), rel=1e-9)
+    assert minimal_form.moments(TABLE, THETA, LOAD) == pytest.approx(
+        differences(work, THETA), rel=1e-9
+    )
 
 
 def test_forms_share_the_chains_matrices():
@@ -86,10 +88,14 @@ def test_forms_share_the_chains_matrices():
 
 def test_the_moment_beside_the_straight_chains_own_closes_the_equation():
     accel = minimal_form.acceleration(TABLE, THETA, OMEGA, LOAD)
-    straight = CHAIN.mass_matrix @ accel + CHAIN.damping_matrix @ OMEGA + CHAIN.stiffness_matrix @ THETA
+    straight = (
+        CHAIN.mass_matrix @ accel + CHAIN.damping_matrix @ OMEGA + CHAIN.stiffness_matrix @ THETA
+    )
     assert rest_moment(TABLE, THETA, OMEGA, LOAD) == pytest.approx(straight, rel=1e-9)
     one = TABLE[:1]
-    assert rest_moment(one, THETA[:1], OMEGA[:1], LOAD[:1]) == minimal_form.moments(one, THETA[:1], LOAD[:1])
+    assert rest_moment(one, THETA[:1], OMEGA[:1], LOAD[:1]) == minimal_form.moments(
+        one, THETA[:1], LOAD[:1]
+    )
 
 
 def test_newtons_matrix_is_the_sum_of_its_parts():
@@ -99,7 +105,9 @@ def test_newtons_matrix_is_the_sum_of_its_parts():
     a = multiplier_form.saddle(TABLE, g, 0.3)
     assert a == pytest.approx(np.block([[mass, 0.3 * g.T], [g, np.zeros((2 * N, 2 * N))]]))
     multiplier_form.add_joints(TABLE, 4, 2.0, a)
-    assert a[2:3 * N:3, 2:3 * N:3] - np.diag(TABLE[:, 1]) == pytest.approx(2.0 * CHAIN.stiffness_matrix)
+    assert a[2 : 3 * N : 3, 2 : 3 * N : 3] - np.diag(TABLE[:, 1]) == pytest.approx(
+        2.0 * CHAIN.stiffness_matrix
+    )
 
 
 def test_baumgartes_terms_pull_the_gap_back():

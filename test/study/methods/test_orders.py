@@ -21,9 +21,20 @@ def test_measured_order_is_the_declared_one(name, swaying):
     assert abs(np.log2(coarse / fine) - method.order) <= 0.2
 
 
-@pytest.mark.parametrize("name", [
-    "multiplier_rk4", "multiplier_implicit_midpoint", "generalized_alpha", "multiplier_bdf2",
-    "rk4", "implicit_midpoint", "tr_bdf2", "exact_foh", "exponential_rosenbrock"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "multiplier_rk4",
+        "multiplier_implicit_midpoint",
+        "generalized_alpha",
+        "multiplier_bdf2",
+        "rk4",
+        "implicit_midpoint",
+        "tr_bdf2",
+        "exact_foh",
+        "exponential_rosenbrock",
+    ],
+)
 def test_order_on_a_chain(name, swaying_chain):
     method = method_named(name)
     steps = 2 * STEPS[method.order] if method.order == 4 else STEPS[method.order]

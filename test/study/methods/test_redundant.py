@@ -50,5 +50,7 @@ def test_a_chain_with_every_joint_said_twice_moves_as_the_chain():
     force = forces(chain.table, q, v, load)
     accel, _ = solve_regularised(mass, np.vstack([g, g]), force, np.tile(bias, 2))
     assert accel == pytest.approx(expected, rel=1e-8)
-    rough, _ = solve_regularised(mass, np.vstack([g, g]), force, np.tile(bias, 2), relative=1e-3, rounds=1)
+    rough, _ = solve_regularised(
+        mass, np.vstack([g, g]), force, np.tile(bias, 2), relative=1e-3, rounds=1
+    )
     assert np.abs(rough - expected).max() > 1e-5, "the corrections do the work"

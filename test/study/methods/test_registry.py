@@ -20,7 +20,7 @@ def test_names_that_are_no_method_or_cannot_run_live():
     with pytest.raises(ParameterError, match="unknown integrator 'euler'"):
         method_named("euler")
     for name in ("newmark", "radau_ggl"):
-        with pytest.raises(ParameterError, match="no integrator .* that the solver can run"):
+        with pytest.raises(ParameterError, match=r"no integrator .* that the solver can run"):
             method_named(name).propagator(np.ones(1), np.ones(1), np.ones(1), 0.1)
 
 

@@ -19,7 +19,9 @@ def calm(method, n, steps):
 def test_loads_are_taken_at_the_nodes_of_every_step():
     loads = sample(lambda t: np.stack([t, -t], 1)[:, None], (0.0, 0.25, 1.0), 0.5, 3)
     assert loads.shape == (3, 3, 1, 2)
-    assert loads[:, :, 0, 0] == pytest.approx(np.array([[0, 0.125, 0.5], [0.5, 0.625, 1], [1, 1.125, 1.5]]))
+    assert loads[:, :, 0, 0] == pytest.approx(
+        np.array([[0, 0.125, 0.5], [0.5, 0.625, 1], [1, 1.125, 1.5]])
+    )
     assert loads[..., 1] == pytest.approx(-loads[..., 0])
 
 
@@ -46,7 +48,7 @@ def test_a_run_that_explodes_stops_and_the_rest_is_not_a_number():
     run = integrate(method, chain, calm(method, 1, 200), 0.1, theta=[0.1])
     known = np.isfinite(run.theta[:, 0])
     assert 1 < known.sum() < 200
-    assert not known[known.sum():].any()
+    assert not known[known.sum() :].any()
     assert np.abs(run.theta[known]).max() < 1e6
 
 

@@ -1,11 +1,12 @@
 """
 One branch as a beam: quadrature along its segments, bending by a load, slope and displacement.
 
-Each segment carries five Gauss-Legendre points, at which the diameter is known from the linear taper between its
-two ends. Integrals are taken on those points, so the result does not depend on how finely a branch is cut.
+Each segment carries five Gauss-Legendre points, at which the diameter is known from the linear
+taper between its two ends. Integrals are taken on those points, so the result does not depend on
+how finely a branch is cut.
 
-Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M / EI
-curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
+Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M
+/ EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
 
 """
 
@@ -32,7 +33,11 @@ _PRIMITIVES = {m: np.stack([basis.integ(m).coef for basis in _LAGRANGE]) for m i
 
 
 def _integration_rows(places: Floats, times: int = 1) -> Floats:
-    """Weights w of the integral of f from 0 to each place in 0 .. 1, taken once or twice, ``w . f(points)``."""
+    """
+    Weights w of the integral of f from 0 to each place in 0 .. 1, taken once or twice, ``w .
+    f(points)``.
+
+    """
     rows: Floats = places[:, None] ** np.arange(N_POINTS + times) @ _PRIMITIVES[times].T
     return rows
 
@@ -129,7 +134,8 @@ class BranchBeam:
         Returns
         -------
         tuple
-            The integral up to each point (m, 5, ...), each node (m + 1, ...) and each child (c, ...).
+            The integral up to each point (m, 5, ...), each node (m + 1, ...) and each child (c,
+            ...).
 
         """
         tail = values.shape[2:]
@@ -171,10 +177,12 @@ class BranchBeam:
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
         """
-        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (m, 5, c).
+        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (m,
+        5, c).
 
-        In the segment that a child sits on, the one has a kink and the other a step. There both are projected on the
-        polynomials that the points carry, so that a segment bends as if it were cut at the child.
+        In the segment that a child sits on, the one has a kink and the other a step. There both are
+        projected on the polynomials that the points carry, so that a segment bends as if it were
+        cut at the child.
 
         """
         seat, each = self.children.segment, np.arange(len(self.children.segment))
@@ -260,7 +268,11 @@ class SlopeShape:
 
     @cached_property
     def _reach(self) -> tuple[Floats, Floats, Floats]:
-        """Integral of the slope along the branch: its cross product with a rotation is the displacement."""
+        """
+        Integral of the slope along the branch: its cross product with a rotation is the
+        displacement.
+
+        """
         return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
 
 

@@ -1,16 +1,16 @@
 """
 Closed-form calibration of one tapered branch: its key segment in four numbers.
 
-A branch of length L has diameter d(s) = d0 (1 - tau s / L), so EI(s) = EI0 (1 - tau s / L)^4, and a wind
-load per length that is proportional to d(s). Its key segment turns by theta, the angle of the chord from
-root to tip, so that the tip moves by L theta. The constants below make the static tip and the first natural
-frequency those of the Euler-Bernoulli beam, within .1 % for tau up to .9.
+A branch of length L has diameter d(s) = d0 (1 - tau s / L), so EI(s) = EI0 (1 - tau s / L)^4, and a
+wind load per length that is proportional to d(s). Its key segment turns by theta, the angle of the
+chord from root to tip, so that the tip moves by L theta. The constants below make the static tip
+and the first natural frequency those of the Euler-Bernoulli beam, within .1 % for tau up to .9.
 
-Symbols: L length [m], tau taper [-], EI0 bending stiffness at the base [N m^2], rho density [kg/m^3],
-A0 cross-section at the base [m^2].
+Symbols: L length [m], tau taper [-], EI0 bending stiffness at the base [N m^2], rho density
+[kg/m^3], A0 cross-section at the base [m^2].
 
-The tree itself is calibrated by quadrature over its real segments (`branch_beam`); these forms are its
-check, and the way to calibrate a branch of which only length and taper are known.
+The tree itself is calibrated by quadrature over its real segments (`branch_beam`); these forms are
+its check, and the way to calibrate a branch of which only length and taper are known.
 
 """
 
@@ -121,7 +121,8 @@ def volume_rule_stiffness(volume: float, parent_volume: float, constant: float) 
     """
     Stiffness the paper's way, from the volumes of the branch and of its parent.
 
-    Kanda & Ohya (3.2) name the two volumes and leave the rule open; it is read here as their geometric mean.
+    Kanda & Ohya (3.2) name the two volumes and leave the rule open; it is read here as their
+    geometric mean.
 
     Parameters
     ----------

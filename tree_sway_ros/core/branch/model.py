@@ -1,12 +1,13 @@
 """
 Every branch as a bending body: its axes, its mass and load along it, the ways it bends and twists.
 
-A branch turns about two fixed axes across its chord. Its coordinates are the components of a rotation vector,
-``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What a branch carries loads it and
-shapes it: the shear force and the moment of each child's subtree enter at the child's place.
+A branch turns about two fixed axes across its chord. Its coordinates are the components of a
+rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What a
+branch carries loads it and shapes it: the shear force and the moment of each child's subtree enter
+at the child's place.
 
-Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass per length
-[kg/m].
+Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass
+per length [kg/m].
 
 """
 
@@ -59,7 +60,8 @@ class BranchModel:
     @property
     def inertia_share(self) -> float:
         """
-        Inertia that gives the branch alone its beam's first frequency, over that of its static shape [-].
+        Inertia that gives the branch alone its beam's first frequency, over that of its static
+        shape [-].
 
         Inverse iteration from the static shape: each turn bends the branch by its own inertia.
 
@@ -157,7 +159,10 @@ def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, i
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
-    """Where children sit: the foot of the perpendicular from their start onto the parent's segment."""
+    """
+    Where children sit: the foot of the perpendicular from their start onto the parent's segment.
+
+    """
     if len(children) == 0:
         return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
     first = tree.branch_first[children]
@@ -183,8 +188,8 @@ def enriched_branches(tree: Tree, choice: str) -> frozenset[int]:
     tree
         The tree.
     choice
-        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with branches), all ``carriers``
-        of others, or ``all``.
+        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
+        branches), all ``carriers`` of others, or ``all``.
 
     """
     carriers = {0, *tree.branch_parent[1:].tolist()}

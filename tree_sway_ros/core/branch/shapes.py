@@ -1,11 +1,12 @@
 """
-The ways a branch bends and twists: its static shape, and for an enriched branch the shapes that follow from it.
+The ways a branch bends and twists: its static shape, and for an enriched branch the shapes that
+follow from it.
 
-The first shape is the static one under the wind. Each further one is bent by the inertia of the one before it, with all that the
-branch carries (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982), and made orthogonal in bending energy to those
-before; so do the twists, from the torque of what it carries when it turns as one. Three and three bring the slowest
-modes of a crown within about a percent of the beam frame's, where one shape alone misses the twist of the stem
-altogether.
+The first shape is the static one under the wind. Each further one is bent by the inertia of the one
+before it, with all that the branch carries (load-dependent Ritz vectors: Wilson, Yuan & Dickens,
+1982), and made orthogonal in bending energy to those before; so do the twists, from the torque of
+what it carries when it turns as one. Three and three bring the slowest modes of a crown within
+about a percent of the beam frame's, where one shape alone misses the twist of the stem altogether.
 
 """
 
@@ -25,7 +26,11 @@ N_TWISTS = 3
 """Twists of an enriched stem."""
 
 FEWER = 2
-"""Shapes, and twists, of any other enriched branch: a third gains .5 % of the motion and costs a half more."""
+"""
+Shapes, and twists, of any other enriched branch: a third gains .5 % of the motion and costs a half
+more.
+
+"""
 
 MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
 
@@ -177,7 +182,10 @@ def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> Slop
 def _inertia_moment(
     beam: BranchBeam, mass: Floats, carried: Carried, inertia: Floats, shape: SlopeShape
 ) -> Floats:
-    """Bending moment of the masses that ride on a moving shape, per unit of acceleration, (m, 5)."""
+    """
+    Bending moment of the masses that ride on a moving shape, per unit of acceleration, (m, 5).
+
+    """
     lever = (carried.mass_moment - carried.mass[:, None] * beam.child_point) @ beam.chord
     lift, turn = shape.child_deflection, shape.child_slope
     return beam.bending_moment(

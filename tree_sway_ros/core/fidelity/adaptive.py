@@ -1,11 +1,13 @@
 """
 A tree that uses no more model than its scene needs, and changes models unseen.
 
-The error and the cost of every rung in the wind of the last minute are known beforehand (`fidelity_ladder`); the cheapest that
-stays within the tolerance is used, or, where none that can be afforded does, the most accurate of those. When wind or camera ask for another, the new one first sways along unseen until it has
-forgotten that it started at rest, then the picture goes over to it within a second: every pose is a mix of two that agree but for
-the tolerance. A rung is left upwards as soon as it must be, downwards only when a lesser one would do with a third to
-spare, so that a wind on the border does not flicker.
+The error and the cost of every rung in the wind of the last minute are known beforehand
+(`fidelity_ladder`); the cheapest that stays within the tolerance is used, or, where none that can
+be afforded does, the most accurate of those. When wind or camera ask for another, the new one first
+sways along unseen until it has forgotten that it started at rest, then the picture goes over to it
+within a second: every pose is a mix of two that agree but for the tolerance. A rung is left upwards
+as soon as it must be, downwards only when a lesser one would do with a third to spare, so that a
+wind on the border does not flicker.
 
 """
 
@@ -147,7 +149,10 @@ class AdaptiveSimulator:
         return status
 
     def review(self) -> Estimate:
-        """Look at the choice again: call it when the tolerance has changed. Returns what is chosen."""
+        """
+        Look at the choice again: call it when the tolerance has changed. Returns what is chosen.
+
+        """
         if self._next is not None:
             return self.choice
         wanted = self._choose(self._tracker.climate, current=self.choice)
@@ -166,7 +171,10 @@ class AdaptiveSimulator:
         return poses
 
     def reset(self) -> None:
-        """Go back to rest and to the wind that was expected, at once on the model that it asks for."""
+        """
+        Go back to rest and to the wind that was expected, at once on the model that it asks for.
+
+        """
         self._tracker = ClimateTracker()
         self.choice = self._choose(self._expected)
         self._shown, self._next = self._simulator(self.choice), None

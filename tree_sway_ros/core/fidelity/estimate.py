@@ -61,8 +61,8 @@ def choose(
     tolerance
         Largest error in [m]; the cheapest rung within it is chosen.
     budget
-        Largest cost of a step in [us]; the most accurate rung within it is chosen. With both, the cheapest within the
-        tolerance among those within the budget.
+        Largest cost of a step in [us]; the most accurate rung within it is chosen. With both, the
+        cheapest within the tolerance among those within the budget.
 
     Returns
     -------

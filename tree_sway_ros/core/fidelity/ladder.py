@@ -1,12 +1,14 @@
 """
 The ladder of models of one tree: the error of every rung in any wind, known before a step is taken.
 
-The coupled tree is linear to first order, so the error of a lesser rung need not be tried: it is the difference of the
-two responses, summed over the frequencies of the wind's load. That difference, joined from the root to the tips of all
-branches, is what a viewer would see. To it comes a margin for what no linear model knows.
+The coupled tree is linear to first order, so the error of a lesser rung need not be tried: it is
+the difference of the two responses, summed over the frequencies of the wind's load. That
+difference, joined from the root to the tips of all branches, is what a viewer would see. To it
+comes a margin for what no linear model knows.
 
-Between the rungs stand those in which the quietest branches are frozen and move with their parents as one body; they are rungs
-like any other, as the response of a tree with frozen branches is known too.
+Between the rungs stand those in which the quietest branches are frozen and move with their parents
+as one body; they are rungs like any other, as the response of a tree with frozen branches is known
+too.
 
 Symbols: D(f) difference of two tip responses, S(f) spectrum of the load, C its covariance.
 
@@ -45,7 +47,11 @@ LADDER: tuple[tuple[str, int, float], ...] = (
     ("modes", 6, 0.0), ("modes", 3, 0.0),
     ("subtree", 0, 0.0), ("subtree", 0, 0.1), ("branch", 0, 0.0), ("frozen", 0, math.inf),
 )  # fmt: skip
-"""Rungs, the best first, with their number of modes and the share of the motion that freezing may cost."""
+"""
+Rungs, the best first, with their number of modes and the share of the motion that freezing may
+cost.
+
+"""
 
 MOST_COUPLED, MOST_MODES = 250, 32
 """A tree of more branches than this is not solved in all its modes, but in this many."""

@@ -1,9 +1,9 @@
 """
 The line a growing shoot draws in space, told by its heading.
 
-A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad]. Habits of
-growth are plain in these terms: a weeping shoot starts above the horizon and ends below it, a conifer's
-starts low and turns up.
+A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad]. Habits
+of growth are plain in these terms: a weeping shoot starts above the horizon and ends below it, a
+conifer's starts low and turns up.
 
 """
 

@@ -1,8 +1,8 @@
 """
 *Ficus benjamina*, the weeping fig, as a pot plant: the first of the paper's two plants (3.1).
 
-Several slender stems from a short stock, upright and leaning apart; branches that rise, arch over and
-hang; thin pendulous twigs, left and right in turn.
+Several slender stems from a short stock, upright and leaning apart; branches that rise, arch over
+and hang; thin pendulous twigs, left and right in turn.
 
 """
 
@@ -75,7 +75,9 @@ def _add_stem(
         here = node / n_nodes
         # Branches shorten to the top; away from the middle of the plant there is light.
         reach = 0.50 * (1.0 - 0.6 * here) * rng.uniform(0.8, 1.2)
-        way = aim(skeleton.shoots[stem].tangent(node), rng.uniform(0.5, 0.9), roll + i * GOLDEN_ANGLE)
+        way = aim(
+            skeleton.shoots[stem].tangent(node), rng.uniform(0.5, 0.9), roll + i * GOLDEN_ANGLE
+        )
         way = way + 1.5 * nodes[node] * np.array([1.0, 1.0, 0.0])
         _add_branch(skeleton, stem, node, heading_of(way), reach, rng)
 
@@ -93,7 +95,14 @@ def _add_branch(
     droop = rng.uniform(-1.35, -1.0)
     origin = skeleton.shoots[stem].nodes[at]
     nodes = grow_axis(
-        origin, azimuth, (min(rise, 1.0), droop), length, 6 if length > 0.2 else 5, rng, wander=0.06, floor=0.12
+        origin,
+        azimuth,
+        (min(rise, 1.0), droop),
+        length,
+        6 if length > 0.2 else 5,
+        rng,
+        wander=0.06,
+        floor=0.12,
     )
     branch = skeleton.add(nodes, stem, at)
     add_twigs(

@@ -1,8 +1,8 @@
 """
 A broadleaf that stands alone: a short trunk that forks into limbs, and a rounded crown.
 
-Limbs and their branches grow towards the surface of an ellipsoid and stop short of it; that alone rounds
-the crown. The trunk loses itself in the crown.
+Limbs and their branches grow towards the surface of an ellipsoid and stop short of it; that alone
+rounds the crown. The trunk loses itself in the crown.
 
 """
 
@@ -47,7 +47,9 @@ def grow_broadleaf(
     """
     skeleton = Skeleton()
     trunk = skeleton.add(
-        grow_axis(np.zeros(3), rng.uniform(0.0, 2.0 * np.pi), (1.57, 1.45), 0.70, 10, rng, wander=0.06)
+        grow_axis(
+            np.zeros(3), rng.uniform(0.0, 2.0 * np.pi), (1.57, 1.45), 0.70, 10, rng, wander=0.06
+        )
     )
     roll = rng.uniform(0.0, 2.0 * np.pi)
     for i, node in enumerate((3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 9, 9, 10, 10)):

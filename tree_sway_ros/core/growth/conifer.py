@@ -1,8 +1,8 @@
 """
 A conifer that stands alone: one straight stem, branches in whorls, a pointed crown.
 
-Branches near the ground are the oldest: long, level or hanging, their ends turned up. Those near the top
-are short and point upwards. Twigs stand left and right of each branch in a flat spray.
+Branches near the ground are the oldest: long, level or hanging, their ends turned up. Those near
+the top are short and point upwards. Twigs stand left and right of each branch in a flat spray.
 
 """
 

@@ -1,8 +1,8 @@
 """
 *Cupressus macrocarpa* 'Goldcrest' as a pot plant: the second of the paper's two plants (3.1).
 
-One straight stem; many short branches close together, steeply ascending, that shorten to the top, so that
-the whole is a narrow cone; short twigs all round them.
+One straight stem; many short branches close together, steeply ascending, that shorten to the top,
+so that the whole is a narrow cone; short twigs all round them.
 
 """
 

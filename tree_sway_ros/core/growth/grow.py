@@ -1,9 +1,9 @@
 """
 A plausible tree of any size for a user who has no scan of one.
 
-Without a measured diameter the stem is as slender as open-grown stems are: 45 lengths of its diameter, as
-first-order axes of scanned broadleaves (allometry of 4,824 scanned branches), or 60 for a conifer, below the
-70 that foresters hold for a stable stem (Wang, Titus & LeMay 1998).
+Without a measured diameter the stem is as slender as open-grown stems are: 45 lengths of its
+diameter, as first-order axes of scanned broadleaves (allometry of 4,824 scanned branches), or 60
+for a conifer, below the 70 that foresters hold for a stable stem (Wang, Titus & LeMay 1998).
 
 """
 
@@ -144,6 +144,9 @@ def _check_stem(wood: Species, height: float, diameter: float) -> None:
 
 
 def _thinnest(wood: Species, height: float) -> float:
-    """Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve."""
+    """
+    Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve.
+
+    """
     stout = (height / 0.8) ** 3 * 16.0 * wood.density * _GRAVITY / (7.837 * wood.modulus)
     return float(np.sqrt(stout))

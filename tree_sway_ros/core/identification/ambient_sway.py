@@ -1,14 +1,14 @@
 """
 Frequency and damping of a tree that sways in natural wind.
 
-The periodogram of a stationary motion scatters about its spectrum as an exponential variable does, each bin on its own
-(Whittle, 1953). The likelihood of a resonance on a smooth load and a floor,
+The periodogram of a stationary motion scatters about its spectrum as an exponential variable does,
+each bin on its own (Whittle, 1953). The likelihood of a resonance on a smooth load and a floor,
 
     S(f) = (f / f0)^p (a / ((1 - r^2)^2 + (2 zeta r)^2) + b),   r = f / f0,
 
-is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the resolution of the spectrum, and
-p takes up the slope of the turbulence and whether displacement, tilt or acceleration was measured. Standard errors are
-those of Fisher's information (Brillinger, 1981).
+is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the resolution
+of the spectrum, and p takes up the slope of the turbulence and whether displacement, tilt or
+acceleration was measured. Standard errors are those of Fisher's information (Brillinger, 1981).
 
 """
 
@@ -27,7 +27,11 @@ _MIN_CYCLES = 20.0
 _MAX_POINTS = 600
 _SLOPE = 5.0
 _MIN_GAIN = 8.0
-"""Log-likelihood that a resonance must add to a smooth spectrum: 1 in 1,000 by chi-square of its three parameters."""
+"""
+Log-likelihood that a resonance must add to a smooth spectrum: 1 in 1,000 by chi-square of its three
+parameters.
+
+"""
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,9 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
             cure="an ambient record takes at least 20 cycles, better 500",
         )
     frequency, power, bins = _periodogram(motion, dt, rough)
-    start = np.log([rough, 0.05, float(np.median(power)) * 0.01, float(power.min() + 1e-3 * power.mean())])
+    start = np.log(
+        [rough, 0.05, float(np.median(power)) * 0.01, float(power.min() + 1e-3 * power.mean())]
+    )
     best = min(
         (_fit(frequency, power, bins, np.append(start + shift, 0.0)) for shift in _starts()),
         key=lambda result: float(result.fun),
@@ -105,7 +111,11 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
 
 
 def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats, int]:
-    """Frequencies, power of mean 1 along the axis that moves most there, and of how many bins each is the mean."""
+    """
+    Frequencies, power of mean 1 along the axis that moves most there, and of how many bins each is
+    the mean.
+
+    """
     taper = signal.windows.tukey(len(motion), 0.1)
     spectrum = np.fft.rfft(taper[:, None] * motion, axis=0)
     frequency = np.fft.rfftfreq(len(motion), dt)
@@ -121,8 +131,13 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
 
 
 def _starts() -> list[Floats]:
-    """Shifts of the first guess: the surface has side valleys where damping and floor trade places."""
-    return [np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)]
+    """
+    Shifts of the first guess: the surface has side valleys where damping and floor trade places.
+
+    """
+    return [
+        np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)
+    ]
 
 
 def log_spectrum(x: Floats, frequency: Floats) -> tuple[Floats, Floats]:

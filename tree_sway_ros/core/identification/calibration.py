@@ -1,10 +1,11 @@
 """
 The modulus that gives a tree its measured frequency.
 
-With its weight a tree's square frequency is not proportional to the modulus, but its elastic stiffness is: of
-``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is reduced once. The lowest w^2 rises with s and
-bends down, being the least of functions linear in s, with the slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's
-method comes from below; a bracket keeps it off the buckling load, where w is 0.
+With its weight a tree's square frequency is not proportional to the modulus, but its elastic
+stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is reduced
+once. The lowest w^2 rises with s and bends down, being the least of functions linear in s, with the
+slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a bracket
+keeps it off the buckling load, where w is 0.
 
 """
 
@@ -47,7 +48,8 @@ class Calibration:
     branch
         Name of the branch that bends most in that sway: the stem's, in most trees.
     sensitivity
-        Relative change of the modulus over that of the frequency in [-]: 2 without weight, less with it.
+        Relative change of the modulus over that of the frequency in [-]: 2 without weight, less
+        with it.
 
     """
 
@@ -76,9 +78,11 @@ def calibrate(
     frequency
         Measured natural frequency in [Hz].
     damping_ratio
-        Measured damping ratio in [-]; taken for the season of the settings. That of the species stays if None.
+        Measured damping ratio in [-]; taken for the season of the settings. That of the species
+        stays if None.
     settings
-        Season, leaves and gravity; the defaults if None. The model is that of the rungs ``modes`` and ``coupled``.
+        Season, leaves and gravity; the defaults if None. The model is that of the rungs ``modes``
+        and ``coupled``.
 
     Returns
     -------
@@ -121,7 +125,11 @@ def calibrate(
 
 @dataclass(frozen=True)
 class _Sway:
-    """Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns most."""
+    """
+    Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns
+    most.
+
+    """
 
     scale: float
     square: float
@@ -142,7 +150,9 @@ class _ScaledTree:
             species.density,
             carries=True,
             enriched=enriched_branches(tree, settings.enrich),
-            speed_profile=settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2])),
+            speed_profile=settings.profile.over_anemometer(
+                0.5 * (tree.start[:, 2] + tree.end[:, 2])
+            ),
             leaf_mass=settings.leaf_mass,
             leaf_area=settings.leaf_area,
         )

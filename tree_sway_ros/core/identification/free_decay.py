@@ -1,10 +1,11 @@
 """
 Frequency and damping of a tree that was pulled and let go.
 
-A free decay is a sum of damped exponentials, the same ones in every channel. The matrix pencil finds them all at once,
-so that a second mode, the other axis or a shifted rest do not bend the first (Hua & Sarkar, 1990). The standard errors
-come from the curvature of the least-squares fit and from how much the answer changes as the decay goes on, for the
-damping of a real tree depends on its amplitude.
+A free decay is a sum of damped exponentials, the same ones in every channel. The matrix pencil
+finds them all at once, so that a second mode, the other axis or a shifted rest do not bend the
+first (Hua & Sarkar, 1990). The standard errors come from the curvature of the least-squares fit and
+from how much the answer changes as the decay goes on, for the damping of a real tree depends on its
+amplitude.
 
 Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping ratio.
 
@@ -41,13 +42,16 @@ class FreeDecay:
     frequency_error, damping_error
         Standard errors of both.
     start, cycles
-        Time from the record's beginning to where the fit starts in [s], and how many cycles it covers.
+        Time from the record's beginning to where the fit starts in [s], and how many cycles it
+        covers.
     explained
         Share of all motion's energy, within the fit, that decaying modes explain in [-].
     quiet
-        Largest amplitude around the frequency before and after the decay, over the largest of all, in [-].
+        Largest amplitude around the frequency before and after the decay, over the largest of all,
+        in [-].
     speed
-        Largest amplitude around the frequency times that frequency, in the unit of the motion a second.
+        Largest amplitude around the frequency times that frequency, in the unit of the motion a
+        second.
 
     """
 
@@ -64,7 +68,10 @@ class FreeDecay:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Dominant pole of a stretch of motion, its standard error, and the share of energy explained."""
+    """
+    Dominant pole of a stretch of motion, its standard error, and the share of energy explained.
+
+    """
 
     pole: complex
     error: float
@@ -193,7 +200,8 @@ def _standard_error(
     """
     Standard error of a pole's real and imaginary part in [1/s].
 
-    A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s t)`` can replace.
+    A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s
+    t)`` can replace.
 
     """
     moved = dt * np.arange(len(decay)) * decay

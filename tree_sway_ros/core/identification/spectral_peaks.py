@@ -56,7 +56,8 @@ class Spectrum:
         Returns
         -------
         frequencies, levels
-            Of the peaks, rising, and the averaged power there; within a given band its strongest point if it has no peak.
+            Of the peaks, rising, and the averaged power there; within a given band its strongest
+            point if it has no peak.
 
         Raises
         ------

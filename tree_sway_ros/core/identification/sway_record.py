@@ -1,8 +1,9 @@
 """
 From a record of a swaying tree to its natural frequency and damping ratio.
 
-A record is a pull-and-release (one large swing that dies away, quiet before and after) or ambient (the tree in natural
-wind). Both are scale-free: displacement, tilt and acceleration give the same answer.
+A record is a pull-and-release (one large swing that dies away, quiet before and after) or ambient
+(the tree in natural wind). Both are scale-free: displacement, tilt and acceleration give the same
+answer.
 
 """
 
@@ -127,7 +128,10 @@ def _estimate(found: FreeDecay | AmbientSway, kind: str) -> SwayEstimate:
 
 
 def _is_release(decay: FreeDecay) -> bool:
-    """Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it."""
+    """
+    Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it.
+
+    """
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
 
@@ -178,7 +182,11 @@ def _refuse_coarse(gap: float, rough: float) -> None:
 
 
 def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
-    """Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest does not hide."""
+    """
+    Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest
+    does not hide.
+
+    """
     padded = 4 * len(motion)
     frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
@@ -195,7 +203,8 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
             refusals.append(refusal)
     if not found:
         raise refusals[int(np.argmax(level[strong]))]
-    # Beside the sway, a step of the rest has slow parts that die away too; they move little a second.
+    # Beside the sway, a step of the rest has slow parts that die away too; they move little a
+    # second.
     fastest = max(found, key=lambda decay: decay.speed)
     fast = [one for one in found if one.speed > _FAST * fastest.speed]
     clearest = max(fast, key=lambda decay: decay.explained)

@@ -1,12 +1,13 @@
 """
 How leaves flutter: an angle about their stalk from the speed of the air that passes them.
 
-In light to moderate wind the rms speed of a leaf of size D is ``U_leaf = (U / 740)^2 D / nu``, measured on
-oak, olive, magnolia, camphor and grass, whatever carries the leaf (Goldshmid et al. 2025, arXiv:2504.10584). A leaf
-that turns about its stalk by torsional galloping does so near its own frequency f (Tadrist et al. 2015, on *Ficus
-benjamina*), its edge at D/2 from the stalk. Speed over ``2 pi f D/2`` is then the angle, and the size drops out:
-amplitude ``a = sqrt(2) / (740^2 nu pi f) U^2``. In strong wind leaves fold together and flutter grows no more
-(Tadrist et al. 2018): the amplitude levels off at `LARGEST_ANGLE`, which is an estimate.
+In light to moderate wind the rms speed of a leaf of size D is ``U_leaf = (U / 740)^2 D / nu``,
+measured on oak, olive, magnolia, camphor and grass, whatever carries the leaf (Goldshmid et al.
+2025, arXiv:2504.10584). A leaf that turns about its stalk by torsional galloping does so near its
+own frequency f (Tadrist et al. 2015, on *Ficus benjamina*), its edge at D/2 from the stalk. Speed
+over ``2 pi f D/2`` is then the angle, and the size drops out: amplitude ``a = sqrt(2) / (740^2 nu
+pi f) U^2``. In strong wind leaves fold together and flutter grows no more (Tadrist et al. 2018):
+the amplitude levels off at `LARGEST_ANGLE`, which is an estimate.
 
 The law is two constants and one line, so that it can be computed where leaves are drawn.
 
@@ -116,7 +117,8 @@ def air_speed(positions: Floats, before: Floats, interval: float, wind: ArrayLik
 
 def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     """
-    Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them with the poses.
+    Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them with
+    the poses.
 
     Parameters
     ----------

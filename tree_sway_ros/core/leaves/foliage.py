@@ -1,10 +1,11 @@
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 
-Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A tree has as
-much leaf area as its stem can supply, but no more than six times the ground it covers: few stands have a
-higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun would: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of
-area A in every direction in a crown of outline F (Monsi & Saeki 1953).
+Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A tree
+has as much leaf area as its stem can supply, but no more than six times the ground it covers: few
+stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun would:
+leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in a crown
+of outline F (Monsi & Saeki 1953).
 
 """
 
@@ -52,7 +53,8 @@ class Foliage:
 @dataclass(frozen=True)
 class LeafClusters:
     """
-    Leaves to be drawn, each cluster carried by one segment; static, as they flutter where they are drawn.
+    Leaves to be drawn, each cluster carried by one segment; static, as they flutter where they are
+    drawn.
 
     Parameters
     ----------
@@ -78,7 +80,10 @@ class LeafClusters:
 
 
 def leafy_length(tree: Tree) -> Floats:
-    """Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood, or 0."""
+    """
+    Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood, or 0.
+
+    """
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
     thin_first = np.argsort(tree.base_diameter, kind="stable")
@@ -157,7 +162,8 @@ def leaf_clusters(
     place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count * ends[-1]
     segment = np.minimum(np.searchsorted(ends, place, side="right"), tree.n_segments - 1)
     along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
-    # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a leaf.
+    # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a
+    # leaf.
     area = float(foliage_of(tree, traits=leaf).area.sum()) / count
     size = max(np.sqrt(4.0 * area / np.pi), leaf.size) * rng.uniform(0.8, 1.2, count)
     turn = _GOLDEN_ANGLE * np.arange(count) + rng.uniform(-0.3, 0.3, count)
@@ -201,11 +207,16 @@ def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int])
 def no_clusters() -> LeafClusters:
     """Return no leaves at all."""
     none = np.zeros(0)
-    return LeafClusters(none.astype(np.int64), none.reshape(0, 3), none.reshape(0, 4), none, none, none)
+    return LeafClusters(
+        none.astype(np.int64), none.reshape(0, 3), none.reshape(0, 4), none, none, none
+    )
 
 
 def _facing_up(away: Floats, rest: Rotation) -> Floats:
-    """Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can."""
+    """
+    Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
+
+    """
     up = rest.inv().apply([0.0, 0.0, 1.0])
     z = up - np.einsum("ij,ij->i", up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)

@@ -1,16 +1,19 @@
 """
-What the wind does to a branch: one load centre a branch, so that cost does not depend on how finely it is cut.
+What the wind does to a branch: one load centre a branch, so that cost does not depend on how finely
+it is cut.
 
-The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the piece, across it. Summed over a
-branch it acts at the centre of the load, on the mean displacement of the loaded pieces; the branch damps itself at the
-displacement that gives the same damping as the sum. Crowns in leaf streamline: Cd = C U^-N
-(Mayhead 1973; Vollsinger et al. 2005) between 4 and 20 m/s, constant outside. Those are the speeds at which crowns were measured in
-wind tunnels (Rudnicki et al. 2004; Vollsinger et al. 2005).
+The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
+piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement
+of the loaded pieces; the branch damps itself at the displacement that gives the same damping as the
+sum. Crowns in leaf streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4 and 20
+m/s, constant outside. Those are the speeds at which crowns were measured in wind tunnels (Rudnicki
+et al. 2004; Vollsinger et al. 2005).
 
-**Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step, where an explicit drag would
-shake it to pieces. With u the velocity the branch would have half a step on without the force, and beta the
-velocity that a unit of force adds by then, the relative speed s solves ``s + beta c s^2 = |U - u|`` in closed form: stable for any
-wind and step, second order in the step.
+**Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step,
+where an explicit drag would shake it to pieces. With u the velocity the branch would have half a
+step on without the force, and beta the velocity that a unit of force adds by then, the relative
+speed s solves ``s + beta c s^2 = |U - u|`` in closed form: stable for any wind and step, second
+order in the step.
 
 """
 
@@ -80,7 +83,11 @@ def fill_branch_loads(
 
 
 def _fill_axial_levers(tree: Tree, records: Any) -> None:
-    """How far up the parent's chord each subtree's centre of load swings: its way across on a unit of rotation."""
+    """
+    How far up the parent's chord each subtree's centre of load swings: its way across on a unit of
+    rotation.
+
+    """
     area = records["area"].copy()
     moment = records["centre"] * area[:, None]
     for b in range(tree.n_branches - 1, 0, -1):
@@ -127,7 +134,8 @@ def drag(
     compliance
         Velocity half a step after a unit of force in [s/kg].
     ux, uy, uz
-        Air velocity in the branch's own frame, relative to what the branch would do without this force, in [m/s].
+        Air velocity in the branch's own frame, relative to what the branch would do without this
+        force, in [m/s].
 
     Returns
     -------

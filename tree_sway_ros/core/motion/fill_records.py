@@ -77,7 +77,8 @@ def head_records(branches: Any, segments: Any) -> Any:
 
 def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
     """
-    Give each branch a lane of a block: parents in earlier blocks, long branches together, so that few lanes stay empty.
+    Give each branch a lane of a block: parents in earlier blocks, long branches together, so that
+    few lanes stay empty.
 
     Returns
     -------
@@ -133,20 +134,29 @@ def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) ->
 
 
 def _distinct_shapes(model: BranchModel) -> list[tuple[int, SlopeShape]]:
-    """Shapes of a branch with the column of each: pairs share theirs, twists come after all shapes."""
+    """
+    Shapes of a branch with the column of each: pairs share theirs, twists come after all shapes.
+
+    """
     pairs = [way.shape for way in model.coordinates if not way.is_twist][::2]
     twists = [way.shape for way in model.coordinates if way.is_twist]
     return [*enumerate(pairs), *enumerate(twists, start=N_SHAPES)]
 
 
 def _skew(slope: Floats, length: Floats) -> float:
-    """Third cumulant over 6 of a slope along a branch: how far its chord angle lags, per angle cubed."""
+    """
+    Third cumulant over 6 of a slope along a branch: how far its chord angle lags, per angle cubed.
+
+    """
     share = length / length.sum()
     return float(share @ (slope - share @ slope) ** 3) / 6.0
 
 
 def _tip_load_slope(model: BranchModel) -> Floats:
-    """Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip."""
+    """
+    Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip.
+
+    """
     u = model.beam.node / model.beam.node[-1]
     first: SlopeShape = model.coordinates[0].shape
     primitive = 1.5 * (u * u - u**3 / 3.0)

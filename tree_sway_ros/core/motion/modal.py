@@ -1,11 +1,13 @@
 """
 Rungs 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
 
-Rung 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q + Phi (eta - E^T Q)``: D is the
-diagonal of the flexibility, and E takes out of it what the modes already hold. Rung 4, `coupled`, steps all modes and leaves
-nothing. As in rungs 1 and 2 the load is found once a step, at the state half a step on.
+Rung 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q
++ Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what the modes
+already hold. Rung 4, `coupled`, steps all modes and leaves nothing. As in rungs 1 and 2 the load is
+found once a step, at the state half a step on.
 
-Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments on the key rotations, w circular frequencies.
+Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
+on the key rotations, w circular frequencies.
 
 """
 
@@ -119,7 +121,11 @@ class ModalBank:
         )  # fmt: skip
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
-        """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
+        """
+        Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
+        geometry.
+
+        """
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
         eta = dynamic - (self._held @ moments)[:, :, None]

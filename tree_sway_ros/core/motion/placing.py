@@ -1,16 +1,18 @@
 """
-Key rotations to poses: the segments of each branch follow its key, the branches are joined from the root.
+Key rotations to poses: the segments of each branch follow its key, the branches are joined from the
+root.
 
-A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth curve and keeps
-its length. The chord of the bent chain turns by a little less than the coordinate says (third cumulant of the slope
-along the branch); the coordinate is stretched by that much, so that the chord angle is kept. Beyond 30 degrees a
-tapered branch goes over to the slope of a load at the tip.
+A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth
+curve and keeps its length. The chord of the bent chain turns by a little less than the coordinate
+says (third cumulant of the slope along the branch); the coordinate is stretched by that much, so
+that the chord angle is kept. Beyond 30 degrees a tapered branch goes over to the slope of a load at
+the tip.
 
-Sixteen branches at a time, parents before their children: how the bases are turned and where they stand, then segment
-after segment up the sixteen branches at once.
+Sixteen branches at a time, parents before their children: how the bases are turned and where they
+stand, then segment after segment up the sixteen branches at once.
 
-The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose stands at its segment's
-root-side node, its x axis runs along the segment (REP-103).
+The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
+stands at its segment's root-side node, its x axis runs along the segment (REP-103).
 
 """
 
@@ -49,7 +51,8 @@ def place(
     Parameters
     ----------
     branches, segments, heads, work
-        Records of `BRANCH` (b,), `SEGMENT`, `head_layout` and `WORK` (b,); bases of the last are written.
+        Records of `BRANCH` (b,), `SEGMENT`, `head_layout` and `WORK` (b,); bases of the last are
+        written.
     x
         Key rotations, (N,), in the order of the coordinates.
     origin
@@ -161,10 +164,21 @@ def _meet_parents(
 
 @fused
 def _turn_bases(head: Any, room: Any) -> None:
-    """Turn the bases of sixteen branches, put them where they stand, and set how their first shape bends."""
+    """
+    Turn the bases of sixteen branches, put them where they stand, and set how their first shape
+    bends.
+
+    """
     key, below, under, seat = room.key, room.below, room.under, room.seat_turn
     frame, offset = head.frame, head.offset
-    turn, base, way, swing, at, ahead = room.turn, room.base, room.way, room.swing, room.at, room.ahead
+    turn, base, way, swing, at, ahead = (
+        room.turn,
+        room.base,
+        room.way,
+        room.swing,
+        room.at,
+        room.ahead,
+    )
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
         t = x * x + y * y
@@ -186,7 +200,9 @@ def _turn_bases(head: Any, room: Any) -> None:
             below[0, j], below[1, j], below[2, j], below[3, j], c, s * hx, s * hy, s * hz
         )
         base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
-        swing[0, j], swing[1, j], swing[2, j], swing[3, j] = product(bw, bx, by, bz, 0.0, wx, wy, wz)
+        swing[0, j], swing[1, j], swing[2, j], swing[3, j] = product(
+            bw, bx, by, bz, 0.0, wx, wy, wz
+        )
         ox, oy, oz = rotated(
             under[6, j], under[3, j], under[4, j], under[5, j],
             offset[0, j], offset[1, j], offset[2, j],
@@ -197,7 +213,11 @@ def _turn_bases(head: Any, room: Any) -> None:
 
 @fused
 def _leave_bases(head: Any, room: Any, work: Any) -> bool:
-    """Leave for the children how their parents are turned; return whether any of these bends beyond the series."""
+    """
+    Leave for the children how their parents are turned; return whether any of these bends beyond
+    the series.
+
+    """
     is_far = False
     for j in range(head.n_lanes):
         here = work[head.branch[j]]
@@ -211,7 +231,11 @@ def _leave_bases(head: Any, room: Any, work: Any) -> bool:
 
 @fused
 def _set_further_ways(branches: Any, head: Any, room: Any, x: Floats) -> bool:
-    """Set how further shapes and twists bend; return whether any branch with them bends beyond the series."""
+    """
+    Set how further shapes and twists bend; return whether any branch with them bends beyond the
+    series.
+
+    """
     is_far, way = False, room.way
     way[1:] = 0.0
     for j in range(head.n_lanes):
@@ -252,7 +276,11 @@ def _half_vector(segment: Any, room: Any, j: int) -> tuple[float, float, float]:
 def _turn(segment: Any, room: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
     """Turn the segment of the lane j from rest, at the end of the one before."""
     rest, chord, pose, at, ahead = segment.rest, segment.chord, room.pose, room.at, room.ahead
-    at[0, j], at[1, j], at[2, j] = at[0, j] + ahead[0, j], at[1, j] + ahead[1, j], at[2, j] + ahead[2, j]
+    at[0, j], at[1, j], at[2, j] = (
+        at[0, j] + ahead[0, j],
+        at[1, j] + ahead[1, j],
+        at[2, j] + ahead[2, j],
+    )
     pose[0, j], pose[1, j], pose[2, j], pose[3, j] = product(
         qw, qx, qy, qz, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
     )

@@ -1,14 +1,18 @@
 """
-Memory of the hot path: one record a branch, one record of work a branch, one record of sixteen segments.
+Memory of the hot path: one record a branch, one record of work a branch, one record of sixteen
+segments.
 
-A step visits every branch once and needs all that is known of it, so what belongs to a branch lies together; a
-kernel takes a record array as one argument, where each plain array costs a call about .2 us.
+A step visits every branch once and needs all that is known of it, so what belongs to a branch lies
+together; a kernel takes a record array as one argument, where each plain array costs a call about
+.2 us.
 
-Segments follow their branch and not each other, so those at the same place in sixteen branches are computed at once: a
-record holds sixteen lanes, one a branch, and distances within it are constants that let the compiler use vectors. The
-records of sixteen branches, from base to tip, make a block; parents are in earlier blocks than their children.
+Segments follow their branch and not each other, so those at the same place in sixteen branches are
+computed at once: a record holds sixteen lanes, one a branch, and distances within it are constants
+that let the compiler use vectors. The records of sixteen branches, from base to tip, make a block;
+parents are in earlier blocks than their children.
 
-Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations in [rad].
+Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations
+in [rad].
 
 """
 
@@ -25,12 +29,14 @@ MAX_SLOPES = N_SHAPES + N_TWISTS
 
 
 @cache
-def branch_layout(n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+def branch_layout(
+    n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOPES
+) -> np.dtype[np.void]:
     """
     All that a step needs to know of a branch, with room for so many coordinates, shapes and twists.
 
-    Where no branch has more than one shape, records have no room for more: a forest is solved no faster than its
-    records come from memory.
+    Where no branch has more than one shape, records have no room for more: a forest is solved no
+    faster than its records come from memory.
 
     """
     return np.dtype(
@@ -43,8 +49,16 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOP
             ("n_coordinates", "i8"),  # pairs x, y, then twists
             ("n_pairs", "i8"),
             ("source", "i8"),  # branch whose motion it copies, itself if solved
-            ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
-            ("twist", "f8", (n_coordinates, 6)),  # motion of its base per unit of parent's coordinates
+            (
+                "frame",
+                "f8",
+                (3, 3),
+            ),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
+            (
+                "twist",
+                "f8",
+                (n_coordinates, 6),
+            ),  # motion of its base per unit of parent's coordinates
             ("push", "f8", (n_coordinates, 3)),  # displacement under the wind's mean push
             ("flow", "f8", (n_coordinates, 3)),  # displacement at which its drag damps
             ("reach", "f8", (n_coordinates, 3)),  # displacement of its tip
@@ -119,14 +133,30 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
             ("key", "f8", (2, LANES)),  # key rotation
             ("below", "f8", (4, LANES)),  # orientation of the parent's base, from rest, w x y z
             ("under", "f8", (7, LANES)),  # pose of the seat
-            ("seat_turn", "f8", (3, LANES)),  # half the rotation vector of the seat, from the parent's base
-            ("turn", "f8", (3, LANES)),  # half the rotation vector a unit of slope, as children see it
+            (
+                "seat_turn",
+                "f8",
+                (3, LANES),
+            ),  # half the rotation vector of the seat, from the parent's base
+            (
+                "turn",
+                "f8",
+                (3, LANES),
+            ),  # half the rotation vector a unit of slope, as children see it
             ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
             ("way", "f8", (n_slopes, 3, LANES)),  # half the rotation vector a unit of each slope
             ("square", "f8", (LANES,)),  # of the length of the first of these
-            ("swing", "f8", (4, LANES)),  # the first of these, then the base: what a sine is multiplied by
-            ("half_angle", "f8", (LANES,)),  # bound on the square of half of what segments turn by [rad^2]
+            (
+                "swing",
+                "f8",
+                (4, LANES),
+            ),  # the first of these, then the base: what a sine is multiplied by
+            (
+                "half_angle",
+                "f8",
+                (LANES,),
+            ),  # bound on the square of half of what segments turn by [rad^2]
             ("at", "f8", (3, LANES)),  # where the segment starts
             ("ahead", "f8", (3, LANES)),  # its chord when placed
             ("pose", "f8", (4, LANES)),  # its orientation when placed, w x y z
@@ -145,7 +175,11 @@ WORK = np.dtype(
         ("met", "f8", (3,)),  # the same, where the base has turned the branch to [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
-        ("turn", "f8", (3,)),  # half the rotation vector a unit of slope, for who sits on a branch of one shape
+        (
+            "turn",
+            "f8",
+            (3,),
+        ),  # half the rotation vector a unit of slope, for who sits on a branch of one shape
     ]
 )
 """What a step computes on the way, kept from one step to the next."""
@@ -159,7 +193,11 @@ AIR = np.dtype(
         ("motion", "f8", (3, LANES)),  # of what the wind sees [m/s]
         ("base", "f8", (3, LANES)),  # rotation of the base
         ("turn", "f8", (3, LANES)),  # rotation of what the wind sees
-        ("slip", "f8", (3, LANES)),  # what the last force took off the relative wind, over the compliance [N]
+        (
+            "slip",
+            "f8",
+            (3, LANES),
+        ),  # what the last force took off the relative wind, over the compliance [N]
         ("force", "f8", (3, LANES)),
         ("met", "f8", (3, LANES)),
     ]

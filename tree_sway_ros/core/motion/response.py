@@ -1,9 +1,11 @@
 """
-How far tips go in a wind that swings at one pace: linear response of every rung, before a step is taken.
+How far tips go in a wind that swings at one pace: linear response of every rung, before a step is
+taken.
 
-Loads are split as turbulence is: along the mean wind, where the load goes with the square of the speed, and across it. The gain of a
-rung is the motion of the tips of all branches, joined from the root, per unit of load at each frequency. Gains of two rungs can be
-set against each other; that is how the error of the lesser one is known without running the greater.
+Loads are split as turbulence is: along the mean wind, where the load goes with the square of the
+speed, and across it. The gain of a rung is the motion of the tips of all branches, joined from the
+root, per unit of load at each frequency. Gains of two rungs can be set against each other; that is
+how the error of the lesser one is known without running the greater.
 
 """
 
@@ -55,7 +57,11 @@ def key_response(oscillators: Responding, n_coordinates: int, frequencies: Float
 
 
 def tip_response(oscillators: Responding, n_coordinates: int, frequencies: Floats) -> Complexes:
-    """Displacement of every tip under that load, (b, 3, 2, f), in [m^3/N]; arguments as of `key_response`."""
+    """
+    Displacement of every tip under that load, (b, 3, 2, f), in [m^3/N]; arguments as of
+    `key_response`.
+
+    """
     return tip_motion(oscillators.branches, key_response(oscillators, n_coordinates, frequencies))
 
 
@@ -86,7 +92,11 @@ def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
-    """Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6, ...)."""
+    """
+    Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6,
+    ...).
+
+    """
     base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     for b, branch in enumerate(branches):
         if branch["parent"] >= 0:
@@ -98,7 +108,11 @@ def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
-    """Displacement of points (p, 3) that ride on bodies moving by (v, w) about the root, (p, 6, ...), (p, 3, ...)."""
+    """
+    Displacement of points (p, 3) that ride on bodies moving by (v, w) about the root, (p, 6, ...),
+    (p, 3, ...).
+
+    """
     x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
     wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]
     moved = motion[:, :3].copy()

@@ -1,8 +1,8 @@
 """
 Placing what is frozen: a subtree that moves with its parent as one body.
 
-Its base turns and goes with its seat, as that of any branch; from there on every segment keeps its place and
-orientation relative to the base.
+Its base turns and goes with its seat, as that of any branch; from there on every segment keeps its
+place and orientation relative to the base.
 
 """
 
@@ -33,11 +33,11 @@ class RigidParts:
     rows
         Its seat, its first segment and one past its last, rows of the pose block, (t, 3).
     seat_slope, offset
-        Slopes of the parent's shapes at its base, (t, c), and its base from the seat's start in the seat's frame in
-        [m], (t, 3).
+        Slopes of the parent's shapes at its base, (t, c), and its base from the seat's start in the
+        seat's frame in [m], (t, 3).
     arm, rest
-        Start of each segment of the tree from the base it moves with, at rest, in [m], (n, 3), and orientation at rest,
-        w x y z, (n, 4); those of moving segments are not read.
+        Start of each segment of the tree from the base it moves with, at rest, in [m], (n, 3), and
+        orientation at rest, w x y z, (n, 4); those of moving segments are not read.
 
     """
 

@@ -1,8 +1,9 @@
 """
 One pass out and one pass home: how branches ride on each other, and what they hand to each other.
 
-Out, from the stem to the twigs: each base takes over the motion of its parent. On the way the wind's force on each branch is
-found, in the air that passes it. Home, from the twigs to the stem: each branch adds up force and moment of all it carries.
+Out, from the stem to the twigs: each base takes over the motion of its parent. On the way the
+wind's force on each branch is found, in the air that passes it. Home, from the twigs to the stem:
+each branch adds up force and moment of all it carries.
 
 """
 
@@ -83,8 +84,8 @@ def blow(
     Parameters
     ----------
     branches, work, air
-        Records of `BRANCH` and `WORK`, (b,), and of `AIR`; the slip of the last is read as that of the last step; forces
-        and slip are written.
+        Records of `BRANCH` and `WORK`, (b,), and of `AIR`; the slip of the last is read as that of
+        the last step; forces and slip are written.
     x, v
         Key rotations and rates half a step on, under the last step's forces, (N,).
     wx, wy, wz
@@ -93,7 +94,8 @@ def blow(
         `pressure` of the wind in [kg/m^3].
 
     """
-    # Each pass goes over all branches: what is written one by one and read as vectors at once would have to wait.
+    # Each pass goes over all branches: what is written one by one and read as vectors at once would
+    # have to wait.
     n = len(branches)
     for block in range(len(air)):
         for lane in range(min(LANES, n - LANES * block)):
@@ -112,7 +114,9 @@ def blow(
             force, turn, met = work[b].force, work[b].rotation, work[b].met
             for k in range(3):
                 force[k] = work[source].force[k]
-            met[0], met[1], met[2] = turned(-turn[0], -turn[1], -turn[2], force[0], force[1], force[2])
+            met[0], met[1], met[2] = turned(
+                -turn[0], -turn[1], -turn[2], force[0], force[1], force[2]
+            )
 
 
 @inlined
@@ -158,7 +162,11 @@ def press(air: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -
 
 @fused
 def gather(branches: Any, work: Any) -> None:
-    """Add up, from the twigs to the stem, force and moment about the root of all that each branch carries."""
+    """
+    Add up, from the twigs to the stem, force and moment about the root of all that each branch
+    carries.
+
+    """
     for b in range(len(branches)):
         here, centre = work[b], branches[b].centre
         force, wrench = here.force, here.wrench
@@ -239,7 +247,11 @@ def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True
         In [N m], (N, 2).
 
     """
-    moments, pull, rest = np.zeros((2, n_coordinates)), np.zeros(len(branches)), np.zeros(n_coordinates)
+    moments, pull, rest = (
+        np.zeros((2, n_coordinates)),
+        np.zeros(len(branches)),
+        np.zeros(n_coordinates),
+    )
     for moment, (wx, wy) in zip(moments, np.eye(2), strict=True):
         work = np.zeros(len(branches), dtype=WORK)
         blow(branches, work, air_records(branches), rest, rest, wx, wy, 0.0, 1.0)

@@ -1,11 +1,13 @@
 """
 Rungs 1 and 2 of the ladder: every branch an oscillator of its own, on two axes.
 
-Rung 1, `branch`, is the paper's: a branch feels its own wind and its own inertia. Rung 2, `subtree`, gives it the inertia of all it
-carries and the moment of all the wind on it, and lets it ride on its parent; it still swings at a pace of its own.
+Rung 1, `branch`, is the paper's: a branch feels its own wind and its own inertia. Rung 2,
+`subtree`, gives it the inertia of all it carries and the moment of all the wind on it, and lets it
+ride on its parent; it still swings at a pace of its own.
 
-The load is found once a step, at the state half a step on (exponential midpoint rule), and held over the step; what
-depends on the branch's own angle is corrected once within the step (`two_axis.step_branch`).
+The load is found once a step, at the state half a step on (exponential midpoint rule), and held
+over the step; what depends on the branch's own angle is corrected once within the step
+(`two_axis.step_branch`).
 
 """
 
@@ -63,7 +65,12 @@ class UncoupledBank:
         self._pull = np.zeros(n)
         self._sway = np.zeros(-(-n // LANES), dtype=SWAY)
         block, lane = np.divmod(np.arange(n), LANES)
-        for name, of in (("centre", "centre"), ("flow", "flow"), ("lean", "turn"), ("push", "push")):
+        for name, of in (
+            ("centre", "centre"),
+            ("flow", "flow"),
+            ("lean", "turn"),
+            ("push", "push"),
+        ):
             values = branches[of] if name == "centre" else branches[of][:, :2]
             self._sway[name][block, ..., lane] = values
         self._sway["along"][block, :, lane] = branches["lever"][:, None] * branches["frame"][:, 0]
@@ -110,7 +117,11 @@ class UncoupledBank:
         )  # fmt: skip
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
-        """Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest geometry."""
+        """
+        Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
+        geometry.
+
+        """
         impedance = (
             self.stiffness[:, None]
             - self.inertia[:, None] * circular**2

@@ -1,13 +1,14 @@
 """
 Divided differences of the exponential at 0, 0 and a pair of eigenvalues, without cancellation.
 
-The pair is mu = -alpha +- sqrt(delta), delta = alpha^2 - kappa, real or complex. Three ways, each where
-it loses no digits: the Taylor series of small pairs, differences of phi functions for real pairs far
-apart, closed forms for the rest. The phase of a lightly damped pair is kept in double-double, so that a
-thousand turns in one step are as exact as one (Dekker 1971, A floating-point technique for extending
-the available precision).
+The pair is mu = -alpha +- sqrt(delta), delta = alpha^2 - kappa, real or complex. Three ways, each
+where it loses no digits: the Taylor series of small pairs, differences of phi functions for real
+pairs far apart, closed forms for the rest. The phase of a lightly damped pair is kept in
+double-double, so that a thousand turns in one step are as exact as one (Dekker 1971, A
+floating-point technique for extending the available precision).
 
 """
+
 from __future__ import annotations
 
 import math
@@ -56,7 +57,8 @@ def scaled_discriminant(
     i: float, c: float, k: float, h: float, alpha: float, kappa: float
 ) -> tuple[float, float, float]:
     """
-    Return delta = alpha^2 - kappa and, where it is negative, its root's phase as a sum of two floats.
+    Return delta = alpha^2 - kappa and, where it is negative, its root's phase as a sum of two
+    floats.
 
     Both come from ``k2^2 - 4 I k1``, whose two products are taken without rounding.
 

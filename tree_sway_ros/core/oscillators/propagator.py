@@ -7,10 +7,11 @@ moment M that runs linearly from M0 to M1 (first-order hold)::
     x1 = c0 x + c1 v + c2 M0 + c3 M1
     v1 = c4 x + c5 v + c6 M0 + c7 M1
 
-Symbols: alpha = k2 h / 2 I, kappa = k1 h^2 / I, and mu1, mu2 = -alpha +- sqrt(alpha^2 - kappa), the two
-eigenvalues times h. With e[..] for the divided differences of the exponential, everything follows from
-``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham 2008, Functions of
-Matrices, 10.7: the phi functions), which `exponential_differences` finds without cancellation.
+Symbols: alpha = k2 h / 2 I, kappa = k1 h^2 / I, and mu1, mu2 = -alpha +- sqrt(alpha^2 - kappa), the
+two eigenvalues times h. With e[..] for the divided differences of the exponential, everything
+follows from ``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham 2008,
+Functions of Matrices, 10.7: the phi functions), which `exponential_differences` finds without
+cancellation.
 
 """
 
@@ -35,9 +36,7 @@ Floats = NDArray[np.float64]
 _NO_MOTION = "inertia, damping and stiffness are all zero: nothing resists the moment"
 
 
-def propagator(
-    inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float
-) -> Floats:
+def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float) -> Floats:
     """
     Coefficients that advance each oscillator exactly over one step.
 
@@ -55,8 +54,8 @@ def propagator(
     Returns
     -------
     Floats
-        c0 .. c7 of the module's text, (n, 8). Where I and k2 are zero, the static answer: x1 = M1 / k1
-        with the velocity of the line between the two answers.
+        c0 .. c7 of the module's text, (n, 8). Where I and k2 are zero, the static answer: x1 = M1 /
+        k1 with the velocity of the line between the two answers.
 
     Raises
     ------
@@ -65,16 +64,20 @@ def propagator(
         nothing but zeros, named by its index.
 
     """
-    parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, float)) for v in
-                                  (inertia, damping, stiffness)))
+    parts = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(v, float)) for v in (inertia, damping, stiffness))
+    )
     i, c, k = (np.ascontiguousarray(part) for part in parts)
     if not (np.isfinite(dt) and dt > 0.0):
         raise ParameterError(f"time step of {dt} s", where="propagator", cure="give a step above 0")
     for name, values in (("inertia", i), ("damping", c), ("stiffness", k)):
         bad = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
         if len(bad):
-            raise ParameterError(f"{name} of {values[bad[0]]}", where=f"oscillator {bad[0]}",
-                                 cure="give a finite value of 0 or more")
+            raise ParameterError(
+                f"{name} of {values[bad[0]]}",
+                where=f"oscillator {bad[0]}",
+                cure="give a finite value of 0 or more",
+            )
     out = np.empty((len(i), 8))
     refused = fill_propagator(i, c, k, dt, out)
     if refused >= 0:
@@ -86,8 +89,8 @@ def single_precision(coefficients: Floats) -> NDArray[np.float32]:
     """
     Round coefficients to float32 so that free motion cannot grow.
 
-    c0, c1, c4, c5 are rounded towards zero: the determinant c0 c5 - c1 c4, a sum of two positive terms
-    for a lightly damped oscillator, then never passes the exact one, which is at most 1.
+    c0, c1, c4, c5 are rounded towards zero: the determinant c0 c5 - c1 c4, a sum of two positive
+    terms for a lightly damped oscillator, then never passes the exact one, which is at most 1.
 
     Parameters
     ----------

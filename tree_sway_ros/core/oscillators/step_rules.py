@@ -1,9 +1,10 @@
 """
 The step rules that the solver can run, each as a function of a linear oscillator's state and load.
 
-Every rule is linear in angle, rate and the moments at both ends of a step, so eight coefficients per oscillator hold
-it; the kernels apply those and do not know which rule made them. What the rules are, with order, limits and sources, is
-declared where they are studied side by side (``study/methods``).
+Every rule is linear in angle, rate and the moments at both ends of a step, so eight coefficients
+per oscillator hold it; the kernels apply those and do not know which rule made them. What the rules
+are, with order, limits and sources, is declared where they are studied side by side
+(``study/methods``).
 
 """
 
@@ -46,7 +47,10 @@ class Oscillator(NamedTuple):
 
 State = tuple[Array, Array]
 StepRule = Callable[[Array, Array, Array, Array, Oscillator], State]
-"""``(x, v, m0, m1, body) -> (x, v)`` at the end of the step, under a moment that runs from m0 to m1."""
+"""
+``(x, v, m0, m1, body) -> (x, v)`` at the end of the step, under a moment that runs from m0 to m1.
+
+"""
 
 
 def exact_foh(x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> State:
@@ -139,17 +143,24 @@ def rule_named(name: str) -> StepRule:
 
     """
     if name not in STEP_RULES:
-        raise ParameterError(f"no integrator {name!r} that the solver can run", where="integrator",
-                             cure="take one of " + ", ".join(REAL_TIME))
+        raise ParameterError(
+            f"no integrator {name!r} that the solver can run",
+            where="integrator",
+            cure="take one of " + ", ".join(REAL_TIME),
+        )
     return STEP_RULES[name]
 
 
 def rule_propagator(
     name: str, inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float
 ) -> Array:
-    """Eight coefficients per oscillator, as `propagator.propagator`, of a rule's own step, (n, 8)."""
-    i, c, k = np.broadcast_arrays(*(np.atleast_1d(np.asarray(a, float))
-                                    for a in (inertia, damping, stiffness)))
+    """
+    Eight coefficients per oscillator, as `propagator.propagator`, of a rule's own step, (n, 8).
+
+    """
+    i, c, k = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))
+    )
     body = Oscillator(i[:, None], c[:, None], k[:, None], dt)
     with np.errstate(all="ignore"):
         x0, v0, m0, m1 = np.eye(4)
@@ -188,7 +199,9 @@ def stability_limit(name: str, damping_ratio: float = 0.0) -> float:
     low, high = unstable / (scan[1] / scan[0]), unstable
     for _ in range(50):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if growth(name, middle, damping_ratio) <= slack else (low, middle)
+        low, high = (
+            (middle, high) if growth(name, middle, damping_ratio) <= slack else (low, middle)
+        )
     return float(low)
 
 
@@ -215,12 +228,13 @@ def stable_steps(
     Raises
     ------
     ParameterError
-        An unknown name, or a step beyond the rule's limit: the first oscillator that would grow, its w h and the
-        limit at its damping.
+        An unknown name, or a step beyond the rule's limit: the first oscillator that would grow,
+        its w h and the limit at its damping.
 
     """
-    i, c, k = np.broadcast_arrays(*(np.atleast_1d(np.asarray(a, float))
-                                    for a in (inertia, damping, stiffness)))
+    i, c, k = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))
+    )
     rows = rule_propagator(name, i, c, k, dt)
     if name.startswith("exact"):
         return rows
@@ -233,11 +247,14 @@ def stable_steps(
         return rows
     first = int(bad[np.argmax(k[bad] / np.maximum(i[bad], 1e-300))])
     w = float(np.sqrt(k[first] / i[first])) if i[first] > 0 else float(np.inf)
-    ratio = float(c[first] / (2.0 * np.sqrt(k[first] * i[first]))) if k[first] * i[first] > 0 else 0.0
+    ratio = (
+        float(c[first] / (2.0 * np.sqrt(k[first] * i[first]))) if k[first] * i[first] > 0 else 0.0
+    )
     limit = stability_limit(name, ratio)
     raise ParameterError(
         f"integrator {name!r} is unstable for oscillator {first}: w h is {w * dt:.3g}, its limit "
-        f"{limit:.3g} at damping ratio {ratio:.3g}", where="integrator",
+        f"{limit:.3g} at damping ratio {ratio:.3g}",
+        where="integrator",
         cure=f"take {DEFAULT}, or a step below {limit / w:.2g} s" if w > 0 else f"take {DEFAULT}",
     )
 

@@ -1,27 +1,28 @@
 """
 A branch on two axes: its force, its gyroscopic term and one guarded step of the exact propagator.
 
-The state is the rotation vector (x, y) in [rad] in the branch's own rest frame (b along the chord, e1
-and e2 across): the chord points along ``u = cos|e| b + sinc|e| (x e1 + y e2)``. In steady wind it moves
-in one plane, the paper's; when the wind turns it needs no plane and has no singular direction. With
-t = x^2 + y^2 and W the force times its lever, in [N m], Lagrange's equations on the sphere are::
+The state is the rotation vector (x, y) in [rad] in the branch's own rest frame (b along the chord,
+e1 and e2 across): the chord points along ``u = cos|e| b + sinc|e| (x e1 + y e2)``. In steady wind
+it moves in one plane, the paper's; when the wind turns it needs no plane and has no singular
+direction. With t = x^2 + y^2 and W the force times its lever, in [N m], Lagrange's equations on the
+sphere are::
 
     I (e'' - gyroscopic) + k2 e' + k1 e = true_force
     true_force = W_perp / sinc + e (e.W)(cos - 1 / sinc) / t - W_b sinc e
     gyroscopic = E L^2 e + 2 B L (-vy, vx),   L = x vy - y vx
 
-The second line of the kinetic energy, T = I/2 (|v|^2 + (sinc^2 - 1) L^2 / t), is analytic in (x, y);
-so is what follows from it, and in this form nothing is divided by t. With sinc = 1 + t s and
+The second line of the kinetic energy, T = I/2 (|v|^2 + (sinc^2 - 1) L^2 / t), is analytic in (x,
+y); so is what follows from it, and in this form nothing is divided by t. With sinc = 1 + t s and
 cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 
 **Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right to
 3e-9 up to the guard; no root, sine or cosine is taken.
-**Guard.** For these terms (x, y) is held within sinc >= .3 (2.36 rad): beyond it they are the circle's.
-The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max k1, and the
-gyroscopic term is left out where w h >= .5, where a step sees no ellipse. A bounded moment on an exact,
-stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w h)^2 between .8 and 10:
-up to there one corrector contracts, and a steady load bends the branch to the right side and angle;
-at 4 / (w h)^2 it no longer does.
+**Guard.** For these terms (x, y) is held within sinc >= .3 (2.36 rad): beyond it they are the
+circle's. The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max
+k1, and the gyroscopic term is left out where w h >= .5, where a step sees no ellipse. A bounded
+moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w
+h)^2 between .8 and 10: up to there one corrector contracts, and a steady load bends the branch to
+the right side and angle; at 4 / (w h)^2 it no longer does.
 
 """
 
@@ -71,9 +72,7 @@ def _series(t: float) -> tuple[float, float, float, float]:
 
 
 @inlined
-def true_force(
-    x: float, y: float, wb: float, w1: float, w2: float
-) -> tuple[float, float]:
+def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[float, float]:
     """
     Moment of a force on the two axes, at any deflection.
 
@@ -129,9 +128,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
 
 
 @inlined
-def limit_load(
-    wb: float, w1: float, w2: float, limit: float
-) -> tuple[float, float, float, int]:
+def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, float, float, int]:
     """
     Hold the length of a load at a limit in [N m]; the last value tells whether it was held.
 
@@ -231,9 +228,7 @@ def fill_guards(
         out[row, 2] = MOMENT_MARGIN * limit
 
 
-def guards(
-    inertia: Floats, stiffness: Floats, dt: float, load_max: float = LOAD_MAX
-) -> Floats:
+def guards(inertia: Floats, stiffness: Floats, dt: float, load_max: float = LOAD_MAX) -> Floats:
     """Guards of each branch as `fill_guards` describes them, (n, 3)."""
     out = np.empty((len(inertia), 3))
     fill_guards(inertia, stiffness, dt, load_max, out)

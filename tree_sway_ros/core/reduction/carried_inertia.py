@@ -1,9 +1,10 @@
 """
 The inertia a branch feels when what it carries gives way: what rung 2 knows of coupling.
 
-Taken as rigid, a crown makes its stem too quick, for its branches bend back as the stem accelerates. One step of inverse
-iteration from the stem's own coordinate lets them: ``q = K^-1 M e_i`` within the subtree, and Rayleigh's quotient of q is the square of
-the frequency at which branch i really swings (Rayleigh, 1877; K is diagonal but for gravity).
+Taken as rigid, a crown makes its stem too quick, for its branches bend back as the stem
+accelerates. One step of inverse iteration from the stem's own coordinate lets them: ``q = K^-1 M
+e_i`` within the subtree, and Rayleigh's quotient of q is the square of the frequency at which
+branch i really swings (Rayleigh, 1877; K is diagonal but for gravity).
 
 """
 
@@ -20,7 +21,8 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
     Inertia of each coordinate with its subtree giving way.
 
-    Both axes of a branch that carries others are taken as one, so that it does not matter how they are laid.
+    Both axes of a branch that carries others are taken as one, so that it does not matter how they
+    are laid.
 
     Parameters
     ----------

@@ -1,19 +1,20 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child rides on its parent's curve: a unit of a parent's coordinate moves everything the child carries as one
-rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum (linear, angular) of a unit rate of
-coordinate j with all that rides on it, the entries for an ancestor's coordinate i are
+A child rides on its parent's curve: a unit of a parent's coordinate moves everything the child
+carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
+(linear, angular) of a unit rate of coordinate j with all that rides on it, the entries for an
+ancestor's coordinate i are
 
     M_ij = (v, w)_i . H_j          mass
     Kg_ij = g e_z . (w_i x p_j)     gravity, p_j the linear part of H_j
 
-and depth-first order makes the j of one i a contiguous slice. Elastic stiffness couples only the shapes of
-one branch, and those are made orthogonal, so it is diagonal. Gravity acts about the rest shape, which is the
-loaded one, and only its geometric stiffness enters.
+and depth-first order makes the j of one i a contiguous slice. Elastic stiffness couples only the
+shapes of one branch, and those are made orthogonal, so it is diagonal. Gravity acts about the rest
+shape, which is the loaded one, and only its geometric stiffness enters.
 
-Symbols: N coordinates, in the order of branches, shapes, axes; T the twists of the parent's coordinates on
-each child. SI units.
+Symbols: N coordinates, in the order of branches, shapes, axes; T the twists of the parent's
+coordinates on each child. SI units.
 
 """
 
@@ -42,7 +43,8 @@ class Reduction:
     first
         First coordinate of each branch, and N at the end, (b + 1,).
     twist
-        Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root, (b, 9, 6).
+        Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
+        (b, 9, 6).
     mass, gravity
         Symmetric sparse matrices (N, N) in [kg m^2] and [N m/rad].
     elastic
@@ -165,7 +167,10 @@ class _Blocks:
 
 
 def _motions(model: BranchModel) -> tuple[Floats, Floats]:
-    """Displacement at the points (k, m, 5, 3) and twist on the children (k, c, 6) of each coordinate."""
+    """
+    Displacement at the points (k, m, 5, 3) and twist on the children (k, c, 6) of each coordinate.
+
+    """
     fields, twists = [], []
     for way in model.coordinates:
         points, _, children = way.shape.displacement(way.axis)
@@ -195,11 +200,12 @@ def _spatial_inertia(model: BranchModel) -> Floats:
 
 def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     """
-    Second-order lift of all that a branch carries, between its own coordinates, per unit of gravity.
+    Second-order lift of all that a branch carries, between its own coordinates, per unit of
+    gravity.
 
     Every piece ds turns what lies beyond it: with m the mass beyond, the entry is the integral of
-    psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each child's
-    subtree about its base takes the place of m t for the child.
+    psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each
+    child's subtree about its base takes the place of m t for the child.
 
     """
     beam = model.beam

@@ -1,9 +1,9 @@
 """
 Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
 
-Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq, Sorensen & Yang, 1998); all
-modes of a small one from the dense problem. A tree whose stiffness with its own weight is not positive buckles (Greenhill,
-1881): it is refused with the name of the branch.
+Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq,
+Sorensen & Yang, 1998); all modes of a small one from the dense problem. A tree whose stiffness with
+its own weight is not positive buckles (Greenhill, 1881): it is refused with the name of the branch.
 
 """
 
@@ -22,7 +22,11 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
 
 MOST_ALL_MODES = 3000
-"""A tree of more coordinates than this is not solved in all its modes: that takes minutes and gains nothing."""
+"""
+A tree of more coordinates than this is not solved in all its modes: that takes minutes and gains
+nothing.
+
+"""
 
 _DENSE_UP_TO = 400
 
@@ -102,7 +106,9 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
         )
     elif n <= _DENSE_UP_TO or 3 * wanted > n:
         inverse_squares, shapes = linalg.eigh(
-            reduction.mass.toarray(), reduction.stiffness.toarray(), subset_by_index=[n - wanted, n - 1]
+            reduction.mass.toarray(),
+            reduction.stiffness.toarray(),
+            subset_by_index=[n - wanted, n - 1],
         )
     else:
         stiffness = csc_matrix(reduction.stiffness)
@@ -124,8 +130,9 @@ def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
     """
     Keep the modes that loads drive most.
 
-    A mode's share in the bending energy under a static load q is ``(phi . q)^2 / w^2``; it is weighed by 1 / w, for turbulence has
-    less for the quick ones. Of modes that loads do not reach, as branches that swing against each other, nothing is lost.
+    A mode's share in the bending energy under a static load q is ``(phi . q)^2 / w^2``; it is
+    weighed by 1 / w, for turbulence has less for the quick ones. Of modes that loads do not reach,
+    as branches that swing against each other, nothing is lost.
 
     Parameters
     ----------
@@ -154,7 +161,8 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     Returns
     -------
     factor, coordinate
-        Critical weight over real weight (infinite without gravity), and the coordinate that gives way most.
+        Critical weight over real weight (infinite without gravity), and the coordinate that gives
+        way most.
 
     """
     n = reduction.n_coordinates

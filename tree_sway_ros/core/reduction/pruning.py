@@ -1,9 +1,10 @@
 """
 What is left of a tree's records when some subtrees move with what they sit on.
 
-A frozen subtree is one rigid body with its parent. Its mass has been the parent's to carry all along, so its
-coordinates are crossed out of the matrices and nothing else changes there. Its wind load joins the parent's, summed as the loads of
-pieces of one branch are. Solving then knows the moving branches alone.
+A frozen subtree is one rigid body with its parent. Its mass has been the parent's to carry all
+along, so its coordinates are crossed out of the matrices and nothing else changes there. Its wind
+load joins the parent's, summed as the loads of pieces of one branch are. Solving then knows the
+moving branches alone.
 
 Symbols: b branches, m moving ones, N and M their coordinates.
 
@@ -34,7 +35,8 @@ class Pruning:
     whole
         The tree.
     frozen
-        Branches that move with their parent, (b,); with each all that it carries, and never the stem.
+        Branches that move with their parent, (b,); with each all that it carries, and never the
+        stem.
 
     """
 
@@ -62,7 +64,10 @@ class Pruning:
 
     @property
     def place_among_moving(self) -> Ints:
-        """Index of each branch among those that move, -1 for the frozen and for no branch, (b + 1,)."""
+        """
+        Index of each branch among those that move, -1 for the frozen and for no branch, (b + 1,).
+
+        """
         place = np.full(len(self.frozen) + 1, -1, dtype=np.int64)
         place[self.moving] = np.arange(len(self.moving))
         return place
@@ -109,7 +114,8 @@ class Pruning:
 
     def branches(self, whole: Any) -> Any:
         """
-        Keep the records of the moving branches, with the load of what they now carry as part of themselves.
+        Keep the records of the moving branches, with the load of what they now carry as part of
+        themselves.
 
         Parameters
         ----------
@@ -156,8 +162,9 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     """
     Make loads that a branch carries part of its own.
 
-    Drag on a slanted piece is not linear in its projector P, but it is the slope of ``c (u . P u)^1.5 / 3`` in the wind u. The
-    projector of all is the one that comes nearest to the sum of these.
+    Drag on a slanted piece is not linear in its projector P, but it is the slope of ``c (u . P
+    u)^1.5 / 3`` in the wind u. The projector of all is the one that comes nearest to the sum of
+    these.
 
     Parameters
     ----------
@@ -196,7 +203,10 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
 
 
 def _squares(directions: Floats) -> Floats:
-    """Weights of xx, yy, zz, xy, xz, yz of a projector P in ``u . P u``, for winds u (d, 3), (d, 6)."""
+    """
+    Weights of xx, yy, zz, xy, xz, yz of a projector P in ``u . P u``, for winds u (d, 3), (d, 6).
+
+    """
     x, y, z = directions.T
     return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
 

@@ -1,9 +1,10 @@
 """
 The tree as a chain of rigid segments, solved whole: the conventional method, slow and plain.
 
-Every segment bends at one joint inside it (see `articulated_bodies`), the articulated-body algorithm gives the
-accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit (`articulated_step`). It
-stands beside the reduced model as the truth for large, coupled motion, and as the last rung of the ladder.
+Every segment bends at one joint inside it (see `articulated_bodies`), the articulated-body
+algorithm gives the accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit
+(`articulated_step`). It stands beside the reduced model as the truth for large, coupled motion, and
+as the last rung of the ladder.
 
 """
 
@@ -33,7 +34,11 @@ RIGID_TWIST = 1e3
 """Stiffness in twist over that in bending by which joints hardly twist."""
 
 FASTEST_DECAY = 15.0
-"""Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of 1/60 s."""
+"""
+Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of 1/60
+s.
+
+"""
 
 
 class ArticulatedTree:
@@ -47,8 +52,8 @@ class ArticulatedTree:
     modulus, density
         Young's modulus in [Pa] and density in [kg/m^3] of the green wood.
     damping_ratio
-        Of each of the lowest `damped_modes` in [-]; above them the ratio grows with the frequency, as by dampers
-        in proportion to the springs. Not used where `rayleigh` is given.
+        Of each of the lowest `damped_modes` in [-]; above them the ratio grows with the frequency,
+        as by dampers in proportion to the springs. Not used where `rayleigh` is given.
     drag_coefficient, drag_exponent
         C and N of Cd = C U^-N.
     gravity
@@ -58,7 +63,8 @@ class ArticulatedTree:
     twist_ratio
         Stiffness of the joints in twist over that in bending, GJ/EI; by default they hardly twist.
     damped_modes
-        How many modes get the same damping ratio, fewer where they would decay faster than `FASTEST_DECAY`.
+        How many modes get the same damping ratio, fewer where they would decay faster than
+        `FASTEST_DECAY`.
     rayleigh
         Coefficients of damping by mass in [1/s] and by stiffness in [s].
     wind_factor
@@ -97,7 +103,9 @@ class ArticulatedTree:
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
         self._gravity = gravity
         if rayleigh is None:
-            by_mass, by_stiffness, by_mode, momentum = self._even_damping(damping_ratio, damped_modes)
+            by_mass, by_stiffness, by_mode, momentum = self._even_damping(
+                damping_ratio, damped_modes
+            )
         else:
             by_mass, by_stiffness = float(rayleigh[0]), float(rayleigh[1])
             by_mode, momentum = np.zeros(0), np.zeros((0, n, 3))
@@ -154,7 +162,14 @@ class ArticulatedTree:
         self._place_bodies()
         _, start, end = self._nodes
         pose_block(
-            self.bodies, self.state.turn, self._rest, self._rotation, start, end, self.subdivisions, out
+            self.bodies,
+            self.state.turn,
+            self._rest,
+            self._rotation,
+            start,
+            end,
+            self.subdivisions,
+            out,
         )
         return out
 
@@ -173,7 +188,11 @@ class ArticulatedTree:
         return modes.frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]
 
     def _even_damping(self, ratio: float, count: int) -> tuple[float, float, Floats, Floats]:
-        """By stiffness so much that the last of these modes has the ratio, and the rest to each below it."""
+        """
+        By stiffness so much that the last of these modes has the ratio, and the rest to each below
+        it.
+
+        """
         modes = joint_modes(self.bodies, self._gravity, count)
         circular = 2.0 * math.pi * modes.frequency
         slow = max(1, int(np.sum(ratio * circular <= FASTEST_DECAY)))

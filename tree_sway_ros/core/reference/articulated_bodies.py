@@ -1,12 +1,12 @@
 """
 Rigid bodies and springs that stand for a tree: hinges inside the segments.
 
-Rigid finite elements (Wittbrodt, Adamiec-Wojcik & Wojciech 2006, chapter 2): the bending of a segment is
-gathered in one ball joint of stiffness ``1 / integral(ds / EI)`` at the centroid of ``ds / EI``, which is
-the middle where it does not taper, and body i is what lies between the joints: the tip's part of segment
-i and the root's parts of all that sit on it. The tangent at a fork then is the same for all who meet there,
-and frequencies converge with the square of the length of the segments; joints at the nodes would be a
-power slower wherever a branch forks.
+Rigid finite elements (Wittbrodt, Adamiec-Wojcik & Wojciech 2006, chapter 2): the bending of a
+segment is gathered in one ball joint of stiffness ``1 / integral(ds / EI)`` at the centroid of ``ds
+/ EI``, which is the middle where it does not taper, and body i is what lies between the joints: the
+tip's part of segment i and the root's parts of all that sit on it. The tangent at a fork then is
+the same for all who meet there, and frequencies converge with the square of the length of the
+segments; joints at the nodes would be a power slower wherever a branch forks.
 
 """
 
@@ -134,7 +134,9 @@ def _part_moments(
     mass, first = line.sum(axis=2), (line * reach).sum(axis=2)
     second, disc = (line * reach**2).sum(axis=2), (line * diameter**2 / 16.0).sum(axis=2)
     along = np.einsum("ni,nj->nij", axis, axis)[:, None]
-    tensor = second[..., None, None] * (np.eye(3) - along) + disc[..., None, None] * (np.eye(3) + along)
+    tensor = second[..., None, None] * (np.eye(3) - along) + disc[..., None, None] * (
+        np.eye(3) + along
+    )
     return mass, first[..., None] * axis[:, None], tensor
 
 

@@ -1,9 +1,9 @@
 """
 The articulated-body algorithm for a tree of ball joints, forward and back in O(n).
 
-Featherstone (2008), Rigid Body Dynamics Algorithms, section 7.3, in world axes and with moments taken
-about each body's own joint. The articulated inertia of a body is three blocks (3, 3): with n and f the moment
-and force that its joint passes, alpha and a the accelerations there,
+Featherstone (2008), Rigid Body Dynamics Algorithms, section 7.3, in world axes and with moments
+taken about each body's own joint. The articulated inertia of a body is three blocks (3, 3): with n
+and f the moment and force that its joint passes, alpha and a the accelerations there,
 
     n = A alpha + B a + n0,   f = B^T alpha + C a + f0.
 
@@ -256,7 +256,10 @@ def _shift(
     d: Vector, A: Floats, B: Floats, C: Floats, first: Floats, second: Floats,
     to_A: Floats, to_B: Floats, to_C: Floats,
 ) -> None:  # fmt: skip
-    """Add an inertia to one whose point lies back by d: B + d x C, and A + d x B^T - (B + d x C) d x."""
+    """
+    Add an inertia to one whose point lies back by d: B + d x C, and A + d x B^T - (B + d x C) d x.
+
+    """
     cross_columns(d, C, first)
     for j in range(3):
         for k in range(3):

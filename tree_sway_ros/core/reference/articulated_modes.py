@@ -1,7 +1,8 @@
 """
 Linear modes of the articulated tree: mass and stiffness of its joints at rest.
 
-Both matrices couple a joint with those it rides on and those that ride on it only, so they are sparse.
+Both matrices couple a joint with those it rides on and those that ride on it only, so they are
+sparse.
 
 """
 
@@ -99,8 +100,8 @@ def joint_stiffness(bodies: Bodies, gravity: float) -> Any:
     """
     Stiffness matrix of the joints' rotations at rest in [N m/rad], sparse (3 n, 3 n).
 
-    Gravity's part is the second variation of the height of the masses, each joint turned in the axes its
-    carrier has turned already, with the springs' share in holding the rest shape.
+    Gravity's part is the second variation of the height of the masses, each joint turned in the
+    axes its carrier has turned already, with the springs' share in holding the rest shape.
 
     """
     twist = np.einsum("ni,nj->nij", bodies.axis, bodies.axis)
@@ -110,7 +111,8 @@ def joint_stiffness(bodies: Bodies, gravity: float) -> Any:
         _, lever, _ = _composite(bodies)
         weight = np.array([0.0, 0.0, -gravity])
         for i, arm in enumerate(lever):
-            # Potential -W . (a x (b x r)) of a joint a below and a joint b; half of it for one alone.
+            # Potential -W . (a x (b x r)) of a joint a below and a joint b; half of it for one
+            # alone.
             second = np.dot(weight, arm) * np.eye(3) - np.outer(arm, weight)
             own[i] = own[i] + 0.5 * (second + second.T)
             k = int(bodies.carrier[i])

@@ -48,7 +48,10 @@ def place_bodies(
             rotation[i], place, back = own, arm, axis
         else:
             product(rotation[p], own, rotation[i])
-            place, back = plus(read(joint, p), times(rotation[p], arm), 1.0), times(rotation[p], axis)
+            place, back = (
+                plus(read(joint, p), times(rotation[p], arm), 1.0),
+                times(rotation[p], axis),
+            )
         write(joint, i, place)
         write(start, i, plus(place, back, -bodies.reach[i, 0]))
         write(end, i, plus(place, times(rotation[i], axis), bodies.reach[i, 1]))

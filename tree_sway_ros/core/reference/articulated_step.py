@@ -1,9 +1,10 @@
 """
-One step of the articulated tree: springs and dampers implicit, everything else explicit, second order.
+One step of the articulated tree: springs and dampers implicit, everything else explicit, second
+order.
 
-ROS2 of Verwer, Spee, Blom & Hundsdorfer (1999), a Rosenbrock method of order two whatever the Jacobian,
-L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, each of its own joint only,
-so that (1 - gamma h A) costs no more than some inertia added to each joint:
+ROS2 of Verwer, Spee, Blom & Hundsdorfer (1999), a Rosenbrock method of order two whatever the
+Jacobian, L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, each of its
+own joint only, so that (1 - gamma h A) costs no more than some inertia added to each joint:
 
     (M + gamma h C + gamma^2 h^2 K) k = f - gamma h K w.
 
@@ -78,7 +79,11 @@ class Laws(NamedTuple):
 
 
 class State(NamedTuple):
-    """Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body axes."""
+    """
+    Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body
+    axes.
+
+    """
 
     turn: Floats
     rate: Floats
@@ -225,9 +230,7 @@ def respond(
     move(bodies, room.matrix, rate, motion)
     load(bodies, motion, laws.gravity, laws.mass_damping, articulation)
     push_drag(bodies, motion, laws, wind, articulation)
-    accelerate(
-        bodies, motion, room.torque, room.twist_axis, implicit * late, articulation, out
-    )
+    accelerate(bodies, motion, room.torque, room.twist_axis, implicit * late, articulation, out)
 
 
 @kernel

@@ -84,7 +84,9 @@ def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:
     """
     t, v = np.asarray(time, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
     slope = np.diff(v, axis=0) / np.diff(t)[:, None]
-    whole = np.vstack([np.zeros(3), np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)])
+    whole = np.vstack(
+        [np.zeros(3), np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)]
+    )
     edge = t[0] + dt * np.arange(int((t[-1] - t[0]) / dt + 1e-9) + 1)
     k = np.clip(np.searchsorted(t, edge, side="right") - 1, 0, len(slope) - 1)
     past = (edge - t[k])[:, None]
@@ -96,8 +98,8 @@ def tip_error(tree: Tree, tips: Floats, truth: Floats) -> float:
     """
     Tip error over tip motion in [-].
 
-    Root mean square over time and tips of the distance between the two, over that of the true tips from
-    rest: a model that does not move at all scores 1.
+    Root mean square over time and tips of the distance between the two, over that of the true tips
+    from rest: a model that does not move at all scores 1.
 
     Parameters
     ----------

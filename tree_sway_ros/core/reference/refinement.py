@@ -14,7 +14,8 @@ def refined(tree: Tree, pieces: int) -> Tree:
     """
     Cut every segment of a tree in this many equal pieces.
 
-    Piece j of segment i becomes segment ``pieces * i + j``. A branch goes on sitting at the same point.
+    Piece j of segment i becomes segment ``pieces * i + j``. A branch goes on sitting at the same
+    point.
 
     """
     if pieces == 1:

@@ -1,4 +1,8 @@
-"""Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is allocated."""
+"""
+Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is
+allocated.
+
+"""
 
 from __future__ import annotations
 
@@ -98,7 +102,10 @@ def inverse(m: Floats, out: Floats) -> None:
 
 @kernel
 def turn_on(q: Any, v: Vector, out: Any) -> None:
-    """Turn a quaternion wxyz (4,) on by a rotation vector in its own axes in [rad], to unit length."""
+    """
+    Turn a quaternion wxyz (4,) on by a rotation vector in its own axes in [rad], to unit length.
+
+    """
     square = dot(v, v)
     half = 0.5 * math.sqrt(square)
     factor = 0.5 - square / 48.0 if square < 1e-6 else math.sin(half) / (2.0 * half)
@@ -153,7 +160,8 @@ def held_torque(v: Vector, torque: Vector) -> Vector:
     """
     Torque in body axes whose work over rotation vectors v is that of a constant one.
 
-    That is ``J^-T torque`` with J the right Jacobian of the exponential map (Chirikjian 2012, 10.86).
+    That is ``J^-T torque`` with J the right Jacobian of the exponential map (Chirikjian 2012,
+    10.86).
 
     """
     square = dot(v, v)

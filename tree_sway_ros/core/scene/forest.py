@@ -1,8 +1,9 @@
 """
 Several trees in one wind, solved one after another and placed in one block.
 
-Every tree is turned and moved to where it stands once, before it is calibrated, so that no wind need be turned
-into its frame and no pose out of it. The gusts reach one tree after the other (`gust_travel`).
+Every tree is turned and moved to where it stands once, before it is calibrated, so that no wind
+need be turned into its frame and no pose out of it. The gusts reach one tree after the other
+(`gust_travel`).
 
 """
 
@@ -38,16 +39,19 @@ class Forest:
     settings
         How they are modelled, but for those with settings of their own.
     fidelity
-        Model of trees without settings of their own, as of `make_simulator`; the rung of the settings if None.
+        Model of trees without settings of their own, as of `make_simulator`; the rung of the
+        settings if None.
     tolerance
-        Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on its own.
+        Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on
+        its own.
     leaf_on
         Whether trees that do not say bear leaves.
     anemometer
-        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind reaches first
-        if None (`GustHistory`).
+        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind
+        reaches first if None (`GustHistory`).
     convection_ratio
-        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind everywhere.
+        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
+        everywhere.
     **changes
         Fields of the settings, as keywords.
 
@@ -154,7 +158,9 @@ class Forest:
         """
         if name not in self.names:
             known = ", ".join(self.names)
-            raise ParameterError(f"no tree is called '{name}'", where="forest", cure=f"use one of: {known}")
+            raise ParameterError(
+                f"no tree is called '{name}'", where="forest", cure=f"use one of: {known}"
+            )
         return self._slices[self.names.index(name)]
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -200,12 +206,14 @@ class Forest:
         Parameters
         ----------
         out
-            Where to write, (n, 7) float64; an array of the forest's own, used again each time, if None.
+            Where to write, (n, 7) float64; an array of the forest's own, used again each time, if
+            None.
 
         Returns
         -------
         Floats
-            Pose block of all trees, one after another, in the frame of the forest; see `SwaySimulator.place`.
+            Pose block of all trees, one after another, in the frame of the forest; see
+            `SwaySimulator.place`.
 
         """
         poses = self._poses if out is None else out

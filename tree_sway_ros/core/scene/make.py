@@ -85,7 +85,8 @@ def make_simulator(
     tolerance
         Largest error of the tips in [m] that ``auto`` may allow itself.
     budget
-        Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the tolerance; 0 for none.
+        Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the
+        tolerance; 0 for none.
     **changes
         Fields of the settings.
 

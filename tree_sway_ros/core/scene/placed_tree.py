@@ -68,7 +68,10 @@ class StandingTree:
             )
 
     def placed(self) -> Tree:
-        """Return the tree where it stands, in the frame of the forest, under its name in the forest."""
+        """
+        Return the tree where it stands, in the frame of the forest, under its name in the forest.
+
+        """
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         root, here = self.tree.start[0], np.array([self.x, self.y, self.z])
@@ -122,7 +125,8 @@ def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
     Returns
     -------
     Tree
-        All segments one tree after another, names as ``tree/branch``. It has several roots, so it cannot be solved.
+        All segments one tree after another, names as ``tree/branch``. It has several roots, so it
+        cannot be solved.
 
     Raises
     ------

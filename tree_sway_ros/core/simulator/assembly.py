@@ -174,7 +174,8 @@ class CalibratedTree:
         rung
             One of `RUNGS`.
         n_modes
-            How many modes the rung ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if None.
+            How many modes the rung ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if
+            None.
 
         Raises
         ------
@@ -225,7 +226,9 @@ class CalibratedTree:
     @cached_property
     def coupled(self) -> Layer:
         """Branches that carry their children, those of the enriched ones with further shapes."""
-        return self._reduced(carries=True, enriched=enriched_branches(self.tree, self.settings.enrich))
+        return self._reduced(
+            carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
+        )
 
     def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
         tree, species, settings = self.tree, self.species, self.settings

@@ -1,5 +1,6 @@
 """
-A calibrated tree some of whose branches move with their parents: the rungs between one rung and the next.
+A calibrated tree some of whose branches move with their parents: the rungs between one rung and the
+next.
 
 """
 
@@ -23,7 +24,8 @@ class PartlyFrozenTree(CalibratedTree):
     whole
         The tree, calibrated; its layers are shared.
     frozen
-        Branches that move with their parent, (b,); with each, all that it carries, and never the stem.
+        Branches that move with their parent, (b,); with each, all that it carries, and never the
+        stem.
 
     """
 

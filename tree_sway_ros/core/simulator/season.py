@@ -23,7 +23,8 @@ def in_season(
     """
     Return settings for a tree with its leaves on or off.
 
-    Leaves add mass and area to their branches, damp them as the species in leaf, and let the crown streamline.
+    Leaves add mass and area to their branches, damp them as the species in leaf, and let the crown
+    streamline.
 
     Parameters
     ----------

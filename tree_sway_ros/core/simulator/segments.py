@@ -1,7 +1,9 @@
 """
-Rung 5, `segments`: every segment solved, the conventional method, behind the same face as the reduced tree.
+Rung 5, `segments`: every segment solved, the conventional method, behind the same face as the
+reduced tree.
 
-It is there to compare with, and for a scene that has the time: its steps are many times as dear (`tree-sway chart cost`).
+It is there to compare with, and for a scene that has the time: its steps are many times as dear
+(`tree-sway chart cost`).
 
 """
 
@@ -47,7 +49,9 @@ class SegmentsSimulator:
         """Set the springs of every joint."""
         if settings.leaf_mass is not None or settings.leaf_area is not None:
             raise ParameterError(
-                "leaves on rung 'segments'", where="fidelity", cure="leave them out or use 'coupled'"
+                "leaves on rung 'segments'",
+                where="fidelity",
+                cure="leave them out or use 'coupled'",
             )
         if settings.stiffness != "beam":
             raise ParameterError(
@@ -80,7 +84,9 @@ class SegmentsSimulator:
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut."""
         if not (math.isfinite(dt) and dt > 0.0):
-            raise ParameterError(f"time step of {dt} s", where="step", cure="give a finite one above 0")
+            raise ParameterError(
+                f"time step of {dt} s", where="step", cure="give a finite one above 0"
+            )
         wind = np.asarray(wind_mean, dtype=np.float64)
         status = OK
         if np.abs(wind).max() < 1e9 and np.linalg.norm(wind) <= self.settings.max_wind:
@@ -117,4 +123,3 @@ class SegmentsSimulator:
         self._model.reset()
         self.wind[:] = 0.0
         self.place()
-

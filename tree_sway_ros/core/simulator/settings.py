@@ -46,13 +46,14 @@ class SimulatorSettings:
     profile
         Wind over height.
     integrator
-        Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be unstable
-        is refused at the first step.
+        Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be
+        unstable is refused at the first step.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
-        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``: ``none``, the ``stem``, the
-        ``limbs`` (stem and all branches that carry branches with branches), all ``carriers`` of others, or ``all``.
+        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``:
+        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
+        branches), all ``carriers`` of others, or ``all``.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,).
     max_wind

@@ -140,7 +140,10 @@ class SwaySimulator:
         return self._bank.mass
 
     def frequencies(self, count: int = 10) -> Floats:
-        """Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer."""
+        """
+        Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
+
+        """
         return self._bank.frequencies[:count]
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -150,15 +153,16 @@ class SwaySimulator:
         Parameters
         ----------
         wind_mean
-            Mean of the wind over the step at the anemometer's height, the way the air goes, in [m/s], (3,).
+            Mean of the wind over the step at the anemometer's height, the way the air goes, in
+            [m/s], (3,).
         dt
             Length of the step in [s].
 
         Returns
         -------
         int
-            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept) and `LOAD_HELD` (a load beyond
-            what the model follows was held at its limit).
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept) and
+            `LOAD_HELD` (a load beyond what the model follows was held at its limit).
 
         Raises
         ------
@@ -193,12 +197,14 @@ class SwaySimulator:
         Parameters
         ----------
         out
-            Where to write, (n, 7) float64; an array of the simulator's own, used again each time, if None.
+            Where to write, (n, 7) float64; an array of the simulator's own, used again each time,
+            if None.
 
         Returns
         -------
         Floats
-            Pose block: x y z of each segment's root-side node in [m], quaternion x y z w, x axis along the segment.
+            Pose block: x y z of each segment's root-side node in [m], quaternion x y z w, x axis
+            along the segment.
 
         """
         poses = self._poses if out is None else out
@@ -224,7 +230,11 @@ class SwaySimulator:
 
     @property
     def base_moment(self) -> Floats:
-        """Moment of the last step's wind about the root node, of all branches where they stand at rest, in [N m], (3,)."""
+        """
+        Moment of the last step's wind about the root node, of all branches where they stand at
+        rest, in [N m], (3,).
+
+        """
         centre, force = self._bank.branches["centre"], self._bank.oscillators.work["force"]
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment

@@ -2,8 +2,8 @@
 From segments in any order to a `Tree`: check, infer what is missing, group, order depth-first.
 
 The input is the paper's: start point, end point and thickness of each segment (Kanda & Ohya, 3.1).
-Parents may be given; if not, a segment sits on the one whose end node is where it starts. Branches may
-be given; if not, the thickest child that goes on from a segment's end continues its branch.
+Parents may be given; if not, a segment sits on the one whose end node is where it starts. Branches
+may be given; if not, the thickest child that goes on from a segment's end continues its branch.
 
 """
 
@@ -44,8 +44,8 @@ def tree_from_segments(
     parent
         Segment that each one sits on, -1 for the root, (n,); inferred from the nodes if None.
     branch
-        Branch key of each segment, any integers, (n,); inferred if None. Segments of one branch must
-        be one chain.
+        Branch key of each segment, any integers, (n,); inferred if None. Segments of one branch
+        must be one chain.
     branch_names
         Names by sorted branch key; ``stem``, ``b1`` ... in depth-first order if None.
     name, species
@@ -156,7 +156,10 @@ def _integers(values: ArrayLike, n: int, what: str) -> Ints:
 
 
 def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
-    """Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size."""
+    """
+    Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size.
+
+    """
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
     # Two are asked for, as the end nearest to the start of a very short root is its own.
     distance, index = cKDTree(ends).query(starts, k=2, distance_upper_bound=1e-4 * extent)
@@ -204,7 +207,10 @@ def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
 def _branches_by_continuation(
     starts: Floats, ends: Floats, diameters: Floats, parents: Ints, depth_order: Ints
 ) -> Ints:
-    """Number branches: at each node the thickest child goes on with the branch, straightest on a tie."""
+    """
+    Number branches: at each node the thickest child goes on with the branch, straightest on a tie.
+
+    """
     n = len(parents)
     direction = ends - starts
     direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -212,9 +218,9 @@ def _branches_by_continuation(
     best: dict[int, tuple[float, float]] = {}
     for child in depth_order:
         its_parent = int(parents[child])
-        if its_parent < 0 or np.linalg.norm(starts[child] - ends[its_parent]) > 0.5 * np.linalg.norm(
-            ends[its_parent] - starts[its_parent]
-        ):
+        if its_parent < 0 or np.linalg.norm(
+            starts[child] - ends[its_parent]
+        ) > 0.5 * np.linalg.norm(ends[its_parent] - starts[its_parent]):
             continue
         rank = (float(diameters[child, 0]), float(direction[child] @ direction[its_parent]))
         if its_parent not in best or rank > best[its_parent]:

@@ -1,9 +1,10 @@
 """
 A tree cut anew: its branches in more or fewer segments, its shape and its motion the same.
 
-A branch moves as one body of few coordinates, so how finely it is cut decides how smoothly it is drawn and not how it
-sways (Kanda & Ohya, 3.2). Finer cuts only split segments and keep every node. Coarser cuts stand evenly along the branch
-and take the corners between them off. What a branch carries stays where it is, at the same place along it.
+A branch moves as one body of few coordinates, so how finely it is cut decides how smoothly it is
+drawn and not how it sways (Kanda & Ohya, 3.2). Finer cuts only split segments and keep every node.
+Coarser cuts stand evenly along the branch and take the corners between them off. What a branch
+carries stays where it is, at the same place along it.
 
 """
 
@@ -45,7 +46,8 @@ def resegment(
     Raises
     ------
     ParameterError
-        If not just one of the two is given, or it asks for less than 1 or more than `MOST_SEGMENTS` a branch.
+        If not just one of the two is given, or it asks for less than 1 or more than `MOST_SEGMENTS`
+        a branch.
 
     """
     counts = _wished(tree, segments_per_branch, max_segment_length)
@@ -91,7 +93,9 @@ def _wished(tree: Tree, number: int | None, longest: float | None) -> Ints:
     most = float(wished.max())
     if not (1.0 <= float(wished.min()) and most <= MOST_SEGMENTS):
         raise ParameterError(
-            f"{most:g} segments in a branch", where="resegment", cure=f"ask for 1 to {MOST_SEGMENTS}"
+            f"{most:g} segments in a branch",
+            where="resegment",
+            cure=f"ask for 1 to {MOST_SEGMENTS}",
         )
     return wished.astype(np.int64)
 
@@ -100,8 +104,8 @@ def _cuts(tree: Tree, branch: int, count: int) -> Floats:
     """
     Where a branch is cut.
 
-    Places are counted in its old segments: 2.25 is a quarter along the third. That is exact at the nodes, where
-    arc lengths would not be.
+    Places are counted in its old segments: 2.25 is a quarter along the third. That is exact at the
+    nodes, where arc lengths would not be.
 
     """
     length = tree.length[tree.segments_of(branch)]
@@ -134,7 +138,8 @@ def _pieces(tree: Tree, branch: int, cuts: Floats) -> tuple[Floats, Floats, Floa
     starts = start[after] + u[:, None] * (end - start)[after]
     ends = end[before] - (1.0 - v)[:, None] * (end - start)[before]
     diameters = np.stack(
-        [base[after] + u * (tip - base)[after], tip[before] - (1.0 - v) * (tip - base)[before]], axis=1
+        [base[after] + u * (tip - base)[after], tip[before] - (1.0 - v) * (tip - base)[before]],
+        axis=1,
     )
     return starts, ends, diameters
 

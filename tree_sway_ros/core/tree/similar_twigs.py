@@ -1,8 +1,9 @@
 """
 Twigs that copy: of many alike, the necessary few are solved and the others reuse their solution.
 
-The paper's rule (Kanda & Ohya, 3.3) made definite: a branch of one segment that carries nothing copies another such on the
-same parent whose length, thickness and direction agree with its own to a tolerance.
+The paper's rule (Kanda & Ohya, 3.3) made definite: a branch of one segment that carries nothing
+copies another such on the same parent whose length, thickness and direction agree with its own to a
+tolerance.
 
 """
 
@@ -23,8 +24,8 @@ def twig_sources(tree: Tree, tolerance: float) -> Ints:
     tree
         The tree.
     tolerance
-        Relative difference in length and diameter, and angle between directions in [rad], up to which two twigs
-        are alike; 0 copies only equals, a negative one nothing.
+        Relative difference in length and diameter, and angle between directions in [rad], up to
+        which two twigs are alike; 0 copies only equals, a negative one nothing.
 
     Returns
     -------

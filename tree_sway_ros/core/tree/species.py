@@ -1,10 +1,11 @@
 """
 What a tree is made of: wood, damping and drag of each species, with the sources.
 
-Modulus and density are of green wood: ForestGALES species tables, the BIOMASS wood density table and the
-field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 and 20 m/s: Mayhead (1973) for conifers,
-Vollsinger et al. (2005) for broadleaves. Ash, sycamore, walnut, Ficus and a broadleaf of no known species
-take the mean of the three measured broadleaves, Goldcrest takes spruce's. Entries marked as estimates have no measurement behind them.
+Modulus and density are of green wood: ForestGALES species tables, the BIOMASS wood density table
+and the field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 and 20 m/s: Mayhead
+(1973) for conifers, Vollsinger et al. (2005) for broadleaves. Ash, sycamore, walnut, Ficus and a
+broadleaf of no known species take the mean of the three measured broadleaves, Goldcrest takes
+spruce's. Entries marked as estimates have no measurement behind them.
 
 """
 
@@ -36,10 +37,12 @@ class Species:
     drag_exponent
         N of the drag law in [-]: how much the crown streamlines.
     bare_drag_coefficient
-        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, .82 to 1.2.
+        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, .82 to
+        1.2.
     shear_ratio
-        Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood is nearer to
-        1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the twist of stems alone.
+        Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
+        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the twist
+        of stems alone.
     is_estimate
         True where modulus or density is a guess to be calibrated.
 
@@ -73,11 +76,15 @@ _TABLE = {
     for s in (
         _with_broadleaf_drag("benjamina", "Ficus benjamina", 8.3e9, 950.0, is_estimate=True),
         _with_spruce_drag("goldcrest", _GOLDCREST, 6.0e9, 950.0, is_estimate=True),
-        _with_broadleaf_drag("broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True),
+        _with_broadleaf_drag(
+            "broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True
+        ),
         _with_spruce_drag("spruce", "Norway spruce", 6.3e9, 850.0),
         _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0),
         Species("pine", "Scots pine", 7.3e9, 850.0, drag_coefficient=3.07, drag_exponent=0.75),
-        Species("douglas_fir", "Douglas-fir", 8.3e9, 850.0, drag_coefficient=2.40, drag_exponent=0.70),
+        Species(
+            "douglas_fir", "Douglas-fir", 8.3e9, 850.0, drag_coefficient=2.40, drag_exponent=0.70
+        ),
         Species("birch", "birch", 9.9e9, 900.0, drag_coefficient=1.9627, drag_exponent=0.881),
         Species("oak", "oak", 9.4e9, 1010.0, drag_coefficient=2.6575, drag_exponent=0.846),
         Species("beech", "beech", 9.8e9, 1158.0, drag_coefficient=2.4141, drag_exponent=0.904),

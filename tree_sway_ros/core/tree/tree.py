@@ -2,8 +2,8 @@
 The tree: read-only arrays of segments, grouped in branches, in depth-first order.
 
 Order is the data structure here. Segments of a branch are contiguous; branches stand in depth-first
-order, so that a branch comes after its parent and everything it carries is one contiguous slice. Sums
-over subtrees are then one backward pass and joining from the root is one forward pass.
+order, so that a branch comes after its parent and everything it carries is one contiguous slice.
+Sums over subtrees are then one backward pass and joining from the root is one forward pass.
 
 Symbols: n segments, b branches. SI units; z points up, the frame is ENU (REP-103).
 

@@ -1,14 +1,15 @@
 """
 From samples of a sensor to what a solver needs: the mean of the wind over each of its steps.
 
-The samples become a curve. `linear` joins them by straight lines, which can be drawn only once the next
-sample is there: the curve runs one sensor period late, and later still by as much as samples are seen to
-arrive after the solver has passed their stamp. `hold` keeps each sample until the next. The solver gets the
-exact mean of the curve over its step, which keeps second order where a sample of it would not.
+The samples become a curve. `linear` joins them by straight lines, which can be drawn only once the
+next sample is there: the curve runs one sensor period late, and later still by as much as samples
+are seen to arrive after the solver has passed their stamp. `hold` keeps each sample until the next.
+The solver gets the exact mean of the curve over its step, which keeps second order where a sample
+of it would not.
 
-What the solver has been given is never redrawn, so that nothing jumps in `linear`, whatever comes late,
-early or not at all: a short dropout is held; a long one decays to calm; the first sample after either is
-faded in. Times are those of one clock, handed in by the caller; it may jump.
+What the solver has been given is never redrawn, so that nothing jumps in `linear`, whatever comes
+late, early or not at all: a short dropout is held; a long one decays to calm; the first sample
+after either is faded in. Times are those of one clock, handed in by the caller; it may jump.
 
 """
 
@@ -29,7 +30,10 @@ Floats = NDArray[np.float64]
 INTERPOLATIONS = ("linear", "hold")
 
 CLOCK_RESET = 1.0
-"""Backward step in [s] that is a clock set back, not a sample out of order or a look at the past."""
+"""
+Backward step in [s] that is a clock set back, not a sample out of order or a look at the past.
+
+"""
 
 _CALM: Vector = (0.0, 0.0, 0.0)
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
@@ -48,8 +52,8 @@ class WindAverage:
     decay
         Time constant in [s] with which the wind then dies down.
     blend
-        Longest time in [s] over which the first sample after a dropout is faded in; a dropout shorter
-        than that fades in over its own length.
+        Longest time in [s] over which the first sample after a dropout is faded in; a dropout
+        shorter than that fades in over its own length.
     capacity
         Number of samples kept. A step must not span more.
 

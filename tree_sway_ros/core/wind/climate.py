@@ -1,8 +1,8 @@
 """
 The wind of the last while in a few numbers: what a choice of model needs to know of it.
 
-A load goes with ``|U| U``. Its mean and covariance are taken in the plane; how it is spread over frequencies is
-von Karman's longitudinal spectrum (von Karman, 1948) of the wind's integral time.
+A load goes with ``|U| U``. Its mean and covariance are taken in the plane; how it is spread over
+frequencies is von Karman's longitudinal spectrum (von Karman, 1948) of the wind's integral time.
 
 """
 
@@ -75,7 +75,8 @@ class WindClimate:
         mean_speed
             In [m/s].
         intensity
-            Standard deviation over mean of the along-wind speed in [-]; across it .8 of that (IEC 61400-1).
+            Standard deviation over mean of the along-wind speed in [-]; across it .8 of that (IEC
+            61400-1).
         bearing
             Angle of the mean from x towards y in [rad].
         integral_time
@@ -92,7 +93,11 @@ class WindClimate:
         )
 
     def spectrum(self, frequencies: Floats) -> Floats:
-        """Share of the variance per frequency in [1/Hz], of integral 1; (f,) for frequencies (f,) in [Hz]."""
+        """
+        Share of the variance per frequency in [1/Hz], of integral 1; (f,) for frequencies (f,) in
+        [Hz].
+
+        """
         x = frequencies * self.integral_time
         share: Floats = 4.0 * self.integral_time / (1.0 + 70.8 * x * x) ** (5.0 / 6.0)
         return share
@@ -116,7 +121,10 @@ class ClimateTracker:
         self._x = self._y = self._xx = self._xy = self._yy = 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
-        """Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step."""
+        """
+        Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step.
+
+        """
         u, v, w = wind.tolist()
         speed = math.sqrt(u * u + v * v + w * w)
         x, y = speed * u, speed * v

@@ -12,7 +12,8 @@ Vector = tuple[float, float, float]
 
 class WindCurve:
     """
-    Straight lines (or steps) through the newest knots; before the first and after the last it is level.
+    Straight lines (or steps) through the newest knots; before the first and after the last it is
+    level.
 
     Parameters
     ----------
@@ -55,7 +56,10 @@ class WindCurve:
         self._knots.append((time, value))
 
     def cut(self, time: float) -> None:
-        """Drop what comes after a time in [s], and be level from there: the past stays as it was."""
+        """
+        Drop what comes after a time in [s], and be level from there: the past stays as it was.
+
+        """
         if self._knots and self.end > time:
             value = self.value(time)
             while self._knots and self._knots[-1][0] >= time:

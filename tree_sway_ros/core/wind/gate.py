@@ -1,14 +1,15 @@
 """
 The gate that a wind sample passes: faults are refused and counted, true gusts and steps get in.
 
-A sample is refused if it is not finite, faster than any wind for which the model holds, or too far from
-the last good one. Too far is a rate of change times the time between the two, plus what the small eddies
-change between any two samples: in the inertial subrange increments grow as the cube root of time, so that
-a rate alone refuses the good samples of a fast sensor in a strong wind (20 m/s^2: 39 % at 20 Hz in
-12 m/s). What stays away for `longest_refusal` is no spike but a step, and is let in.
+A sample is refused if it is not finite, faster than any wind for which the model holds, or too far
+from the last good one. Too far is a rate of change times the time between the two, plus what the
+small eddies change between any two samples: in the inertial subrange increments grow as the cube
+root of time, so that a rate alone refuses the good samples of a fast sensor in a strong wind (20
+m/s^2: 39 % at 20 Hz in 12 m/s). What stays away for `longest_refusal` is no spike but a step, and
+is let in.
 
-Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival, much older
-than it, a duplicate, out of order) is counted and the time of arrival stands in for it.
+Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival,
+much older than it, a duplicate, out of order) is counted and the time of arrival stands in for it.
 
 """
 
@@ -23,9 +24,21 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.checks import three_numbers, within
 
-# What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics 0x8000,
-# which is 327.68 where the count is .01 m/s.
-SENTINELS = (999.0, 999.9, 999.99, 6999.0, 7999.0, 9999.0, 99999.0, 32767.0, 32768.0, 327.67, 327.68)
+# What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
+# 0x8000, which is 327.68 where the count is .01 m/s.
+SENTINELS = (
+    999.0,
+    999.9,
+    999.99,
+    6999.0,
+    7999.0,
+    9999.0,
+    99999.0,
+    32767.0,
+    32768.0,
+    327.67,
+    327.68,
+)
 
 FUTURE_TOLERANCE = 0.5
 """How far a stamp may be ahead of its arrival in [s]: clocks of two machines differ."""
@@ -180,12 +193,14 @@ class WindGate:
         vector
             Wind in [m/s], (3,), before any projection; the axes do not matter.
         arrival
-            Time that it arrived in [s], on the clock of the stamps; None if the stamp is all there is.
+            Time that it arrived in [s], on the clock of the stamps; None if the stamp is all there
+            is.
 
         Returns
         -------
         Verdict
-            Whether it is good, why, and the time to use for it: strictly after that of the last one.
+            Whether it is good, why, and the time to use for it: strictly after that of the last
+            one.
 
         Raises
         ------

@@ -1,13 +1,15 @@
 """
-Gusts travel: a tree feels the wind of the anemometer as long ago as the wind takes from there to the tree.
+Gusts travel: a tree feels the wind of the anemometer as long ago as the wind takes from there to
+the tree.
 
-Turbulence is carried along by the mean wind and changes little on the way (Taylor 1938), so a tree at x feels
-``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the speed at which gusts travel, the mean speed itself over open
-ground and up to 1.8 of it over a closed canopy (Raupach, Finnigan & Brunet 1996). Waves that run through a stand follow from that
-alone.
+Turbulence is carried along by the mean wind and changes little on the way (Taylor 1938), so a tree
+at x feels ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the speed at which
+gusts travel, the mean speed itself over open ground and up to 1.8 of it over a closed canopy
+(Raupach, Finnigan & Brunet 1996). Waves that run through a stand follow from that alone.
 
-The wind is kept as its run, the way of the air since the start, at the end of every step: the mean over any span is then the
-difference of two runs over the span. As the mean wind turns or freshens, delays follow so slowly that for every tree time goes on.
+The wind is kept as its run, the way of the air since the start, at the end of every step: the mean
+over any span is then the difference of two runs over the span. As the mean wind turns or freshens,
+delays follow so slowly that for every tree time goes on.
 
 """
 
@@ -24,7 +26,10 @@ from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.errors import ParameterError
 
 SLOWEST_GUST = 0.5
-"""Mean speed in [m/s] below which no gusts are taken to travel: delays then die down with the wind."""
+"""
+Mean speed in [m/s] below which no gusts are taken to travel: delays then die down with the wind.
+
+"""
 
 LARGEST_STRETCH = 0.5
 """Most that the delay of a tree changes in a second, in [s/s]."""
@@ -39,11 +44,12 @@ class GustHistory:
     places
         Where wind is felt in [m], (t, 3); heights do not matter.
     anemometer
-        Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been measured, so one upwind
-        of the anemometer feels the wind at once and is told of in `n_ahead`. If None, at the place that the mean wind
-        reaches first, whichever way it blows.
+        Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been
+        measured, so one upwind of the anemometer feels the wind at once and is told of in
+        `n_ahead`. If None, at the place that the mean wind reaches first, whichever way it blows.
     convection_ratio
-        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind everywhere.
+        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
+        everywhere.
     averaging_time
         Time constant of the mean wind in [s].
     memory
@@ -96,7 +102,10 @@ class GustHistory:
 
     @property
     def n_forgotten(self) -> int:
-        """Places so far downwind that the history is too short; they feel the oldest wind there is."""
+        """
+        Places so far downwind that the history is too short; they feel the oldest wind there is.
+
+        """
         return int((self._wanted > self._memory).sum())
 
     @property
@@ -128,7 +137,9 @@ class GustHistory:
         """
         x, y, z = three_numbers("wind", wind_mean)
         if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):
-            raise ParameterError(f"wind ({x}, {y}, {z}) m/s over {dt} s", cure="give finite numbers")
+            raise ParameterError(
+                f"wind ({x}, {y}, {z}) m/s over {dt} s", cure="give finite numbers"
+            )
         _remember(self._run, self._at, x, y, z, dt)
         _follow_mean(self._mean, x, y, dt, self._averaging)
         _feel(
@@ -169,7 +180,11 @@ def _remember(run: Floats, at: NDArray[np.int64], x: float, y: float, z: float, 
 
 @kernel
 def _follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
-    """A plain mean while there is little wind to average, then a running one; its span stands beside it."""
+    """
+    A plain mean while there is little wind to average, then a running one; its span stands beside
+    it.
+
+    """
     mean[2] = min(mean[2] + dt, max(averaging, dt))
     weight = dt / mean[2]
     mean[0] += weight * (x - mean[0])
@@ -181,7 +196,10 @@ def _feel(
     run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats, ratio: float,
     memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats, felt: Floats,
 ) -> None:  # fmt: skip
-    """Let delays follow the mean wind, and take the mean of the history over each place's own step."""
+    """
+    Let delays follow the mean wind, and take the mean of the history over each place's own step.
+
+    """
     now = run[at[0], 0]
     speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)
     first = math.inf if from_first else 0.0

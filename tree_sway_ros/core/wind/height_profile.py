@@ -29,7 +29,8 @@ class WindProfile:
     anemometer_height
         Height of the anemometer over the ground in [m].
     exponent
-        p of the power law in [-]; .14 over open ground, .25 and more between trees (Davenport, 1960).
+        p of the power law in [-]; .14 over open ground, .25 and more between trees (Davenport,
+        1960).
     roughness
         z0 of the log law in [m]; .03 over grass, .5 and more between trees.
     ground
@@ -50,7 +51,9 @@ class WindProfile:
                 f"unknown wind profile '{self.kind}'", cure=f"use one of: {', '.join(PROFILES)}"
             )
         if not self.anemometer_height > 0.0:
-            raise ParameterError(f"anemometer height {self.anemometer_height} m", cure="give one above 0")
+            raise ParameterError(
+                f"anemometer height {self.anemometer_height} m", cure="give one above 0"
+            )
         if self.kind == "log" and not 0.0 < self.roughness < self.anemometer_height:
             raise ParameterError(
                 f"roughness length {self.roughness} m with an anemometer at {self.anemometer_height} m",

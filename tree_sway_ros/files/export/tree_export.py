@@ -1,10 +1,10 @@
 """
 Write a tree for other programs: our YAML, Wavefront OBJ, glTF.
 
-YAML is exact and reads back. OBJ and glTF hold the shape at rest, one object or node a segment, named as
-in `Tree.segment_names`, so that any engine can move the nodes by the poses of the segments. OBJ has z up,
-as the tree; glTF has y up by its specification, which its node ``tree`` turns: the nodes inside it keep
-our frame.
+YAML is exact and reads back. OBJ and glTF hold the shape at rest, one object or node a segment,
+named as in `Tree.segment_names`, so that any engine can move the nodes by the poses of the
+segments. OBJ has z up, as the tree; glTF has y up by its specification, which its node ``tree``
+turns: the nodes inside it keep our frame.
 
 """
 
@@ -105,7 +105,9 @@ def write_gltf(path: Path, tree: Tree) -> None:
             name="bark", baseColorFactor=_BARK, metallicFactor=0.0, roughnessFactor=1.0
         )
     )
-    for segment, (name, frame) in enumerate(zip(tree.segment_names, rest_frames(tree), strict=True)):
+    for segment, (name, frame) in enumerate(
+        zip(tree.segment_names, rest_frames(tree), strict=True)
+    ):
         mesh = trimesh.Trimesh(cone_points(tree, segment), triangles, process=False, visual=bark)
         scene.add_geometry(
             mesh, node_name=name, geom_name=name, parent_node_name="tree", transform=frame

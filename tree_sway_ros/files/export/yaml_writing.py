@@ -1,9 +1,9 @@
 """
 A tree out to the YAML form, such that reading it back gives the same tree to the last bit.
 
-A branch whose segments join end to start is written by its nodes; one with steps or gaps, as cylinder
-models have, segment by segment. Of the wood only what differs from the species table is written, so
-that a calibrated tree carries its values and an ordinary one follows the table.
+A branch whose segments join end to start is written by its nodes; one with steps or gaps, as
+cylinder models have, segment by segment. Of the wood only what differs from the species table is
+written, so that a calibrated tree carries its values and an ordinary one follows the table.
 
 """
 

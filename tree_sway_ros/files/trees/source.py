@@ -41,7 +41,8 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     if text in BUILTIN_TREES:
         if options:
             raise ParameterError(
-                f"option '{next(iter(options))}' for a built-in tree", cure="leave it out: it has no file"
+                f"option '{next(iter(options))}' for a built-in tree",
+                cure="leave it out: it has no file",
             )
         tree = builtin_tree(text, seed)
         return TreeFile(tree, species_named(tree.species), text)
@@ -54,20 +55,21 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
             cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",
         )
     if is_forest(path):
-        raise FormatError("a forest, where one tree is asked for", where=text, cure="name one of its trees")
+        raise FormatError(
+            "a forest, where one tree is asked for", where=text, cure="name one of its trees"
+        )
     return read_tree(path, **options)
 
 
-def open_scene(
-    name_or_path: str | Path, seed: int = 0, **options: Any
-) -> TreeFile | ForestFile:
+def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile | ForestFile:
     """
     Open a built-in tree, a tree file or the file of a forest; either makes its simulator itself.
 
     Parameters
     ----------
     name_or_path
-        As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds several.
+        As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds
+        several.
     seed, **options
         As of `open_tree`; a forest has none.
 

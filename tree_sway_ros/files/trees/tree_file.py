@@ -1,8 +1,8 @@
 """
 Read a tree from a file of any known format.
 
-The content decides, the suffix breaks ties: files of the field come with the suffix of the day. A new
-format is one file with a reader, and one line here.
+The content decides, the suffix breaks ties: files of the field come with the suffix of the day. A
+new format is one file with a reader, and one line here.
 
 """
 
@@ -90,7 +90,9 @@ def _yaml(head: str) -> bool:
 TREE_FORMATS: tuple[TreeFormat, ...] = (
     TreeFormat("yaml", (".yaml", ".yml", ".json"), _yaml, read_yaml_tree),
     TreeFormat("csv", (".csv",), _columns("x0", "y0", "z0", "x1", "d0"), read_csv_tree),
-    TreeFormat("simpleforest", (), _columns("ID", "parentID", "growthLength"), read_simpleforest_csv),
+    TreeFormat(
+        "simpleforest", (), _columns("ID", "parentID", "growthLength"), read_simpleforest_csv
+    ),
     TreeFormat("archi", (), _columns("cyl_ID", "extension_ID"), read_archi_csv),
     TreeFormat("treeqsm-mat", (".mat",), looks_like_mat, read_treeqsm_mat),
     TreeFormat("treeqsm-text", (".cyl",), looks_like_treeqsm_text, read_treeqsm_text),
@@ -164,7 +166,12 @@ def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
         fits = {"float": is_number, "bool": isinstance(value, bool), "str": isinstance(value, str)}
         fits["int"] = is_number and float(value).is_integer()
         if not (fits[wanted] or (value is None and "None" in kinds[name])):
-            cure = {"float": "a number", "int": "a whole number", "bool": "true or false", "str": "a text"}
+            cure = {
+                "float": "a number",
+                "int": "a whole number",
+                "bool": "true or false",
+                "str": "a text",
+            }
             raise ParameterError(f"option {name} is '{value}'", cure=f"give {cure[wanted]}")
 
 

@@ -1,10 +1,10 @@
 """
 Wind in a ROS 2 bag, sqlite3 or mcap, read without ROS through rosbags.
 
-Any of the wind's four message types: Vector3Stamped, TwistStamped, TwistWithCovarianceStamped (linear
-part) and Vector3, all of geometry_msgs. The time is the header's; a zero stamp or a message without a
-header has the time it was recorded at. Vectors point where the wind blows, east, north, up (REP-103);
-``direction_convention`` and ``yaw`` say otherwise.
+Any of the wind's four message types: Vector3Stamped, TwistStamped, TwistWithCovarianceStamped
+(linear part) and Vector3, all of geometry_msgs. The time is the header's; a zero stamp or a message
+without a header has the time it was recorded at. Vectors point where the wind blows, east, north,
+up (REP-103); ``direction_convention`` and ``yaw`` say otherwise.
 
 """
 
@@ -64,9 +64,7 @@ def read_bag_wind(
     epoch, notes = 0, list[str]()
     # A damaged bag fails in rosbags, sqlite3, lz4 or struct: whatever it is, it is the bag's fault.
     try:
-        with AnyReader(
-            [_bag(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)
-        ) as reader:
+        with AnyReader([_bag(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             connection = _chosen(reader.connections, topic, source)
             n_unstamped = 0
             for number, (_, recorded, data) in enumerate(reader.messages([connection]), start=1):
@@ -81,7 +79,9 @@ def read_bag_wind(
         raise
     except Exception as error:
         raise FormatError(
-            f"not a bag that can be read: {type(error).__name__}: {' '.join(str(error).split())}"[:300],
+            f"not a bag that can be read: {type(error).__name__}: {' '.join(str(error).split())}"[
+                :300
+            ],
             where=source,
         ) from error
     notes.append(f"topic {connection.topic}, {connection.msgtype}")
@@ -115,7 +115,9 @@ def _chosen(connections: list[Any], topic: str | None, source: str) -> Any:
         raise FormatError("wind on several topics", where=source, cure=f"choose a topic: {names}")
     there = ", ".join(f"{c.topic} ({c.msgtype})" for c in connections[:10]) or "nothing"
     raise FormatError(
-        f"no topic of a wind type; there is {there}", where=source, cure=f"types: {', '.join(WIND_TYPES)}"
+        f"no topic of a wind type; there is {there}",
+        where=source,
+        cure=f"types: {', '.join(WIND_TYPES)}",
     )
 
 

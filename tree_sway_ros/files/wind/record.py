@@ -1,9 +1,9 @@
 """
 A wind record: velocity over time, as every reader gives it.
 
-Velocities blow TO where they point, in m/s, in the frame east, north, up (REP-103), whatever the file
-says it in. A row that cannot be used is refused and counted, never guessed and never filled in: a gap
-stays a gap in the times.
+Velocities blow TO where they point, in m/s, in the frame east, north, up (REP-103), whatever the
+file says it in. A row that cannot be used is refused and counted, never guessed and never filled
+in: a gap stays a gap in the times.
 
 """
 

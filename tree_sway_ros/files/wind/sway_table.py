@@ -1,12 +1,13 @@
 """
 The motion of a tree in a table with a header.
 
-A time column (``time``, ``t``, ``timestamp`` ...) in seconds, in another unit behind the name (``time [ms]``) or as
-ISO 8601 dates, and one to three columns of displacement, tilt, angular rate or acceleration: ``x``, ``y``, ``z``,
-``displacement``, ``tilt_x``, ``ax``, ``roll`` ... A unit may follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units
-only bring the columns to one scale, as frequency and damping do not depend on it. Comma, semicolon or tab between cells;
-lines with # are comments. Other columns are left alone. A row that is no number is refused with its line and never
-filled in.
+A time column (``time``, ``t``, ``timestamp`` ...) in seconds, in another unit behind the name
+(``time [ms]``) or as ISO 8601 dates, and one to three columns of displacement, tilt, angular rate
+or acceleration: ``x``, ``y``, ``z``, ``displacement``, ``tilt_x``, ``ax``, ``roll`` ... A unit may
+follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units only bring the columns to one
+scale, as frequency and damping do not depend on it. Comma, semicolon or tab between cells; lines
+with # are comments. Other columns are left alone. A row that is no number is refused with its line
+and never filled in.
 
 """
 
@@ -28,7 +29,9 @@ from tree_sway_ros.files.wind.units import TIME_UNITS, unit_factor
 
 _TIME = ("time", "t", "timestamp", "stamp", "datetime", "date_time", "seconds", "secs", "elapsed")
 _QUANTITY = {
-    "displacement": re.compile(r"(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]"),
+    "displacement": re.compile(
+        r"(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]"
+    ),
     "tilt": re.compile(r"(tilt|inclination|angle|rotation|r)(_?[xyz123])?|roll|pitch|yaw"),
     "rate": re.compile(r"(gyro|rate|angular_velocity|angular_rate|omega|w|g)_?[xyz123]|gyro|rate"),
     "acceleration": re.compile(r"(acceleration|accel|acc|a)(_?[xyz123])?"),
@@ -84,8 +87,8 @@ def read_csv_sway(path: Path) -> SwayRecord:
     Raises
     ------
     FormatError
-        No time or no motion among the columns, an unknown unit, two quantities in one file, or a cell that is no finite
-        number.
+        No time or no motion among the columns, an unknown unit, two quantities in one file, or a
+        cell that is no finite number.
 
     """
     source = str(path)

@@ -1,11 +1,12 @@
 """
 Wind in a table with a header.
 
-A time column (``time``, ``t``, ``timestamp``, ``stamp`` ...) in seconds or as ISO 8601 dates, and either
-components ``u, v`` and perhaps ``w`` (or ``x, y, z``), or ``speed`` and ``direction`` in degrees clockwise
-from north. A unit may follow the name: ``speed [km/h]``, ``u (m/s)``, ``time_ms``, ``direction_deg``.
-Components point where the wind blows to, a direction says where it comes from, as is the use of each;
-``direction_convention`` says otherwise. Comma, semicolon or tab between cells; lines with # are comments.
+A time column (``time``, ``t``, ``timestamp``, ``stamp`` ...) in seconds or as ISO 8601 dates, and
+either components ``u, v`` and perhaps ``w`` (or ``x, y, z``), or ``speed`` and ``direction`` in
+degrees clockwise from north. A unit may follow the name: ``speed [km/h]``, ``u (m/s)``,
+``time_ms``, ``direction_deg``. Components point where the wind blows to, a direction says where it
+comes from, as is the use of each; ``direction_convention`` says otherwise. Comma, semicolon or tab
+between cells; lines with # are comments.
 
 """
 
@@ -36,7 +37,16 @@ _U = ("u", "x", "ux", "east", "vx", "velocity_x", "wind_u", "wind_x")
 _V = ("v", "y", "uy", "north", "vy", "velocity_y", "wind_v", "wind_y")
 _W = ("w", "z", "uz", "up", "vz", "velocity_z", "wind_w", "wind_z")
 _SPEED = ("speed", "wind_speed", "windspeed", "ws", "wspd")
-_DIRECTION = ("direction", "dir", "wind_direction", "winddirection", "wind_dir", "winddir", "wd", "wdir")
+_DIRECTION = (
+    "direction",
+    "dir",
+    "wind_direction",
+    "winddirection",
+    "wind_dir",
+    "winddir",
+    "wd",
+    "wdir",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +68,8 @@ def read_csv_wind(
     direction_convention
         ``to`` or ``from``; None for ``to`` with components and ``from`` with a direction.
     yaw
-        From east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from north to
-        the sensor's zero, likewise counter-clockwise.
+        From east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from north
+        to the sensor's zero, likewise counter-clockwise.
 
     Raises
     ------

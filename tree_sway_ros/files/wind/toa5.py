@@ -1,10 +1,10 @@
 """
 Campbell Scientific TOA5: the table of a data logger with a sonic anemometer.
 
-Four header lines: the logger, the column names, their units, how they were processed. The components
-of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument (CSAT3 manual, 2.3);
-``yaw`` turns them to east and north. A row with NAN or INF is refused. Diagnostic words differ from
-instrument to instrument and are not read.
+Four header lines: the logger, the column names, their units, how they were processed. The
+components of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument
+(CSAT3 manual, 2.3); ``yaw`` turns them to east and north. A row with NAN or INF is refused.
+Diagnostic words differ from instrument to instrument and are not read.
 
 """
 

@@ -44,7 +44,9 @@ def unit_factor(units: dict[str, float], text: str, default: float, where: str) 
     if not key:
         return default
     if key not in units:
-        raise FormatError(f"unknown unit '{text[:20]}'", where=where, cure=f"use {', '.join(units)}")
+        raise FormatError(
+            f"unknown unit '{text[:20]}'", where=where, cure=f"use {', '.join(units)}"
+        )
     return units[key]
 
 

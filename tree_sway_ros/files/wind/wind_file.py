@@ -1,7 +1,8 @@
 """
 Read a wind record from a file of any known format.
 
-The content decides, the suffix breaks ties. A new format is one file with a reader, and one line here.
+The content decides, the suffix breaks ties. A new format is one file with a reader, and one line
+here.
 
 """
 

@@ -1,9 +1,10 @@
 """
-A table of parameters on a node: declared with descriptors, checked by our own rules, changed while it runs.
+A table of parameters on a node: declared with descriptors, checked by our own rules, changed while
+it runs.
 
-ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently ignores a
-misspelt name. Parameters are therefore declared with dynamic typing; kinds, ranges and names are checked
-here, and a refused change keeps the old value and says why.
+ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently
+ignores a misspelt name. Parameters are therefore declared with dynamic typing; kinds, ranges and
+names are checked here, and a refused change keeps the old value and says why.
 
 """
 

@@ -204,7 +204,11 @@ SOLVER: Table = (
         choices=REAL_TIME,
         source="doc/choosing_a_method.md",
     ),
-    Parameter("leaf_on", False, "Leaves, with their mass, drag and damping; in a forest, of trees that do not say."),
+    Parameter(
+        "leaf_on",
+        False,
+        "Leaves, with their mass, drag and damping; in a forest, of trees that do not say.",
+    ),
     Parameter(
         "leaf_clusters",
         1000,

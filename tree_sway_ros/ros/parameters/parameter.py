@@ -1,8 +1,9 @@
 """
-What a node can be told: each parameter is defined once, here in form and in `node_parameters` in fact.
+What a node can be told: each parameter is defined once, here in form and in `node_parameters` in
+fact.
 
-The ROS declaration, the check of values and of YAML files, and the table in the README come from the same
-definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
+The ROS declaration, the check of values and of YAML files, and the table in the README come from
+the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
 
 """
 

@@ -1,8 +1,8 @@
 """
 The life of a node's process, written once: start, spin, end.
 
-Exit codes: 0 after Ctrl-C, SIGTERM or the end of the work, 2 with one line where the user can do something
-about it. ROS itself may be missing, so nothing here imports it at the top.
+Exit codes: 0 after Ctrl-C, SIGTERM or the end of the work, 2 with one line where the user can do
+something about it. ROS itself may be missing, so nothing here imports it at the top.
 
 """
 
@@ -120,7 +120,8 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
     node = None
     init(rclpy, args)
     try:
-        # Made before anything can tell us to end: rclpy's own, made later, would say so with a trace.
+        # Made before anything can tell us to end: rclpy's own, made later, would say so with a
+        # trace.
         executor = SingleThreadedExecutor()
         node = create(getattr(importlib.import_module(module), node_class))
         executor.add_node(node)

@@ -13,7 +13,10 @@ from tree_sway_ros.ros.process.topics import DIAGNOSTICS, qos_profile
 
 OK, WARN, ERROR, STALE = 0, 1, 2, 3
 PERIOD = 1.0
-"""From one report to the next [s], of wall time: reports go on while simulated time stands still."""
+"""
+From one report to the next [s], of wall time: reports go on while simulated time stands still.
+
+"""
 
 
 @dataclass(frozen=True)

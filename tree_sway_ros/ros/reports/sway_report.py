@@ -91,7 +91,10 @@ def _model(simulator: Any) -> Status:
         values["chosen"] = ", ".join(dict.fromkeys(each.choice.name for each in adaptive))
         values["estimated error [m]"] = worst.choice.error
         values["tolerance [m]"] = worst.tolerance
-        cost, budget = sum(each.frame_cost for each in adaptive), sum(each.budget for each in adaptive)
+        cost, budget = (
+            sum(each.frame_cost for each in adaptive),
+            sum(each.budget for each in adaptive),
+        )
         values["estimated cost [us]"] = cost
         values["budget [us]"] = budget
         if 0.0 < budget < cost:
@@ -100,7 +103,9 @@ def _model(simulator: Any) -> Status:
         if worst.choice.error > worst.tolerance:
             nearest = f"allow {worst.choice.error:.2g} m for {worst.choice.name}"
             what = f"no model is within the tolerance; {nearest}"
-            return Status("model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values)
+            return Status(
+                "model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values
+            )
     return Status("model", OK, simulator.rung, values)
 
 

@@ -16,7 +16,11 @@ STALE_AFTER = 5.0
 
 
 class WindReport:
-    """Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with stamps."""
+    """
+    Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with
+    stamps.
+
+    """
 
     def __init__(self) -> None:
         self._arrivals: deque[float] = deque(maxlen=1000)
@@ -43,9 +47,7 @@ class WindReport:
             return 0.0
         return (len(recent) - 1) / max(1e-9, recent[-1] - recent[0])
 
-    def status(
-        self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()
-    ) -> Status:
+    def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
         Report.
 
@@ -68,7 +70,9 @@ class WindReport:
         }
         if age is None:
             refused = f"; {gate.counts.refused} samples refused" if gate.counts.refused else ""
-            others = f"; set input_type to read {', '.join(types_not_read)}" if types_not_read else ""
+            others = (
+                f"; set input_type to read {', '.join(types_not_read)}" if types_not_read else ""
+            )
             return Status("wind", WARN, f"no wind yet{refused}{others}", values)
         if age > STALE_AFTER * timeout:
             return Status("wind", STALE, f"no wind for {age:.0f} s", values)

@@ -1,10 +1,11 @@
 """
 A thread that works at a fixed rate, on a grid of absolute times of a ROS clock.
 
-Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same record tick at the
-same times. The number of periods since the last tick is counted from the clock, never from the calls: a late
-tick reports how many it stands for, and what was missed is skipped, never made up for in a burst. Simulated
-time is followed: paused, nothing ticks; set back, the next tick says so.
+Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same record
+tick at the same times. The number of periods since the last tick is counted from the clock, never
+from the calls: a late tick reports how many it stands for, and what was missed is skipped, never
+made up for in a burst. Simulated time is followed: paused, nothing ticks; set back, the next tick
+says so.
 
 """
 
@@ -48,9 +49,11 @@ class Tick(NamedTuple):
 
 class Pace(NamedTuple):
     """
-    How well the pace was kept lately: rate [Hz], lateness [s], work [s], and counts since the start.
+    How well the pace was kept lately: rate [Hz], lateness [s], work [s], and counts since the
+    start.
 
-    `skipped` are frames on the grid that never came, `clamped` jumps forward, `restarts` jumps back.
+    `skipped` are frames on the grid that never came, `clamped` jumps forward, `restarts` jumps
+    back.
 
     """
 

@@ -1,8 +1,8 @@
 """
 A wind record in time: when each sample is due, at any speed, around and around.
 
-Time goes on over the seam of a loop: a period after the last sample of one round comes the first of the next,
-so whoever follows the stamps or /clock never sees time go back.
+Time goes on over the seam of a loop: a period after the last sample of one round comes the first of
+the next, so whoever follows the stamps or /clock never sees time go back.
 
 """
 
@@ -86,13 +86,19 @@ class Playback:
 
     @property
     def epoch(self) -> int:
-        """Time of the first event in [ns], for /clock: the record's own, or 1 s if it has no date."""
+        """
+        Time of the first event in [ns], for /clock: the record's own, or 1 s if it has no date.
+
+        """
         if self._epoch is None:
             return 1_000_000_000
         return round((self._epoch + float(self._time[0])) * 1e9)
 
     def events(self) -> Iterator[Event]:
-        """Events in the order of their times; a tick of /clock comes after the sample of its time."""
+        """
+        Events in the order of their times; a tick of /clock comes after the sample of its time.
+
+        """
         if not self.has_clock:
             return self._samples()
         return heapq.merge(self._samples(), self._ticks(), key=lambda event: event.time)

@@ -1,12 +1,13 @@
 """
 From ticks to steps: each period of the grid is solved with the mean wind over that very period.
 
-A sample of the wind is handed on when the steps reach its time, not when it arrives: as long as it arrives
-within `wind_delay`, a run over the same record gives the same numbers, whatever the network did.
+A sample of the wind is handed on when the steps reach its time, not when it arrives: as long as it
+arrives within `wind_delay`, a run over the same record gives the same numbers, whatever the network
+did.
 
-A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace in the
-motion; only where a step costs more than half a period are they joined to one long step, which the exact
-propagator takes without harm, so that a slow machine never falls further behind.
+A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace
+in the motion; only where a step costs more than half a period are they joined to one long step,
+which the exact propagator takes without harm, so that a slow machine never falls further behind.
 
 """
 
@@ -18,7 +19,11 @@ from collections.abc import Callable
 from typing import Any
 
 _BLOCK = 10_000_000_000_000
-"""Times are counted in seconds from a whole multiple of this [ns]: short numbers, the same in every run."""
+"""
+Times are counted in seconds from a whole multiple of this [ns]: short numbers, the same in every
+run.
+
+"""
 _QUEUE = 4096
 _WARM_FRAMES = 20
 # Weight of the newest step in the running mean of its cost.
@@ -53,7 +58,11 @@ class Stepper:
         self._cost = 0.0
 
     def warm_up(self) -> float:
-        """Have the kernels compiled or loaded before the first frame is due; return what a frame takes in [us]."""
+        """
+        Have the kernels compiled or loaded before the first frame is due; return what a frame takes
+        in [us].
+
+        """
         wind = self._make_wind()
         wind.add(0.0, (1.0, 0.0, 0.0))
         period = self._period * 1e-9

@@ -1,8 +1,8 @@
 """
 The tree as JSON: what the poses do not say, once, for whoever draws them.
 
-Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of the old form
-would go wrong; new keys alone do not raise it.
+Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of the
+old form would go wrong; new keys alone do not raise it.
 
 """
 

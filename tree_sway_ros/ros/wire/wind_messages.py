@@ -1,8 +1,8 @@
 """
 The wind in a message: the four types of common_interfaces that drivers use, to and from numbers.
 
-There is no standard wind message. All four hold a vector of three numbers; what they mean (unit, sign, frame)
-is for `core.wind_convention` to know.
+There is no standard wind message. All four hold a vector of three numbers; what they mean (unit,
+sign, frame) is for `core.wind_convention` to know.
 
 """
 

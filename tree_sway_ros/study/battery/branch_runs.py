@@ -18,7 +18,9 @@ Array = NDArray[Any]
 class Branch:
     """A branch of unit inertia about its node, by frequency in [Hz] and damping ratio."""
 
-    def __init__(self, frequency: float = 2.0, damping_ratio: float = 0.05, dt: float = 1 / 60) -> None:
+    def __init__(
+        self, frequency: float = 2.0, damping_ratio: float = 0.05, dt: float = 1 / 60
+    ) -> None:
         self.dt = dt
         self.w = 2.0 * np.pi * frequency
         self.stiffness = self.w**2
@@ -27,22 +29,35 @@ class Branch:
         self.guard = guards(np.ones(1), np.array([self.stiffness]), dt)[0]
 
     def run(self, loads: Array, state: Array | None = None, dtype: Any = np.float64) -> Array:
-        """States after each frame, (steps + 1, 4), from s-loads W / k1, (steps, 3), means over frames."""
+        """
+        States after each frame, (steps + 1, 4), from s-loads W / k1, (steps, 3), means over frames.
+
+        """
         start = np.zeros(4) if state is None else np.asarray(state)
         row = self.row if dtype == np.float64 else single_precision(self.row)
-        return run_branch((loads * self.stiffness).astype(dtype), row,
-                          self.guard.astype(dtype), start.astype(dtype))
+        return run_branch(
+            (loads * self.stiffness).astype(dtype),
+            row,
+            self.guard.astype(dtype),
+            start.astype(dtype),
+        )
 
     def truth(self, wind: Any, steps: int, state: Array | None = None, substeps: int = 32) -> Array:
-        """Chord after each frame, (steps + 1, 3), from s-load as a function of time (k,) -> (k, 3)."""
+        """
+        Chord after each frame, (steps + 1, 3), from s-load as a function of time (k,) -> (k, 3).
+
+        """
         start = np.zeros(4) if state is None else np.asarray(state, float)
         fraction = np.arange(2 * substeps + 1) / (2 * substeps)
         times = self.dt * (np.arange(steps)[:, None] + fraction)
         # inside its frame a load that jumps at a frame's edge has one value
         inside = times + 1e-9 * self.dt * (1 - 2 * fraction)
         loads = wind(inside.ravel()).reshape(steps, -1, 3) * self.stiffness
-        return np.asarray(swing(loads, self.dt, 1.0, self.damping, self.stiffness, start[:2],
-                                start[2:], substeps)[0])
+        return np.asarray(
+            swing(
+                loads, self.dt, 1.0, self.damping, self.stiffness, start[:2], start[2:], substeps
+            )[0]
+        )
 
     def means(self, wind: Any, steps: int, points: int = 16) -> Array:
         """Mean of a load over each frame, (steps, 3)."""

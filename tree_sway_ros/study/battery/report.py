@@ -32,8 +32,9 @@ def load_case(name: str) -> ModuleType:
 
     """
     if name not in CASES:
-        raise ParameterError(f"unknown case {name!r}", where="battery",
-                             cure="take one of " + ", ".join(CASES))
+        raise ParameterError(
+            f"unknown case {name!r}", where="battery", cure="take one of " + ", ".join(CASES)
+        )
     return import_module(f"{__package__}.rows.{CASES[name]}")
 
 
@@ -69,8 +70,14 @@ def run_battery(
             print(f"    {row.case:<58} {row.must_hold:<46} {row.measured:<40} {row.verdict}")
             failed += not row.good
         total += len(rows)
-        report.append({"case": name, "title": case.TITLE, "seconds": round(seconds, 2),
-                       "rows": [{**vars(row), "good": row.good} for row in rows]})
+        report.append(
+            {
+                "case": name,
+                "title": case.TITLE,
+                "seconds": round(seconds, 2),
+                "rows": [{**vars(row), "good": row.good} for row in rows],
+            }
+        )
     print(f"{total - failed} of {total} rows as they should be")
     if json is not None:
         document = {"full": full, "failed": failed, "cases": report}

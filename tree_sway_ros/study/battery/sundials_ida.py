@@ -1,9 +1,11 @@
 """
-SUNDIALS IDA on the paper's multiplier form: the method of a solver library beside ours, where it is installed.
+SUNDIALS IDA on the paper's multiplier form: the method of a solver library beside ours, where it is
+installed.
 
-Its unknowns are those of `radau_ggl` (Gear, Leimkuhler & Gupta, 1985), q, v, lam and mu. It chooses its own steps and order
-(BDF 1 to 5, Hindmarsh et al., 2005) and is asked for an answer once a frame. The multipliers are left out of its error test, for
-in a form of index 2 they are an order less smooth.
+Its unknowns are those of `radau_ggl` (Gear, Leimkuhler & Gupta, 1985), q, v, lam and mu. It chooses
+its own steps and order (BDF 1 to 5, Hindmarsh et al., 2005) and is asked for an answer once a
+frame. The multipliers are left out of its error test, for in a form of index 2 they are an order
+less smooth.
 
 """
 
@@ -50,7 +52,7 @@ def is_installed() -> bool:
 def residual(table: Array, y: Array, rate: Array, load: Array, out: Array) -> None:
     """Gap of q' = v - G^T mu, M v' = F - G^T lam, phi = 0, G v = 0; y and out are (10n,)."""
     n = len(table)
-    q, v, lam, mu = y[: 3 * n], y[3 * n:6 * n], y[6 * n:8 * n], y[8 * n:]
+    q, v, lam, mu = y[: 3 * n], y[3 * n : 6 * n], y[6 * n : 8 * n], y[8 * n :]
     g, force, gap = jacobian(table, q), forces(table, q, v, load), constraint(table, q)
     for i in range(3 * n):
         mass = table[i // 3, 0] if i % 3 < 2 else table[i // 3, 1]
@@ -88,8 +90,9 @@ def run_ida(chain: PlanarChain, loads: Array, dt: float, first: Array) -> IdaRun
 
     """
     if not is_installed():
-        raise MissingDependencyError("scikit-sundae is not installed", where=NAME,
-                                     cure="pip install tree_sway_ros[sundials]")
+        raise MissingDependencyError(
+            "scikit-sundae is not installed", where=NAME, cure="pip install tree_sway_ros[sundials]"
+        )
     from sksundae.ida import IDA
 
     n, table = chain.n_segments, chain.table
@@ -106,20 +109,30 @@ def run_ida(chain: PlanarChain, loads: Array, dt: float, first: Array) -> IdaRun
         residual(table, y, rate, load, out)
 
     tested = np.where(np.arange(10 * n) < 6 * n, ATOL, NO_TEST)
-    ida = IDA(gap, rtol=RTOL, atol=tested, algebraic_idx=np.arange(6 * n, 10 * n), max_step=dt,
-              max_num_steps=5000)
+    ida = IDA(
+        gap,
+        rtol=RTOL,
+        atol=tested,
+        algebraic_idx=np.arange(6 * n, 10 * n),
+        max_step=dt,
+        max_num_steps=5000,
+    )
     started = time.perf_counter()
     answer = ida.solve(dt * np.arange(len(loads) + 1), y, rate)
     spent = time.perf_counter() - started
     theta = np.full((len(loads) + 1, n), np.nan)
-    theta[: len(answer.y)] = answer.y[:, 2:3 * n:3]
+    theta[: len(answer.y)] = answer.y[:, 2 : 3 * n : 3]
     an_iteration, a_matrix = _operations(table, y, rate, first)
     work = answer.nfev * an_iteration + answer.njev * a_matrix
     return IdaRun(theta, round(work / len(loads)), spent / len(loads))
 
 
 def _operations(table: Array, y: Array, rate: Array, load: Array) -> tuple[int, int]:
-    """Operations of an iteration, residual and back-substitution; and of a matrix, by differences, and its factors."""
+    """
+    Operations of an iteration, residual and back-substitution; and of a matrix, by differences, and
+    its factors.
+
+    """
     n = len(y)
     matrix = np.random.default_rng(0).normal(size=(n, n))
     of_residual, of_product, of_factors = Counter[str](), Counter[str](), Counter[str]()

@@ -1,4 +1,8 @@
-"""Error against cost of every method, in smooth, gusty and turning wind, one segment and a chain of six."""
+"""
+Error against cost of every method, in smooth, gusty and turning wind, one segment and a chain of
+six.
+
+"""
 
 from __future__ import annotations
 
@@ -40,7 +44,8 @@ class Point:
     rate
         Steps a second [1/s].
     error
-        Root mean square of the angles' error in [rad]; NaN where the method blew up or lost the motion.
+        Root mean square of the angles' error in [rad]; NaN where the method blew up or lost the
+        motion.
     flops
         Operations a step, weighted, at 60 steps a second.
     wall_ratio
@@ -126,7 +131,9 @@ def seconds_a_step(method: Method, chain: PlanarChain, wind: Wind, rate: int) ->
     return best / len(loads)
 
 
-def measure(rates: tuple[int, ...] = RATES, methods: tuple[str, ...] = tuple(METHODS)) -> list[Point]:
+def measure(
+    rates: tuple[int, ...] = RATES, methods: tuple[str, ...] = tuple(METHODS)
+) -> list[Point]:
     """Run every method in every wind at every rate."""
     points = []
     for n, system in ((1, "1 segment"), (6, "6 segments")):
@@ -135,8 +142,13 @@ def measure(rates: tuple[int, ...] = RATES, methods: tuple[str, ...] = tuple(MET
         reference = method_named("radau_ggl")
         fine = REFERENCE_RATE[n]
         truth = {
-            name: integrate(reference, chain, loads_for(reference, wind, name, fine), 1 / fine,
-                            first=wind(np.zeros(1))[0]).theta
+            name: integrate(
+                reference,
+                chain,
+                loads_for(reference, wind, name, fine),
+                1 / fine,
+                first=wind(np.zeros(1))[0],
+            ).theta
             for name, wind in blowing.items()
         }
         unit = seconds_a_step(method_named("semi_implicit_euler"), chain, blowing["smooth"], 60)
@@ -146,14 +158,29 @@ def measure(rates: tuple[int, ...] = RATES, methods: tuple[str, ...] = tuple(MET
             cost = flops_a_step(method, chain, blowing["smooth"], 60)
             for rate in rates:
                 for name, wind in blowing.items():
-                    run = integrate(method, chain, loads_for(method, wind, name, rate), 1 / rate,
-                                    first=wind(np.zeros(1))[0])
+                    run = integrate(
+                        method,
+                        chain,
+                        loads_for(method, wind, name, rate),
+                        1 / rate,
+                        first=wind(np.zeros(1))[0],
+                    )
                     error = run.theta - truth[name][:: fine // rate]
                     rms = float(np.sqrt(np.mean(error**2)))
                     # worse than standing still, or standing still where it could not go on
                     gone = run.failed > 0.01 * len(error) or not rms < float(np.std(truth[name]))
-                    points.append(Point(key, method.form, system, name, rate,
-                                        np.nan if gone else rms, cost, wall))
+                    points.append(
+                        Point(
+                            key,
+                            method.form,
+                            system,
+                            name,
+                            rate,
+                            np.nan if gone else rms,
+                            cost,
+                            wall,
+                        )
+                    )
         if methods == tuple(METHODS) and sundials_ida.is_installed():
             points += _points_of_ida(chain, system, blowing, truth, rates, unit)
     return points
@@ -163,7 +190,10 @@ def _points_of_ida(
     chain: PlanarChain, system: str, blowing: dict[str, Wind], truth: dict[str, Array],
     rates: tuple[int, ...], unit: float,
 ) -> list[Point]:  # fmt: skip
-    """SUNDIALS IDA, which takes steps of its own between frames: cost and time are those of a frame."""
+    """
+    SUNDIALS IDA, which takes steps of its own between frames: cost and time are those of a frame.
+
+    """
     points = []
     for rate in rates:
         for name, wind in blowing.items():
@@ -171,6 +201,16 @@ def _points_of_ida(
             run = sundials_ida.run_ida(chain, loads, 1 / rate, wind(np.zeros(1))[0])
             every = (len(truth[name]) - 1) // (len(run.theta) - 1)
             rms = float(np.sqrt(np.mean((run.theta - truth[name][::every]) ** 2)))
-            points.append(Point(sundials_ida.NAME, "multiplier", system, name, rate, rms, run.flops,
-                                run.seconds / unit))
+            points.append(
+                Point(
+                    sundials_ida.NAME,
+                    "multiplier",
+                    system,
+                    name,
+                    rate,
+                    rms,
+                    run.flops,
+                    run.seconds / unit,
+                )
+            )
     return points

@@ -1,9 +1,9 @@
 """
 The tree that the benchmarks run on: 121 branches of 6 segments, four orders, made by rule.
 
-A stem of 6 m carries twelve branches of 2.2 m, each of those three of .9 m, each of those two of .4 m;
-diameters go from 120 mm at the ground to 8 mm at the last tips. Azimuths follow the golden angle, so that no two
-branches are alike.
+A stem of 6 m carries twelve branches of 2.2 m, each of those three of .9 m, each of those two of .4
+m; diameters go from 120 mm at the ground to 8 mm at the last tips. Azimuths follow the golden
+angle, so that no two branches are alike.
 
 """
 
@@ -40,7 +40,8 @@ def bench_tree(
     Returns
     -------
     Tree
-        With 121 branches, of ``121 * segments_a_branch`` segments, if nothing is said of its children.
+        With 121 branches, of ``121 * segments_a_branch`` segments, if nothing is said of its
+        children.
 
     """
     start: list[Floats] = []

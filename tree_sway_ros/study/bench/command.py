@@ -46,10 +46,16 @@ def run(arguments: argparse.Namespace) -> int:
     timings = [time_steps(tree, rung, arguments.rounds) for rung in ("branch", "subtree", "modes")]
     if arguments.json:
         rows = [{**asdict(timing), "ratio": timing.ratio} for timing in timings]
-        print(json.dumps({"core": core_name(), "segments": tree.n_segments, "timings": rows}, indent=2))
+        print(
+            json.dumps(
+                {"core": core_name(), "segments": tree.n_segments, "timings": rows}, indent=2
+            )
+        )
         return 0
     print(f"{tree.n_branches} branches, {tree.n_segments} segments; one thread on {core_name()}")
-    print("solve and place [us]   median      min   numpy twin: median      min   ratio   largest difference")
+    print(
+        "solve and place [us]   median      min   numpy twin: median      min   ratio   largest difference"
+    )
     for timing in timings:
         print(_row(timing))
     return 0

@@ -1,5 +1,6 @@
 """
-Solving timed by how finely branches are cut: key segments alone are solved, so it should not matter.
+Solving timed by how finely branches are cut: key segments alone are solved, so it should not
+matter.
 
 """
 
@@ -30,7 +31,8 @@ def time_cuts(rung: str, rounds: int, cuts: Sequence[int] = CUTS) -> dict[int, f
     rung
         Model.
     rounds
-        Of twenty steps of each; all cuts take turns, so that they meet the same load of the machine.
+        Of twenty steps of each; all cuts take turns, so that they meet the same load of the
+        machine.
     cuts
         Segments a branch.
 
@@ -63,7 +65,9 @@ def unevenness(by_cut: dict[int, float]) -> float:
 
 def cut_table(rounds: int) -> str:
     """Time all rungs and lay out what is found."""
-    lines = ["solve [us], segments a branch" + "".join(f"{cut:9}" for cut in CUTS) + "   most over least"]
+    lines = [
+        "solve [us], segments a branch" + "".join(f"{cut:9}" for cut in CUTS) + "   most over least"
+    ]
     for rung in ("branch", "subtree", "modes"):
         by_cut = time_cuts(rung, rounds)
         times = "".join(f"{1e6 * spent:9.1f}" for spent in by_cut.values())

@@ -1,4 +1,8 @@
-"""CPU time of a frame, for several models of a tree in turn, so that all meet the same load of the machine."""
+"""
+CPU time of a frame, for several models of a tree in turn, so that all meet the same load of the
+machine.
+
+"""
 
 from __future__ import annotations
 
@@ -45,7 +49,8 @@ def frame_times(
     Returns
     -------
     dict
-        By name, the time that one frame in ten stays below: what a frame takes when nothing else runs.
+        By name, the time that one frame in ten stays below: what a frame takes when nothing else
+        runs.
 
     """
     poses = np.empty((tree.n_segments, 7))

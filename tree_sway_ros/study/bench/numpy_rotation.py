@@ -38,7 +38,8 @@ def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
 
 def cayley_turned(rotations: Floats, vectors: Floats) -> Floats:
     """
-    Turn vectors by Cayley's map of rotation vectors, (1 - H)^-1 (1 + H) with H the cross product by r / 2.
+    Turn vectors by Cayley's map of rotation vectors, (1 - H)^-1 (1 + H) with H the cross product by
+    r / 2.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
 """
-The uncoupled simulator once more in plain numpy: oracle of the compiled kernels, and baseline of their speed.
+The uncoupled simulator once more in plain numpy: oracle of the compiled kernels, and baseline of
+their speed.
 
-It takes the same records and follows the same formulas, but whole levels of the tree at a time, with sines and cosines in
-place of series, and with subtree sums as differences of one cumulative sum. What it must agree on with
-`SwaySimulator` is everything but rounding.
+It takes the same records and follows the same formulas, but whole levels of the tree at a time,
+with sines and cosines in place of series, and with subtree sums as differences of one cumulative
+sum. What it must agree on with `SwaySimulator` is everything but rounding.
 
 """
 
@@ -63,7 +64,8 @@ class NumpyTwin:
         order = tree.branch_order
         self._levels = [np.flatnonzero(order == k) for k in range(1, int(order.max()) + 1)]
         self._origin = tree.start[0]
-        # Coordinates are pairs that share a shape, then twists; those that are not there come last and stand still.
+        # Coordinates are pairs that share a shape, then twists; those that are not there come last
+        # and stand still.
         column, pairs = np.arange(branches["push"].shape[1]), branches["n_pairs"][:, None]
         self._is_there = column < branches["n_coordinates"][:, None]
         shape = np.where(column < 2 * pairs, column // 2, N_SHAPES + column - 2 * pairs)
@@ -142,7 +144,9 @@ class NumpyTwin:
         angles = self._angles(self.x.ravel() if rotations is None else rotations)
         t = np.square(angles[:, :2]).sum(axis=1)
         blend = np.clip((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0, 1.0)
-        stretch = 1.0 + np.minimum(t, _STRETCH_TO) * (branch["skew"] + blend * (branch["tip_skew"] - branch["skew"]))
+        stretch = 1.0 + np.minimum(t, _STRETCH_TO) * (
+            branch["skew"] + blend * (branch["tip_skew"] - branch["skew"])
+        )
         slope = np.take_along_axis(segment["slope"], self._shape[owner], axis=1)
         bent = slope[:, 0] + blend[owner] * (segment["tip_slope"] - slope[:, 0])
         slope[:, :2] = (stretch[owner] * bent)[:, None]
@@ -185,7 +189,10 @@ class NumpyTwin:
         self._dt = dt
 
     def _angles(self, rotations: Floats) -> Floats:
-        """Key rotations of each branch side by side, zeros where it has fewer than others, (b, c)."""
+        """
+        Key rotations of each branch side by side, zeros where it has fewer than others, (b, c).
+
+        """
         angles: Floats = np.where(self._is_there, rotations[self._column], 0.0)
         return angles
 

@@ -48,7 +48,10 @@ def time_setups(tree: Tree, rungs: Sequence[str]) -> dict[str, float]:
 
 
 def setup_table() -> str:
-    """Time all rungs on the tree of the other benchmarks and on a big one, and lay out what is found."""
+    """
+    Time all rungs on the tree of the other benchmarks and on a big one, and lay out what is found.
+
+    """
     rungs = RUNGS[1:]
     lines = ["set-up [s]" + " " * 26 + "".join(f"{rung:>9}" for rung in rungs)]
     for tree in (bench_tree(), bench_tree(children=_CHILDREN)):

@@ -1,8 +1,8 @@
 """
 One step of a tree, timed: the compiled kernels against the same formulas in plain numpy.
 
-Both go through the same gusts; they must agree before anything is timed. Rounds alternate, so that whatever else
-the machine does meets both.
+Both go through the same gusts; they must agree before anything is timed. Rounds alternate, so that
+whatever else the machine does meets both.
 
 """
 

@@ -21,7 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", default=".", metavar="FOLDER", help="for PNG and CSV (%(default)s)"
     )
-    parser.add_argument("--wind", metavar="FILE", help="fidelity: a wind record; simulated if left out")
+    parser.add_argument(
+        "--wind", metavar="FILE", help="fidelity: a wind record; simulated if left out"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,8 +1,8 @@
 """
 What a frame costs, by how finely branches are cut and by how many there are.
 
-Solving should not care about segments (that is the point of key segments), placing them must; both should grow
-with the number of branches and no faster.
+Solving should not care about segments (that is the point of key segments), placing them must; both
+should grow with the number of branches and no faster.
 
 """
 

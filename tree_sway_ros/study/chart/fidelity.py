@@ -1,8 +1,9 @@
 """
 The ladder of models against the truth: error of each rung, and what it costs a frame.
 
-The truth solves every segment, each in two pieces, at four times the frame rate; trees are the three of 40
-branches in `example_trees`, in turbulent wind of the spectrum that engineers use, or in a record.
+The truth solves every segment, each in two pieces, at four times the frame rate; trees are the
+three of 40 branches in `example_trees`, in turbulent wind of the spectrum that engineers use, or in
+a record.
 
 """
 
@@ -72,7 +73,8 @@ def chart_fidelity(
     out_dir
         Folder to write into; made if it is not there.
     wind
-        Times in [s], (m,), and velocities in [m/s], (m, 3), of a record; simulated at 20 Hz and 7 m/s if None.
+        Times in [s], (m,), and velocities in [m/s], (m, 3), of a record; simulated at 20 Hz and 7
+        m/s if None.
     duration
         How much of it, in [s].
     trees
@@ -164,7 +166,9 @@ def _draw(points: list[Rung], path: Path) -> None:
         lowest = min(here, key=lambda p: p.error)
         place = lowest.nanoseconds / 1e3, lowest.error
         way, side = ((-9, -4), "right") if model.startswith("modes") else ((0, -15), "center")
-        text = axes.annotate(model, place, xytext=way, textcoords="offset points", ha=side, fontsize=10)
+        text = axes.annotate(
+            model, place, xytext=way, textcoords="offset points", ha=side, fontsize=10
+        )
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8})
     errors, costs = [p.error for p in points], [p.nanoseconds / 1e3 for p in points]
     axes.set(xscale="log", yscale="log")

@@ -42,8 +42,9 @@ def chart_methods(out_dir: str | Path, points: list[Point] | None = None) -> lis
     try:
         import matplotlib
     except ImportError as error:
-        raise MissingDependencyError("matplotlib is not installed", where="chart",
-                                     cure="pip install tree_sway_ros[plot]") from error
+        raise MissingDependencyError(
+            "matplotlib is not installed", where="chart", cure="pip install tree_sway_ros[plot]"
+        ) from error
     matplotlib.use("Agg")
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
@@ -52,8 +53,14 @@ def chart_methods(out_dir: str | Path, points: list[Point] | None = None) -> lis
     with table.open("w", newline="", encoding="utf-8") as sheet:
         writer = csv.DictWriter(sheet, list(asdict(points[0])))
         writer.writeheader()
-        writer.writerows({**asdict(p), "error": "gone" if np.isnan(p.error) else f"{p.error:.3e}",
-                          "wall_ratio": f"{p.wall_ratio:.2f}"} for p in points)
+        writer.writerows(
+            {
+                **asdict(p),
+                "error": "gone" if np.isnan(p.error) else f"{p.error:.3e}",
+                "wall_ratio": f"{p.wall_ratio:.2f}",
+            }
+            for p in points
+        )
     files = [table]
     for cost, name, label in (
         ("flops", "methods.png", "operations a step  [flop]"),
@@ -94,19 +101,45 @@ def _draw(points: list[Point], cost: str, label: str, file: Path) -> None:
         axes[row, 0].set_ylabel("rms error of the angle  [rad]", fontsize=13)
     figure.suptitle("Error against cost of one step at 60 steps a second, 2 Hz branch", fontsize=16)
     marks = {p.method: colour(p) for p in shown}
-    handles = [Line2D([], [], marker="o", ls="", color=marks[name], markersize=9,
-                      label=f"{k + 1}  {name.replace('multiplier_', 'multiplier ').replace('_', ' ')}")
-               for k, name in enumerate(names)]
-    figure.legend(handles=handles, loc="lower center", ncol=4, fontsize=12, frameon=False,
-                  handletextpad=0.2, columnspacing=1.4, bbox_to_anchor=(0.5, 0.045))
-    figure.text(0.5, 0.02, "orange: the paper's multiplier form    blue: angles only    green: exact for "
-                "the linear part    red: the default    x: blew up", ha="center", fontsize=13)
+    handles = [
+        Line2D(
+            [],
+            [],
+            marker="o",
+            ls="",
+            color=marks[name],
+            markersize=9,
+            label=f"{k + 1}  {name.replace('multiplier_', 'multiplier ').replace('_', ' ')}",
+        )
+        for k, name in enumerate(names)
+    ]
+    figure.legend(
+        handles=handles,
+        loc="lower center",
+        ncol=4,
+        fontsize=12,
+        frameon=False,
+        handletextpad=0.2,
+        columnspacing=1.4,
+        bbox_to_anchor=(0.5, 0.045),
+    )
+    figure.text(
+        0.5,
+        0.02,
+        "orange: the paper's multiplier form    blue: angles only    green: exact for "
+        "the linear part    red: the default    x: blew up",
+        ha="center",
+        fontsize=13,
+    )
     figure.savefig(file, dpi=100)
     plt.close(figure)
 
 
 def _panel(ax: Any, panel: list[Point], cost: str, names: list[str]) -> None:
-    """One wind and system: marks, numbers that keep out of each other's way, the blown-up on top."""
+    """
+    One wind and system: marks, numbers that keep out of each other's way, the blown-up on top.
+
+    """
     top = 0.5
     ax.set_xscale("log")
     ax.set_yscale("log")
@@ -114,23 +147,42 @@ def _panel(ax: Any, panel: list[Point], cost: str, names: list[str]) -> None:
     costs = np.array([float(getattr(p, cost)) for p in panel])
     ax.set_xlim(costs.min() / 1.8, costs.max() * 2.2)
     ax.axhspan(0.22, 2.0, color="0.93", lw=0)
-    ax.text(0.985, 0.965, "blew up", transform=ax.transAxes, ha="right", va="center", fontsize=11,
-            color="0.35")
+    ax.text(
+        0.985,
+        0.965,
+        "blew up",
+        transform=ax.transAxes,
+        ha="right",
+        va="center",
+        fontsize=11,
+        color="0.35",
+    )
     ax.grid(True, which="major", color="0.88", lw=0.8)
     ax.set_axisbelow(True)
     ax.tick_params(labelsize=12)
-    placed = [tuple(map(float, ax.transData.transform((x, top if np.isnan(p.error) else p.error))))
-              for p, x in zip(panel, costs, strict=True)]
+    placed = [
+        tuple(map(float, ax.transData.transform((x, top if np.isnan(p.error) else p.error))))
+        for p, x in zip(panel, costs, strict=True)
+    ]
     for p, x in sorted(zip(panel, costs, strict=True), key=lambda pair: pair[1]):
         gone = np.isnan(p.error)
         y = top if gone else p.error
         default = p.method == "exact_foh"
-        ax.plot(x, y, marker="x" if gone else ("*" if default else "o"), color=colour(p),
-                markersize=17 if default else 8, zorder=3, mew=2 if gone else 0.5)
+        ax.plot(
+            x,
+            y,
+            marker="x" if gone else ("*" if default else "o"),
+            color=colour(p),
+            markersize=17 if default else 8,
+            zorder=3,
+            mew=2 if gone else 0.5,
+        )
         _number(ax, x, y, str(names.index(p.method) + 1), colour(p), placed)
 
 
-def _number(ax: Any, x: float, y: float, text: str, ink: str, placed: list[tuple[float, ...]]) -> None:
+def _number(
+    ax: Any, x: float, y: float, text: str, ink: str, placed: list[tuple[float, ...]]
+) -> None:
     """Write a number beside its mark, at the first place of a ring that no other number has."""
     spot = np.array(ax.transData.transform((x, y)))
     best = None
@@ -145,6 +197,16 @@ def _number(ax: Any, x: float, y: float, text: str, ink: str, placed: list[tuple
     at = spot + np.array([13.0, 13.0]) if best is None else best
     placed.append((float(at[0]), float(at[1])))
     far = float(np.hypot(*(at - spot))) > 25
-    ax.annotate(text, (x, y), xytext=tuple(at - spot), textcoords="offset pixels", ha="center", va="center",
-                fontsize=12, color=ink, fontweight="bold", zorder=4,
-                arrowprops={"arrowstyle": "-", "color": ink, "lw": 0.6} if far else None)
+    ax.annotate(
+        text,
+        (x, y),
+        xytext=tuple(at - spot),
+        textcoords="offset pixels",
+        ha="center",
+        va="center",
+        fontsize=12,
+        color=ink,
+        fontweight="bold",
+        zorder=4,
+        arrowprops={"arrowstyle": "-", "color": ink, "lw": 0.6} if far else None,
+    )

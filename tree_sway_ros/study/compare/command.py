@@ -17,9 +17,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser)
     parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
-    parser.add_argument("--seconds", type=float, default=5.0, metavar="N", help="how long, in the wind (%(default)s)")
-    parser.add_argument("--rung", choices=("auto", *RUNGS[1:]), default="modes",
-                        help="of ours; auto: the cheapest for 5 %% of the motion (%(default)s)")
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=5.0,
+        metavar="N",
+        help="how long, in the wind (%(default)s)",
+    )
+    parser.add_argument(
+        "--rung",
+        choices=("auto", *RUNGS[1:]),
+        default="modes",
+        help="of ours; auto: the cheapest for 5 %% of the motion (%(default)s)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,10 +1,11 @@
 """
 The tree in MuJoCo: the same bodies, springs and drag in an engine that nobody here wrote.
 
-The bodies are those of the articulated reference: each segment bends at one place, on two hinges of stiffness
-``1 / integral(ds / EI)`` across it. Joints so far apart are a little stiff (1 to 2 % at six segments a branch), so all
-springs are scaled by one factor, the one that gives the beam's static sway of the stem's tip in a steady wind; the
-first frequency then is within .5 % of the beam's (`agreement` measures both). Needs ``pip install mujoco``.
+The bodies are those of the articulated reference: each segment bends at one place, on two hinges of
+stiffness ``1 / integral(ds / EI)`` across it. Joints so far apart are a little stiff (1 to 2 % at
+six segments a branch), so all springs are scaled by one factor, the one that gives the beam's
+static sway of the stem's tip in a steady wind; the first frequency then is within .5 % of the
+beam's (`agreement` measures both). Needs ``pip install mujoco``.
 
 """
 
@@ -40,7 +41,9 @@ def mujoco_module() -> Any:
     try:
         import mujoco
     except ModuleNotFoundError as error:
-        raise MissingDependencyError("MuJoCo is not installed", cure="pip install mujoco") from error
+        raise MissingDependencyError(
+            "MuJoCo is not installed", cure="pip install mujoco"
+        ) from error
     return mujoco
 
 
@@ -53,12 +56,14 @@ class MujocoTree:
     tree, species
         The tree and its wood.
     damping_ratio
-        In [-]: of each of the lowest 40 modes if `even`, else of the first, by dampers in proportion to the springs.
+        In [-]: of each of the lowest 40 modes if `even`, else of the first, by dampers in
+        proportion to the springs.
     even
-        Whether the modes above the first get the same ratio. That takes a step of 1/500 s or less, as the
-        dampers then no longer hold the stiff joints at long steps.
+        Whether the modes above the first get the same ratio. That takes a step of 1/500 s or less,
+        as the dampers then no longer hold the stiff joints at long steps.
     match_beam
-        Whether the springs are scaled to the beam's static sway; if not, they are the articulated reference's.
+        Whether the springs are scaled to the beam's static sway; if not, they are the articulated
+        reference's.
 
     """
 
@@ -76,7 +81,8 @@ class MujocoTree:
         self.bodies = articulated_bodies(tree, species.modulus, species.density, 0.0, 1.0)
         self.model = mujoco.MjModel.from_xml_string(_mjcf(self.bodies))
         self.data = mujoco.MjData(self.model)
-        # The engine numbers its bodies as they nest; here they stand as segments do, the ground first.
+        # The engine numbers its bodies as they nest; here they stand as segments do, the ground
+        # first.
         names = ["world", *(f"s{i}" for i in range(tree.n_segments))]
         self._body = np.array([self.model.body(name).id for name in names])
         self._step, self._forward = mujoco.mj_step, mujoco.mj_forward
@@ -144,7 +150,10 @@ class MujocoTree:
         return tips
 
     def agreement(self) -> tuple[float, float]:
-        """First frequency, and static sway of the stem's tip in a steady wind, over the beam model's."""
+        """
+        First frequency, and static sway of the stem's tip in a steady wind, over the beam model's.
+
+        """
         lowest = float(self._beam.frequencies(1)[0])
         return float(self._circular[0]) / (2.0 * math.pi) / lowest, self._sway() / self._expected
 
@@ -157,7 +166,10 @@ class MujocoTree:
         return float(moved[self._beam.end_node[self._stem_tip], 0])
 
     def _sway(self) -> float:
-        """Sway of the stem's tip by the engine's own Jacobians, for a unit of wind pressure along x."""
+        """
+        Sway of the stem's tip by the engine's own Jacobians, for a unit of wind pressure along x.
+
+        """
         tiny = 1e-3
         self.reset()
         self.blow(np.array([1.0, 0.0, 0.0]))
@@ -180,7 +192,11 @@ class MujocoTree:
         return out
 
     def _motion(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Joint, rotation, velocity of the joint and angular velocity of each body, the ground's first."""
+        """
+        Joint, rotation, velocity of the joint and angular velocity of each body, the ground's
+        first.
+
+        """
         data = self.data
         centre = data.subtree_com[self.model.body_rootid]
         spin = data.cvel[:, :3]
@@ -196,7 +212,11 @@ class MujocoTree:
         return mass, np.array(self.model.jnt_stiffness)
 
     def _set_damping(self, ratio: float, count: int) -> tuple[Floats, Floats]:
-        """Dampers by which the last of these modes has the ratio; the rest for those below as modal forces."""
+        """
+        Dampers by which the last of these modes has the ratio; the rest for those below as modal
+        forces.
+
+        """
         root = np.sqrt(self._stiffness)
         inverse_square, vectors = np.linalg.eigh(self._mass / np.outer(root, root))
         self._circular: Floats = 1.0 / np.sqrt(inverse_square[::-1][:count])

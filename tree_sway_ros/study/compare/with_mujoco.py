@@ -1,11 +1,11 @@
 """
 Our simulator against MuJoCo, on the same tree and in the same wind, in one run: error and cost.
 
-The truth is MuJoCo at a step that has converged, which its error at twice that step shows. Its springs are set to the
-beam model's static sway (`mujoco_tree`), its dampers and modal forces give every mode the same damping ratio as ours.
-Costs are CPU time at 1/60 s, ours with the wind force and the poses, MuJoCo's without the wind force, which is
-no part of the engine; at so long a step it is only stable with dampers that over-damp its higher modes, which costs
-it nothing.
+The truth is MuJoCo at a step that has converged, which its error at twice that step shows. Its
+springs are set to the beam model's static sway (`mujoco_tree`), its dampers and modal forces give
+every mode the same damping ratio as ours. Costs are CPU time at 1/60 s, ours with the wind force
+and the poses, MuJoCo's without the wind force, which is no part of the engine; at so long a step it
+is only stable with dampers that over-damp its higher modes, which costs it nothing.
 
 """
 
@@ -28,7 +28,11 @@ from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 
 FRAME = 1.0 / 60.0
 AUTO = 0.05
-"""Error over motion that a model may say it has, where the cheapest is asked for; both root mean square."""
+"""
+Error over motion that a model may say it has, where the cheapest is asked for; both root mean
+square.
+
+"""
 
 _BLOCK = 20
 
@@ -106,11 +110,13 @@ def compare_with_mujoco(
     Parameters
     ----------
     tree, species
-        The tree and its wood; both models are without twist and without gravity, as MuJoCo's hinges are.
+        The tree and its wood; both models are without twist and without gravity, as MuJoCo's hinges
+        are.
     wind
         Mean of each frame of 1/60 s in [m/s], (t, 3).
     rung
-        Of ours; ``auto`` is the cheapest that says of itself that it errs by no more than `AUTO` of the motion.
+        Of ours; ``auto`` is the cheapest that says of itself that it errs by no more than `AUTO` of
+        the motion.
     damping_ratio
         In [-].
     steps
@@ -168,7 +174,11 @@ def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
 
 
 def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float, float]:
-    """MuJoCo's tips at one step a frame, and CPU time a simulated second of both, in turn by blocks of frames."""
+    """
+    MuJoCo's tips at one step a frame, and CPU time a simulated second of both, in turn by blocks of
+    frames.
+
+    """
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     poses = np.empty((model.tree.n_segments, 7))
     spent, spent_there = np.empty((2, len(wind)))

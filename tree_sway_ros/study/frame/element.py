@@ -1,11 +1,13 @@
 """
 Matrices of tapered Euler-Bernoulli elements in 3D, by Gauss quadrature.
 
-Twelve coordinates an element: displacement and rotation ``(u, v, w, phi, theta_y, theta_z)`` at its start
-and at its end, x along its axis. Cubic Hermite bending, linear stretch and twist (Przemieniecki 1968,
-chapters 5 and 11). The integrands are polynomials in the taper, so five points integrate them exactly.
+Twelve coordinates an element: displacement and rotation ``(u, v, w, phi, theta_y, theta_z)`` at its
+start and at its end, x along its axis. Cubic Hermite bending, linear stretch and twist
+(Przemieniecki 1968, chapters 5 and 11). The integrands are polynomials in the taper, so five points
+integrate them exactly.
 
-Symbols: E modulus [Pa], G shear modulus [Pa], rho density [kg/m^3], I second moment [m^4], L length [m].
+Symbols: E modulus [Pa], G shear modulus [Pa], rho density [kg/m^3], I second moment [m^4], L length
+[m].
 
 """
 
@@ -61,7 +63,9 @@ def element_shapes(length: Floats) -> ElementShapes:
             out[:, :, column] = value * one
         return out
 
-    def across(columns: tuple[int, int, int, int], sign: float, f: tuple[Floats, ...], p: int) -> Floats:
+    def across(
+        columns: tuple[int, int, int, int], sign: float, f: tuple[Floats, ...], p: int
+    ) -> Floats:
         # The slope coordinates are rotations: one more power of the length than the displacements.
         scale = span**-p
         a, b, c, d = columns
@@ -140,13 +144,13 @@ def geometric_stiffness(
     """
     Stiffness by the internal force and moment that the rest shape carries already, (m, 12, 12).
 
-    With F and M the internal force and moment that the tip's side exerts, N = F_x, theta the rotation
-    vector and phi its part about the axis, the second variation of the potential is
+    With F and M the internal force and moment that the tip's side exerts, N = F_x, theta the
+    rotation vector and phi its part about the axis, the second variation of the potential is
 
         N |u'|^2 - phi F_perp . theta_perp - M . (theta x theta').
 
-    For an upright stem only the first term is there: a column under its own weight (Greenhill 1881).
-    The others are what lets a leaning branch twist sideways.
+    For an upright stem only the first term is there: a column under its own weight (Greenhill
+    1881). The others are what lets a leaning branch twist sideways.
 
     Parameters
     ----------

@@ -110,7 +110,8 @@ class FrameModel:
         return out
 
     def _factor(self) -> linalg.SuperLU:
-        # Without pivoting the pivots' signs are those of the eigenvalues (Sylvester's law of inertia).
+        # Without pivoting the pivots' signs are those of the eigenvalues (Sylvester's law of
+        # inertia).
         factor = linalg.splu(
             self.stiffness,
             permc_spec="MMD_AT_PLUS_A",
@@ -178,9 +179,7 @@ def frame_model(
     offset[::sub] = base_offset
 
     shapes = element.element_shapes(length)
-    stiffness = element.elastic_stiffness(
-        shapes, length, diameter, modulus, shear_ratio * modulus
-    )
+    stiffness = element.elastic_stiffness(shapes, length, diameter, modulus, shear_ratio * modulus)
     mass = element.consistent_mass(shapes, length, diameter, density)
     axes = _element_axes(np.repeat((tree.end - tree.start) / tree.length[:, None], sub, axis=0))
     at_node = np.zeros((0, 3, 3))
@@ -198,9 +197,10 @@ def frame_model(
     mass = to_nodes.transpose(0, 2, 1) @ mass @ to_nodes
     if len(at_node):
         stiffness[:, 3:6, 3:6] += at_node
-    width_share = diameter / np.repeat(
-        0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length, sub
-    )[:, None]
+    width_share = (
+        diameter
+        / np.repeat(0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length, sub)[:, None]
+    )
     load = to_nodes.transpose(0, 2, 1) @ element.load_rows(shapes, length, width_share) @ axes
     columns = np.concatenate([_coordinates(start_node), _coordinates(end_node)], axis=1)
     segment = 3 * np.repeat(np.arange(n), sub)[:, None] + np.arange(3)
@@ -234,7 +234,10 @@ def _nodes(tree: Tree, sub: int) -> tuple[Floats, Ints, Floats]:
 
 
 def _element_axes(axis: Floats) -> Floats:
-    """Local axes as rows, x along the element, (m, 3, 3); the sections are round, so any roll will do."""
+    """
+    Local axes as rows, x along the element, (m, 3, 3); the sections are round, so any roll will do.
+
+    """
     aside = np.where(np.abs(axis[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
     y = np.cross(aside, axis)
     y /= np.linalg.norm(y, axis=1)[:, None]

@@ -82,7 +82,9 @@ def self_weight(
         end_moment[node] += base_moment + np.cross(offset[i], base_force[i])
     weight, lever = _beyond(POINTS, length, diameter, diameter_step, weight_density)
     force = end_force[1:, None] + weight[..., None] * down
-    arm = (length[:, None] * (1.0 - POINTS))[..., None] * end_force[1:, None] + lever[..., None] * down
+    arm = (length[:, None] * (1.0 - POINTS))[..., None] * end_force[1:, None] + lever[
+        ..., None
+    ] * down
     return SelfWeight(force, end_moment[1:, None] + np.cross(axis[:, None], arm), base_force)
 
 

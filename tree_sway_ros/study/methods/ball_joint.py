@@ -5,8 +5,8 @@ With u the chord, b its rest direction and W the force times its lever in [N m]:
 
     I (u'' + |u'|^2 u) = W_t - k2 u' + k1 (theta / sin theta) b_t,   x_t = x - (x.u) u
 
-A sphere has no chart here, hence none of the terms of `two_axis`: an independent statement of the same
-mechanics. Integrated by the classical Runge-Kutta method at a fraction of the step.
+A sphere has no chart here, hence none of the terms of `two_axis`: an independent statement of the
+same mechanics. Integrated by the classical Runge-Kutta method at a fraction of the step.
 
 """
 
@@ -47,7 +47,8 @@ def swing(
     Parameters
     ----------
     loads
-        W along b, e1, e2 in [N m]: (steps, 2 substeps + 1, 3), at the ends and middles of the substeps.
+        W along b, e1, e2 in [N m]: (steps, 2 substeps + 1, 3), at the ends and middles of the
+        substeps.
     dt
         Step between frames in [s].
     inertia, damping, stiffness

@@ -1,9 +1,9 @@
 """
 Many two-axis branches in blocks of sixteen, so that one instruction steps several of them.
 
-Everything a branch needs stands in one array: block, row, lane. Rows are x, y, vx, vy; wb, w1, w2; the
-eight coefficients; the three guards. Distances between the rows of a lane are then constants that the
-compiler knows, which lets it turn the loop over lanes into vector instructions.
+Everything a branch needs stands in one array: block, row, lane. Rows are x, y, vx, vy; wb, w1, w2;
+the eight coefficients; the three guards. Distances between the rows of a lane are then constants
+that the compiler knows, which lets it turn the loop over lanes into vector instructions.
 
 """
 
@@ -84,7 +84,12 @@ class BranchBlocks:
         self._data[:, rows] = padded.reshape(len(values), -1, LANES).swapaxes(0, 1)
 
     def _get(self, rows: slice) -> Array:
-        return self._data[:, rows].swapaxes(0, 1).reshape(rows.stop - rows.start, -1)[:, : self._n].copy()
+        return (
+            self._data[:, rows]
+            .swapaxes(0, 1)
+            .reshape(rows.stop - rows.start, -1)[:, : self._n]
+            .copy()
+        )
 
 
 @fused

@@ -1,10 +1,10 @@
 """
 The mechanism that the methods are set side by side on: a planar chain of pinned, sprung segments.
 
-One segment is the paper's branch. Segment i has mass m, moment of inertia J about its centre of mass,
-the lever c from its root-side node to that centre, length l, and at its root-side joint the bending
-stiffness k1 and the damping k2. Angles are absolute, from the rest direction, in [rad]; a load P in [N]
-acts at each centre of mass. SI units.
+One segment is the paper's branch. Segment i has mass m, moment of inertia J about its centre of
+mass, the lever c from its root-side node to that centre, length l, and at its root-side joint the
+bending stiffness k1 and the damping k2. Angles are absolute, from the rest direction, in [rad]; a
+load P in [N] acts at each centre of mass. SI units.
 
 """
 
@@ -48,8 +48,11 @@ class PlanarChain:
         swing = numbers[:, INERTIA] + numbers[:, MASS] * numbers[:, LEVER] ** 2
         still = np.flatnonzero(swing + numbers[:, LENGTH] ** 2 * carried == 0.0)
         if len(still):
-            raise ParameterError("no inertia about its node", where=f"segment {still[0]}",
-                                 cure="give mass and lever, or use the oscillator's static limit")
+            raise ParameterError(
+                "no inertia about its node",
+                where=f"segment {still[0]}",
+                cure="give mass and lever, or use the oscillator's static limit",
+            )
 
     @property
     def n_segments(self) -> int:
@@ -83,10 +86,11 @@ class PlanarChain:
 
     def first_order_hold(self, dt: float) -> NDArray[np.float64]:
         """
-        Exact propagator of the straight chain, (2n, 4n): next angles and rates from angles, rates, M0, M1.
+        Exact propagator of the straight chain, (2n, 4n): next angles and rates from angles, rates,
+        M0, M1.
 
-        One segment takes the closed form of `oscillators.propagator`; more take the exponential of the
-        augmented matrix (Van Loan 1978).
+        One segment takes the closed form of `oscillators.propagator`; more take the exponential of
+        the augmented matrix (Van Loan 1978).
 
         """
         n = self.n_segments
@@ -97,14 +101,14 @@ class PlanarChain:
         from scipy.linalg import expm
 
         a = np.zeros((4 * n, 4 * n))
-        a[:n, n:2 * n] = dt * np.eye(n)
-        a[n:2 * n, :n] = -dt * np.linalg.solve(inertia, self.stiffness_matrix)
-        a[n:2 * n, n:2 * n] = -dt * np.linalg.solve(inertia, self.damping_matrix)
-        a[n:2 * n, 2 * n:3 * n] = dt * np.linalg.inv(inertia)
-        a[2 * n:3 * n, 3 * n:] = np.eye(n)
+        a[:n, n : 2 * n] = dt * np.eye(n)
+        a[n : 2 * n, :n] = -dt * np.linalg.solve(inertia, self.stiffness_matrix)
+        a[n : 2 * n, n : 2 * n] = -dt * np.linalg.solve(inertia, self.damping_matrix)
+        a[n : 2 * n, 2 * n : 3 * n] = dt * np.linalg.inv(inertia)
+        a[2 * n : 3 * n, 3 * n :] = np.eye(n)
         e = np.asarray(expm(a))[: 2 * n]
-        ramp = e[:, 3 * n:]
-        return np.hstack([e[:, : 2 * n], e[:, 2 * n:3 * n] - ramp, ramp])
+        ramp = e[:, 3 * n :]
+        return np.hstack([e[:, : 2 * n], e[:, 2 * n : 3 * n] - ramp, ramp])
 
     def astype(self, dtype: Any) -> PlanarChain:
         """Return the same chain in another number type."""

@@ -1,8 +1,8 @@
 """
 Small dense linear algebra for the integrators: plain loops, so that any number type can run them.
 
-Floats compile to machine code; numbers that count their operations, or carry more digits, run the same
-lines uncompiled.
+Floats compile to machine code; numbers that count their operations, or carry more digits, run the
+same lines uncompiled.
 
 """
 

@@ -1,8 +1,8 @@
 """
 What a method is: a name, a declared order, notes on stability, and one step.
 
-A step takes the loads at the fractions of the step that the method names as its `nodes`, so that the
-same method runs on samples of a smooth wind, on means over the step, or on a wind record.
+A step takes the loads at the fractions of the step that the method names as its `nodes`, so that
+the same method runs on samples of a smooth wind, on means over the step, or on a wind record.
 
 """
 
@@ -28,10 +28,10 @@ class Method(ABC):
     """
     One time integrator; its subclasses hold one step each.
 
-    The class attributes are the declaration: `name`; `form`, "minimal" (angles) or "multiplier" (the
-    paper's coordinates); `order`, the one that a test measures; `nodes`, fractions of the step at which
-    it wants the load; `limit`, the largest w h [-] it stands without damping, infinite where there is
-    none; `notes` and `source` on its stability.
+    The class attributes are the declaration: `name`; `form`, "minimal" (angles) or "multiplier"
+    (the paper's coordinates); `order`, the one that a test measures; `nodes`, fractions of the step
+    at which it wants the load; `limit`, the largest w h [-] it stands without damping, infinite
+    where there is none; `notes` and `source` on its stability.
 
     """
 
@@ -49,7 +49,9 @@ class Method(ABC):
         return np.zeros(1)
 
     @abstractmethod
-    def start(self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float) -> Array:
+    def start(
+        self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float
+    ) -> Array:
         """
         State to start from.
 
@@ -75,7 +77,11 @@ class Method(ABC):
         """Angular velocities in [rad/s], (n,), a view of the state."""
 
     def propagator(self, inertia: Array, damping: Array, stiffness: Array, dt: float) -> Array:
-        """Return the coefficients of one step as the solver runs it, (n, 8): `step_rules.rule_propagator`."""
+        """
+        Return the coefficients of one step as the solver runs it, (n, 8):
+        `step_rules.rule_propagator`.
+
+        """
         return rule_propagator(self.name, inertia, damping, stiffness, dt)
 
     def reactions(self, chain: PlanarChain, state: Array, load: Array) -> Array:
@@ -89,7 +95,9 @@ class MinimalMethod(Method):
 
     form: ClassVar[str] = "minimal"
 
-    def start(self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float) -> Array:
+    def start(
+        self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float
+    ) -> Array:
         """State with a past that fits the equation to second order."""
         accel = minimal_form.acceleration(chain.table, theta, omega, load)
         before = theta - dt * omega + 0.5 * dt * dt * accel
@@ -110,7 +118,9 @@ class MultiplierMethod(Method):
 
     form: ClassVar[str] = "multiplier"
 
-    def start(self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float) -> Array:
+    def start(
+        self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float
+    ) -> Array:
         """State on the constraint, with the multipliers and a past that fit the equation."""
         q, v = multiplier_form.place(chain.table, theta, omega)
         accel, lam = multiplier_form.index1(chain.table, q, v, load, 0.0, 0.0)

@@ -1,13 +1,14 @@
 """
-The chain as the paper writes it: coordinates X, Y, theta of each centre of mass, held by multipliers.
+The chain as the paper writes it: coordinates X, Y, theta of each centre of mass, held by
+multipliers.
 
 ::
 
     M v' = F - G^T lam,   v = q',   phi(q) = 0,   G = d phi / d q          (Kanda and Ohya, eq. 1)
 
-phi_i = X_i - c_i u_i - X_(i-1) - (l - c)_(i-1) u_(i-1), u = (cos theta, sin theta): the root-side node of
-a segment is the tip-side node of the one before. q, v and forces have 3n entries, X, Y, theta a
-segment; phi and lam have 2n.
+phi_i = X_i - c_i u_i - X_(i-1) - (l - c)_(i-1) u_(i-1), u = (cos theta, sin theta): the root-side
+node of a segment is the tip-side node of the one before. q, v and forces have 3n entries, X, Y,
+theta a segment; phi and lam have 2n.
 
 """
 
@@ -180,8 +181,6 @@ def index1(
             for col in range(3 * n):
                 if g[row, col] != 0.0:
                     speed = speed + g[row, col] * v[col]
-            rhs[3 * n + row, 0] = (
-                rhs[3 * n + row, 0] - 2.0 * alpha * speed - beta * beta * gap[row]
-            )
+            rhs[3 * n + row, 0] = rhs[3 * n + row, 0] - 2.0 * alpha * speed - beta * beta * gap[row]
     solve(saddle(table, g, 1.0), rhs)
-    return rhs[: 3 * n, 0].copy(), rhs[3 * n:, 0].copy()
+    return rhs[: 3 * n, 0].copy(), rhs[3 * n :, 0].copy()

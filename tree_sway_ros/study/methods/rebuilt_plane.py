@@ -31,7 +31,8 @@ def run_in_rebuilt_plane(loads: Array, row: Array) -> Array:
     Returns
     -------
     Array
-        Unit vector along the branch after each step, (steps + 1, 3); NaN once the plane was undefined.
+        Unit vector along the branch after each step, (steps + 1, 3); NaN once the plane was
+        undefined.
 
     """
     out = np.empty((len(loads) + 1, 3))

@@ -14,8 +14,8 @@ def solve_regularised(
     """
     Solve M a + G^T lam = F, G a = b where G may lack rank, by the augmented Lagrangian iteration.
 
-    ``(G M^-1 G^T + eps) d = G a - b`` is positive definite whatever G repeats; each round corrects what
-    eps left over (Bayo and Ledesma 1996, Nonlinear Dynamics 9, 113).
+    ``(G M^-1 G^T + eps) d = G a - b`` is positive definite whatever G repeats; each round corrects
+    what eps left over (Bayo and Ledesma 1996, Nonlinear Dynamics 9, 113).
 
     Parameters
     ----------

@@ -51,6 +51,9 @@ def method_named(name: str) -> Method:
 
     """
     if name not in METHODS:
-        raise ParameterError(f"unknown integrator {name!r}", where="integrator",
-                             cure="take one of " + ", ".join(METHODS))
+        raise ParameterError(
+            f"unknown integrator {name!r}",
+            where="integrator",
+            cure="take one of " + ", ".join(METHODS),
+        )
     return METHODS[name]()

@@ -22,7 +22,9 @@ LASTING = [gusts.step, gusts.direction_change, gusts.turn]
 @pytest.mark.parametrize("shape", PASSING)
 @given(amplitudes, durations, starts)
 def test_a_gust_is_nothing_before_and_after(shape, amplitude, duration, start):
-    before, after = shape(np.array([start - 1.0, start + duration + 1.0]), amplitude, duration, start)
+    before, after = shape(
+        np.array([start - 1.0, start + duration + 1.0]), amplitude, duration, start
+    )
     assert before == 0.0
     assert abs(after) < 1e-12
 
@@ -30,7 +32,9 @@ def test_a_gust_is_nothing_before_and_after(shape, amplitude, duration, start):
 @pytest.mark.parametrize("shape", LASTING)
 @given(amplitudes, durations, starts)
 def test_what_lasts_is_nothing_before_and_all_of_it_after(shape, amplitude, duration, start):
-    before, after = shape(np.array([start - 1.0, start + duration + 1.0]), amplitude, duration, start)
+    before, after = shape(
+        np.array([start - 1.0, start + duration + 1.0]), amplitude, duration, start
+    )
     assert before == 0.0
     assert after == pytest.approx(amplitude)
 
@@ -40,7 +44,9 @@ def test_what_lasts_is_nothing_before_and_all_of_it_after(shape, amplitude, dura
 def test_linear_in_the_amplitude_and_carried_by_the_start(shape, amplitude, duration, start, k):
     value = shape(TIME, amplitude, duration, start)
     np.testing.assert_allclose(shape(TIME, k * amplitude, duration, start), k * value, atol=1e-10)
-    np.testing.assert_allclose(shape(TIME + 2.0, amplitude, duration, start + 2.0), value, atol=1e-8)
+    np.testing.assert_allclose(
+        shape(TIME + 2.0, amplitude, duration, start + 2.0), value, atol=1e-8
+    )
 
 
 @pytest.mark.parametrize("shape", PASSING + LASTING)

@@ -125,7 +125,10 @@ class TestClosedForms:
     @pytest.mark.parametrize("across", [False, True])
     def test_von_karman_holds_its_variance(self, across):
         total, _ = scipy.integrate.quad(
-            lambda n: float(von_karman_spectrum(n, 7.0, 1.5, 40.0, across=across)), 0.0, np.inf, limit=400
+            lambda n: float(von_karman_spectrum(n, 7.0, 1.5, 40.0, across=across)),
+            0.0,
+            np.inf,
+            limit=400,
         )
         assert total == pytest.approx(1.5**2, rel=3e-4)
 
@@ -153,7 +156,8 @@ class TestClosedForms:
 
     def test_deviations(self):
         np.testing.assert_allclose(
-            Turbulence(10.0, reference_intensity=0.16).deviations, 0.16 * 13.1 * np.array([1, 0.8, 0.5])
+            Turbulence(10.0, reference_intensity=0.16).deviations,
+            0.16 * 13.1 * np.array([1, 0.8, 0.5]),
         )
         np.testing.assert_allclose(Turbulence(10.0, intensity=0.2).deviations, (2.0, 1.6, 1.0))
 
@@ -184,7 +188,10 @@ class TestRecords:
         assert not record.any()
 
     def test_a_short_record_is_a_piece_of_a_long_one(self):
-        """A minute holds less than the full variance about its own mean, and not always the same."""
+        """
+        A minute holds less than the full variance about its own mean, and not always the same.
+
+        """
         minutes = [
             simulate_turbulence(5.0, rate=10.0, duration=60.0, rng=np.random.default_rng(seed))
             for seed in range(30)

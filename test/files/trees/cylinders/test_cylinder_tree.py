@@ -109,7 +109,11 @@ def test_merging_keeps_volume_and_reach(seed, below):
 
 
 def test_y_up_files_stand_upright():
-    rows = [((0, 5, 0), (0, 6, 0), 0.1, -1), ((0, 6, 0), (1, 6, 0), 0.1, 0), ((0, 6, 0), (0, 6, 1), 0.1, 0)]
+    rows = [
+        ((0, 5, 0), (0, 6, 0), 0.1, -1),
+        ((0, 6, 0), (1, 6, 0), 0.1, 0),
+        ((0, 6, 0), (0, 6, 1), 0.1, 0),
+    ]
     tree = built(rows, [False, True, False], up="y").tree
     np.testing.assert_allclose(tree.end, [[0, 0, 1], [1, 0, 1], [0, -1, 1]], atol=1e-12)
 

@@ -52,7 +52,11 @@ def test_cut_anywhere(compressed):
     content = mat_bytes({"s": {"a": np.arange(3.0), "b": "x"}}, compressed)
     for end in range(129, len(content)):
         with pytest.raises(FormatError):
-            _ = [field.numbers() for s in read_mat5(content[:end])["s"].structs() for field in s.values()]
+            _ = [
+                field.numbers()
+                for s in read_mat5(content[:end])["s"].structs()
+                for field in s.values()
+            ]
 
 
 def test_other_files_and_other_classes():

@@ -41,7 +41,11 @@ def test_it_sways_as_a_forest():
 
 def test_of_one_wood_its_leaves_are_too():
     birches = forest_of(None, None).of_species(species_named("birch"))
-    assert {each.species.key for each in birches.trees} == {each.tree.species for each in birches.trees} == {"birch"}
+    assert (
+        {each.species.key for each in birches.trees}
+        == {each.tree.species for each in birches.trees}
+        == {"birch"}
+    )
     birch = FILE.of_species(species_named("birch"))
     assert (birch.species.key, birch.tree.species) == ("birch", "birch")
 

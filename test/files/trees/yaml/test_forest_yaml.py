@@ -38,7 +38,9 @@ def test_trees_stand_where_the_file_says():
 def test_a_path_counts_from_the_file_and_a_tree_is_read_once(tmp_path):
     (tmp_path / "seedling.yaml").write_bytes((DATA / "seedling.yaml").read_bytes())
     path = tmp_path / "glade.yaml"
-    path.write_text(ONE + "- {name: b, tree: ./seedling.yaml, x: 3}\n- {name: c, tree: seedling.yaml}\n")
+    path.write_text(
+        ONE + "- {name: b, tree: ./seedling.yaml, x: 3}\n- {name: c, tree: seedling.yaml}\n"
+    )
     opened = []
 
     def counted(name, seed):
@@ -67,14 +69,20 @@ def test_the_example_holds_three_trees():
         ("name: x", "the file has no 'trees'"),
         ("trees:\n- {tree: t}", r"glade:2: trees\[0\] has no 'name'"),
         ("trees:\n- {name: a}", r"glade:2: trees\[0\] has no 'tree'"),
-        ("trees:\n- {name: a, tree: t, yaww: 1}", r"glade:2: unknown key 'yaww' in trees\[0\]; did you mean 'yaw'"),
+        (
+            "trees:\n- {name: a, tree: t, yaww: 1}",
+            r"glade:2: unknown key 'yaww' in trees\[0\]; did you mean 'yaw'",
+        ),
         ("trees:\n- {name: a, tree: t, x: 1 m}", r"trees\[0\].x is '1 m', not a number"),
         ("trees:\n- {name: a, tree: t, x: .inf}", r"trees\[0\].x is '.inf', not a number"),
         ("trees:\n- {name: a, tree: t, leaf_on: yes}", "leaf_on is 'yes'; give true or false"),
         ("trees:\n- {name: a, tree: t, leaf_on: [1]}", "leaf_on is a list; give true or false"),
         ("trees:\n- {name: a, tree: t, seed: -1}", r"trees\[0\].seed is -1"),
         ("trees:\n- {name: a/b, tree: t}", "glade:2: a slash in the name 'a/b'"),
-        ("trees:\n- {name: a, tree: t}\n- {name: a, tree: t}", "glade:3: two trees called 'a', the first in line 2"),
+        (
+            "trees:\n- {name: a, tree: t}\n- {name: a, tree: t}",
+            "glade:3: two trees called 'a', the first in line 2",
+        ),
         ("anemometer: [1, 2]\ntrees:\n- {name: a, tree: t}", "anemometer has 2 items; give 3"),
         ("convection_ratio: 0\ntrees:\n- {name: a, tree: t}", "convection_ratio is 0"),
     ],
@@ -104,7 +112,9 @@ def test_a_forest_holds_no_forest_and_is_no_tree(tmp_path):
     path.write_text("trees:\n- {name: inner, tree: glade.yaml}\n")
     with pytest.raises(FormatError, match=r"tree 'inner': .*a forest, where one tree is asked for"):
         open_scene(path)
-    with pytest.raises(FormatError, match=r"a forest, where one tree is asked for; name one of its trees"):
+    with pytest.raises(
+        FormatError, match=r"a forest, where one tree is asked for; name one of its trees"
+    ):
         open_tree(path)
 
 

@@ -32,7 +32,10 @@ def test_a_file_replaces_what_it_says(tmp_path):
         ("", "empty"),
         ("name: elm", "the file has no 'species'; add 'species'"),
         ("species: elm", "elm.yaml:1: unknown species 'elm'"),
-        ("species: ash\nwood: {modulus: soft}", r"elm.yaml:2: wood.modulus is 'soft', not a number"),
+        (
+            "species: ash\nwood: {modulus: soft}",
+            r"elm.yaml:2: wood.modulus is 'soft', not a number",
+        ),
         ("species: ash\nwod: {}", "elm.yaml:2: unknown key 'wod' in the file; did you mean 'wood'"),
         ("species: ash\nbranches: []", "unknown key 'branches'"),
     ],
@@ -43,13 +46,17 @@ def test_what_is_wrong_has_a_line(text, message):
 
 
 def test_a_missing_file_is_named():
-    with pytest.raises(SpeciesError, match=r"no species file 'elm\.yaml'; give a file, or one of: ash"):
+    with pytest.raises(
+        SpeciesError, match=r"no species file 'elm\.yaml'; give a file, or one of: ash"
+    ):
         open_species("elm.yaml")
 
 
 def test_it_is_taken_wherever_a_species_is(tmp_path):
     (tmp_path / "elm.yaml").write_text(ELM)
-    (tmp_path / "glade.yaml").write_text("trees:\n- {name: a, tree: benjamina, species: elm.yaml}\n")
+    (tmp_path / "glade.yaml").write_text(
+        "trees:\n- {name: a, tree: benjamina, species: elm.yaml}\n"
+    )
     (tree,) = open_scene(tmp_path / "glade.yaml").trees
     assert (tree.species.modulus, tree.tree.species) == (7.2e9, "ash")
     grown = tmp_path / "grown.yaml"

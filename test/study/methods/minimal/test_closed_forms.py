@@ -40,14 +40,17 @@ def free(name, dt, steps=300):
     return np.array(out).T
 
 
-@pytest.mark.parametrize(("name", "energy"), [
-    ("semi_implicit_euler", lambda x, v, h: v * v + x * x - h * x * v),
-    ("verlet", lambda x, v, h: v * v + x * x * (1 - h * h / 4)),
-    ("implicit_midpoint", lambda x, v, h: v * v + x * x),
-    ("exact_foh", lambda x, v, h: v * v + x * x),
-    ("exact_zoh", lambda x, v, h: v * v + x * x),
-    ("exact_about_equilibrium", lambda x, v, h: v * v + x * x),
-])
+@pytest.mark.parametrize(
+    ("name", "energy"),
+    [
+        ("semi_implicit_euler", lambda x, v, h: v * v + x * x - h * x * v),
+        ("verlet", lambda x, v, h: v * v + x * x * (1 - h * h / 4)),
+        ("implicit_midpoint", lambda x, v, h: v * v + x * x),
+        ("exact_foh", lambda x, v, h: v * v + x * x),
+        ("exact_zoh", lambda x, v, h: v * v + x * x),
+        ("exact_about_equilibrium", lambda x, v, h: v * v + x * x),
+    ],
+)
 def test_a_free_oscillator_keeps_the_energy_of_the_method(name, energy):
     h = 0.4
     kept = energy(*free(name, h), h)
@@ -62,9 +65,15 @@ def test_what_damps_by_itself_loses_energy(name):
     assert energy.max() <= 1.02 * energy[0]
 
 
-@pytest.mark.parametrize(("name", "n", "slack"), [
-    # Verlet only where no centrifugal force needs the rate it predicts: a segment alone.
-    ("verlet", 1, 1e-12), ("implicit_midpoint", 3, 1e-10), ("rk4", 1, 1e-3)])
+@pytest.mark.parametrize(
+    ("name", "n", "slack"),
+    [
+        # Verlet only where no centrifugal force needs the rate it predicts: a segment alone.
+        ("verlet", 1, 1e-12),
+        ("implicit_midpoint", 3, 1e-10),
+        ("rk4", 1, 1e-3),
+    ],
+)
 def test_symmetric_methods_run_backwards(name, n, slack):
     chain, method = uniform_chain(n, 1.0, 0.0), method_named(name)
     theta, omega = np.array([0.3, -0.1, 0.2])[:n], np.zeros(n)
@@ -85,9 +94,13 @@ def test_propagators_agree_with_the_exact_one_as_the_step_shrinks(name, ratio):
     method, w = method_named(name), 3.0
     args = np.array([0.7]), np.array([2 * ratio * w * 0.7]), np.array([0.7 * w * w])
     rest = np.array([0.3, -1.0, 2.0, 2.0])
-    gap = [np.abs((method.propagator(*args, h) - propagator(*args, h)).reshape(2, 4) @ rest).max()
-           for h in (0.02, 0.01)]
-    assert gap[1] <= gap[0] / 2 ** (method.order + 0.7) + 1e-14, "one step errs one power above the order"
+    gap = [
+        np.abs((method.propagator(*args, h) - propagator(*args, h)).reshape(2, 4) @ rest).max()
+        for h in (0.02, 0.01)
+    ]
+    assert gap[1] <= gap[0] / 2 ** (method.order + 0.7) + 1e-14, (
+        "one step errs one power above the order"
+    )
 
 
 @pytest.mark.parametrize("name", MINIMAL)

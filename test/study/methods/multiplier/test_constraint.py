@@ -18,8 +18,16 @@ CHAIN = uniform_chain(2, 1.0, 0.0)
 MASS = CHAIN.table[:, [0, 0, 1]].ravel()
 THETA, OMEGA = np.array([0.4, 0.9]), np.array([1.0, -3.0])
 LOAD = np.array([[1.0, 2.0], [-0.5, 1.0]])
-HELD = ("projection", "rattle", "radau_ggl", "multiplier_implicit_midpoint", "newmark", "hht",
-        "generalized_alpha", "multiplier_bdf2")
+HELD = (
+    "projection",
+    "rattle",
+    "radau_ggl",
+    "multiplier_implicit_midpoint",
+    "newmark",
+    "hht",
+    "generalized_alpha",
+    "multiplier_bdf2",
+)
 
 
 def run(method, seconds, dt=0.01):
@@ -37,13 +45,18 @@ def test_positions_stay_on_the_constraint_to_rounding(name):
     assert method.gap(CHAIN, run(method, 5.0)) < 1e-12
 
 
-@pytest.mark.parametrize("name", ["projection", "rattle", "radau_ggl", "multiplier_implicit_midpoint"])
+@pytest.mark.parametrize(
+    "name", ["projection", "rattle", "radau_ggl", "multiplier_implicit_midpoint"]
+)
 def test_velocities_too_where_the_method_says_so(name):
     assert speed_gap(run(method_named(name), 5.0)) < 1e-11
 
 
 def test_a_bare_index_1_form_drifts():
-    drift = [method_named("multiplier_rk4").gap(CHAIN, run(method_named("multiplier_rk4"), t)) for t in (4, 16)]
+    drift = [
+        method_named("multiplier_rk4").gap(CHAIN, run(method_named("multiplier_rk4"), t))
+        for t in (4, 16)
+    ]
     assert drift[1] > 4 * drift[0] > 1e-9
     by_velocity = Projection(position=False)
     assert 1e-10 < by_velocity.gap(CHAIN, run(by_velocity, 16)) < drift[1]
@@ -63,7 +76,9 @@ def test_baumgarte_heals_a_gap_at_the_pace_of_its_gains(base):
     for _ in range(100):
         type(method).kernel(CHAIN.table, state, np.zeros((3, 2, 2)), dt, options)
     expected = (1 + 2.0) * np.exp(-2.0) * start
-    assert form.constraint(CHAIN.table, state[0]) == pytest.approx(expected, abs=2e-2 * np.abs(start).max())
+    assert form.constraint(CHAIN.table, state[0]) == pytest.approx(
+        expected, abs=2e-2 * np.abs(start).max()
+    )
 
 
 def test_projection_is_the_shortest_way_in_the_mass_metric():
@@ -95,12 +110,23 @@ def test_index_3_solution_satisfies_its_equations():
     q1, v1 = q + 0.25 * h * h * accel, v + 0.5 * h * accel
     pull = form.jacobian(chain.table, q1).T @ lam
     assert MASS * accel + pull == pytest.approx(form.forces(chain.table, q1, v1, LOAD), abs=1e-8)
-    assert form.constraint(chain.table, q + h * v + 0.5 * h * h * accel) == pytest.approx(0.0, abs=1e-13)
+    assert form.constraint(chain.table, q + h * v + 0.5 * h * h * accel) == pytest.approx(
+        0.0, abs=1e-13
+    )
     assert solve_index3(*args, LOAD * np.nan, accel, lam) == -1
 
 
-@pytest.mark.parametrize("name", ["newmark", "hht", "generalized_alpha", "multiplier_bdf2",
-                                  "multiplier_implicit_midpoint", "radau_ggl"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "newmark",
+        "hht",
+        "generalized_alpha",
+        "multiplier_bdf2",
+        "multiplier_implicit_midpoint",
+        "radau_ggl",
+    ],
+)
 def test_a_step_that_fails_is_told_and_leaves_the_state(name):
     method = method_named(name)
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)
@@ -115,7 +141,9 @@ def test_rattle_runs_backwards():
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)
     for _ in range(2):
         for _ in range(50):
-            method.kernel(CHAIN.table, state, np.stack([LOAD, LOAD]), 0.01, method.options(CHAIN, 0.01))
+            method.kernel(
+                CHAIN.table, state, np.stack([LOAD, LOAD]), 0.01, method.options(CHAIN, 0.01)
+            )
         moved = method.angles(state).copy()
         state[1] *= -1.0
     assert moved == pytest.approx(THETA, abs=1e-10)

@@ -24,8 +24,16 @@ def test_radau_satisfies_the_conditions_of_order_five():
     assert np.linalg.solve(WEIGHTS.T, b) == pytest.approx([0, 0, 1], abs=1e-12), "stiffly accurate"
 
 
-@pytest.mark.parametrize("method", [
-    GeneralizedAlpha(rho=0.0), GeneralizedAlpha(rho=0.5), GeneralizedAlpha(rho=1.0), Hht(alpha=0.2), Newmark()])
+@pytest.mark.parametrize(
+    "method",
+    [
+        GeneralizedAlpha(rho=0.0),
+        GeneralizedAlpha(rho=0.5),
+        GeneralizedAlpha(rho=1.0),
+        Hht(alpha=0.2),
+        Newmark(),
+    ],
+)
 def test_weights_are_those_of_second_order_without_growth(method):
     am, af, beta, gamma = method.weights()
     assert gamma == pytest.approx(0.5 - am + af)
@@ -52,7 +60,9 @@ def test_hht_without_alpha_is_newmark():
     assert Hht(alpha=1 / 3).weights()[3] == pytest.approx(5 / 6)
 
 
-@pytest.mark.parametrize(("rho", "least", "most"), [(1.0, 0.995, 1.001), (0.8, 0.9, 0.999), (0.0, 0.0, 0.6)])
+@pytest.mark.parametrize(
+    ("rho", "least", "most"), [(1.0, 0.995, 1.001), (0.8, 0.9, 0.999), (0.0, 0.0, 0.6)]
+)
 def test_the_smaller_the_radius_the_faster_a_coarse_swing_dies(rho, least, most):
     """A hundred steps of w h = .63: Newmark's rule keeps the swing, full damping eats it."""
     chain, method = single_segment(1.0, 0.0), GeneralizedAlpha(rho=rho)
@@ -64,6 +74,8 @@ def test_linearly_implicit_euler_damps_as_declared():
     """At .02 and 2 Hz, 60 steps a second, the decay is that of about .12."""
     chain, method = single_segment(2.0, 0.02), method_named("linearly_implicit_euler")
     theta = integrate(method, chain, np.zeros((120, 1, 1, 2)), 1 / 60, theta=[1e-3]).theta[:, 0]
-    peaks = np.abs(theta)[1:-1][(np.abs(theta)[1:-1] >= np.abs(theta)[:-2]) & (np.abs(theta)[1:-1] > np.abs(theta)[2:])]
+    peaks = np.abs(theta)[1:-1][
+        (np.abs(theta)[1:-1] >= np.abs(theta)[:-2]) & (np.abs(theta)[1:-1] > np.abs(theta)[2:])
+    ]
     decrement = -np.polyfit(np.arange(len(peaks)), np.log(peaks), 1)[0] / np.pi
     assert decrement / np.sqrt(1 + decrement**2) == pytest.approx(0.12, abs=0.01)

@@ -36,8 +36,8 @@ class GustEvent:
     Parameters
     ----------
     kind
-        ``one_minus_cos``, ``extreme_operating_gust``, ``step`` (speeds), ``direction_change`` or ``turn``
-        (angles), as in `tree_sway_ros.core.gusts`.
+        ``one_minus_cos``, ``extreme_operating_gust``, ``step`` (speeds), ``direction_change`` or
+        ``turn`` (angles), as in `tree_sway_ros.core.gusts`.
     amplitude
         Speed in [m/s] or angle in [rad].
     duration

@@ -1,8 +1,9 @@
 """
 Gusts, steps and turns of the wind: pure functions of time that add onto any base wind.
 
-Speeds add along the wind in [m/s]; angles turn it about the vertical in [rad], counter-clockwise seen from
-above (REP-103). Gusts pass; steps and turns last. The IEC shapes are those of IEC 61400-1:2005, 6.3.2.
+Speeds add along the wind in [m/s]; angles turn it about the vertical in [rad], counter-clockwise
+seen from above (REP-103). Gusts pass; steps and turns last. The IEC shapes are those of IEC
+61400-1:2005, 6.3.2.
 
 """
 
@@ -20,9 +21,7 @@ _LARGEST_ANGLE = 1e3
 _LONGEST = 1e6
 
 
-def one_minus_cos(
-    time: ArrayLike, amplitude: float, duration: float, start: float = 0.0
-) -> Floats:
+def one_minus_cos(time: ArrayLike, amplitude: float, duration: float, start: float = 0.0) -> Floats:
     """
     Return the speed of a 1-cos gust: A/2 (1 - cos(2 pi t/T)).
 

@@ -1,18 +1,19 @@
 """
 Turbulent wind at one point: the Kaimal and von Karman spectra, and records drawn from them.
 
-A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka & Deodatis
-1991), the usual practice of wind engineering: every record holds its spectrum line by line and its variance
-exactly, and tends to a Gaussian process. The three components are independent (IEC 61400-1 asks for no
-shear stress at a point).
+A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
+Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by line
+and its variance exactly, and tends to a Gaussian process. The three components are independent (IEC
+61400-1 asks for no shear stress at a point).
 
-A sampled record cannot hold what lies above half its rate, nor below one over its period. That variance is
-not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz, 10 m and 7 m/s this
-lifts u, v, w by .1, .2, .4 dB; at 1 Hz it lifts w by 3 dB, so do not read spectra from a slow record.
+A sampled record cannot hold what lies above half its rate, nor below one over its period. That
+variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz, 10
+m and 7 m/s this lifts u, v, w by .1, .2, .4 dB; at 1 Hz it lifts w by 3 dB, so do not read spectra
+from a slow record.
 
-Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard deviation
-[m/s], Lambda1 turbulence scale of IEC 61400-1 [m]. Axes of a record: u along the mean wind, v to its left,
-w up.
+Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard
+deviation [m/s], Lambda1 turbulence scale of IEC 61400-1 [m]. Axes of a record: u along the mean
+wind, v to its left, w up.
 
 """
 
@@ -34,8 +35,8 @@ TURBULENCE_MODELS = ("kaimal", "von_karman")
 # IEC 61400-1: standard deviations over that of u, and Kaimal scales over Lambda1, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
 _KAIMAL_SCALES = np.array([8.1, 2.7, 0.66])
-# Von Karman scales that share the inertial subrange of Kaimal, and so its rate of dissipation. For u this
-# is IEC's own 3.5 Lambda1; for v and w the standard's 4/3 S_u of local isotropy is kept.
+# Von Karman scales that share the inertial subrange of Kaimal, and so its rate of dissipation. For
+# u this is IEC's own 3.5 Lambda1; for v and w the standard's 4/3 S_u of local isotropy is kept.
 _SUBRANGE_KAIMAL = 4.0 / 6.0 ** (5 / 3)
 _SUBRANGE_VON_KARMAN = np.array([4.0 / 70.8 ** (5 / 6)] + [4.0 * 755.2 / 283.2 ** (11 / 6)] * 2)
 _VON_KARMAN_SCALES = _KAIMAL_SCALES * (_SUBRANGE_VON_KARMAN / _SUBRANGE_KAIMAL) ** 1.5
@@ -155,7 +156,10 @@ class Turbulence:
 
     @cached_property
     def deviations(self) -> Floats:
-        """Standard deviations of u, v, w in [m/s], (3,): IEC 61400-1:2005, equation 11 and table B.1."""
+        """
+        Standard deviations of u, v, w in [m/s], (3,): IEC 61400-1:2005, equation 11 and table B.1.
+
+        """
         if self.intensity is not None:
             along = self.intensity * self.mean_speed
         else:
@@ -169,7 +173,10 @@ class Turbulence:
         return turbulence_scale(self.height) * ratios
 
     def spectrum(self, frequency: ArrayLike) -> Floats:
-        """Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""
+        """
+        Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3).
+
+        """
         columns = []
         for component, (deviation, scale) in enumerate(
             zip(self.deviations.tolist(), self.scales.tolist(), strict=True)

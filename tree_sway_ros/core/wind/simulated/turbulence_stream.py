@@ -1,11 +1,11 @@
 """
 Turbulence without end: any tick of a stream that never repeats and has no seams.
 
-The stream is a sum of records, one begun every half period, each faded in and out by half a sine. The
-squares of two neighbouring fades sum to one and the records are independent, so that variance and spectrum
-are the same at every tick (the spectrum smeared by no more than one line). Block k draws its phases from
-(seed, k) alone: a tick has one value, whichever ticks were asked for before, and a change of mean or
-intensity under the same seed keeps the pattern of the gusts.
+The stream is a sum of records, one begun every half period, each faded in and out by half a sine.
+The squares of two neighbouring fades sum to one and the records are independent, so that variance
+and spectrum are the same at every tick (the spectrum smeared by no more than one line). Block k
+draws its phases from (seed, k) alone: a tick has one value, whichever ticks were asked for before,
+and a change of mean or intensity under the same seed keeps the pattern of the gusts.
 
 """
 

@@ -1,9 +1,10 @@
 """
 Cylinders of a scanned or digitised tree to a tree.
 
-A format's own file only parses; what follows is the same for all: branches that lost their parent are
-set on the nearest cylinder, tiny cylinders are merged, chains of extensions become branches, diameters
-are smoothed if asked for, and the base is moved to the origin. Each step says in a note what it did.
+A format's own file only parses; what follows is the same for all: branches that lost their parent
+are set on the nearest cylinder, tiny cylinders are merged, chains of extensions become branches,
+diameters are smoothed if asked for, and the base is moved to the origin. Each step says in a note
+what it did.
 
 """
 
@@ -118,7 +119,9 @@ def _check(cylinders: Cylinders, source: str) -> None:
     if len(cylinders.start) == 0:
         raise FormatError("no cylinders", where=source)
     values = np.hstack([cylinders.start, cylinders.end, cylinders.diameter])
-    for index in np.flatnonzero(~np.isfinite(values).all(axis=1) | (np.abs(values) > MAX_COORDINATE).any(axis=1)):
+    for index in np.flatnonzero(
+        ~np.isfinite(values).all(axis=1) | (np.abs(values) > MAX_COORDINATE).any(axis=1)
+    ):
         raise TreeError(
             f"a number that is not finite or too large: {values[index].tolist()}",
             where=cylinders.labels[index],

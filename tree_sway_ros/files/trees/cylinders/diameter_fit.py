@@ -2,7 +2,8 @@
 Diameters that a scan got wrong: a robust taper a branch, and twigs as thin as they are.
 
 A laser sees a twig as thick as its own spot; cylinders thinner than some 5 cm come out too thick
-(Demol et al. 2022, Methods in Ecology and Evolution, review such errors), and single ones are far off.
+(Demol et al. 2022, Methods in Ecology and Evolution, review such errors), and single ones are far
+off.
 
 """
 
@@ -24,8 +25,9 @@ def fitted_taper(tree: Tree) -> Tree:
     """
     Replace the diameters of each branch by a straight taper along it.
 
-    Fitted by the median of the slopes between all pairs of segments (Theil 1950, Sen 1968), which up to
-    29 % of outliers do not move; never widening to the tip. A branch of one segment is left as it is.
+    Fitted by the median of the slopes between all pairs of segments (Theil 1950, Sen 1968), which
+    up to 29 % of outliers do not move; never widening to the tip. A branch of one segment is left
+    as it is.
 
     """
     base, tip = tree.base_diameter.copy(), tree.tip_diameter.copy()
@@ -54,9 +56,10 @@ def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -
     """
     Make what is thinner than a scan can see taper to a measured twig diameter.
 
-    From the place where a branch first gets thinner than is trusted, its diameter falls in a straight
-    line to that of a twig at its tip; it begins no thicker than what it sits on. After the idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of
-    untrusted cylinders by a taper towards twigs measured by hand.
+    From the place where a branch first gets thinner than is trusted, its diameter falls in a
+    straight line to that of a twig at its tip; it begins no thicker than what it sits on. After the
+    idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of untrusted cylinders
+    by a taper towards twigs measured by hand.
 
     Parameters
     ----------

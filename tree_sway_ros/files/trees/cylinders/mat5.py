@@ -1,9 +1,9 @@
 """
 Variables of a MATLAB file of version 5 to 7, read in Python alone.
 
-A damaged file can crash a reader in C along with the process; here the worst is an error. Numeric arrays,
-structs and arrays of structs are read, each only when it is asked for; what else a file may hold is passed
-over. Source: MathWorks, MAT-File Format (level 5), chapter 1.
+A damaged file can crash a reader in C along with the process; here the worst is an error. Numeric
+arrays, structs and arrays of structs are read, each only when it is asked for; what else a file may
+hold is passed over. Source: MathWorks, MAT-File Format (level 5), chapter 1.
 
 """
 
@@ -22,7 +22,18 @@ from tree_sway_ros.files.text_file import MAX_BYTES
 
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
-_NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
+_NUMBERS = {
+    1: "i1",
+    2: "u1",
+    3: "i2",
+    4: "u2",
+    5: "i4",
+    6: "u4",
+    7: "f4",
+    9: "f8",
+    12: "i8",
+    13: "u8",
+}
 _CELL, _STRUCT, _OBJECT, _NUMERIC = 1, 2, 3, range(6, 16)
 
 

@@ -1,4 +1,7 @@
-"""Merge cylinders that are too short to have a direction into their neighbours of the same branch."""
+"""
+Merge cylinders that are too short to have a direction into their neighbours of the same branch.
+
+"""
 
 from __future__ import annotations
 
@@ -37,8 +40,8 @@ def merge_tiny(cylinders: Cylinders, order: list[int], below: float) -> MergedCy
     """
     Merge cylinders shorter than a length.
 
-    A tiny one goes to the cylinder before it in its branch, which is drawn out to its end; the first
-    of a branch to the one after it. The volume is kept. What grew on it grows on the other.
+    A tiny one goes to the cylinder before it in its branch, which is drawn out to its end; the
+    first of a branch to the one after it. The volume is kept. What grew on it grows on the other.
 
     Parameters
     ----------
@@ -86,7 +89,13 @@ def merge_tiny(cylinders: Cylinders, order: list[int], below: float) -> MergedCy
 
 
 def _merge(
-    start: Floats, end: Floats, diameter: Floats, kept: int, gone: int, begin: Floats, finish: Floats
+    start: Floats,
+    end: Floats,
+    diameter: Floats,
+    kept: int,
+    gone: int,
+    begin: Floats,
+    finish: Floats,
 ) -> None:
     volume = _volume(start, end, diameter, kept) + _volume(start, end, diameter, gone)
     start[kept], end[kept] = begin.copy(), finish.copy()

@@ -1,9 +1,9 @@
 """
 SimpleForest's table of cylinders (Hackenberg et al. 2021): numbered from 0, the root's parent -1.
 
-It has no column for the extension. The branch order says as much: of the children of a cylinder the one
-of the same order goes on; ``branchID`` numbers whole limbs with all they carry, not chains. Of several of
-the same order, the one with the greatest growth length, all that hangs on it, goes on.
+It has no column for the extension. The branch order says as much: of the children of a cylinder the
+one of the same order goes on; ``branchID`` numbers whole limbs with all they carry, not chains. Of
+several of the same order, the one with the greatest growth length, all that hangs on it, goes on.
 
 """
 

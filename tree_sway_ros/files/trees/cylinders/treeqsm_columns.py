@@ -1,10 +1,10 @@
 """
 Columns of a TreeQSM cylinder model, in whichever file they come.
 
-Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes the same columns numbered from 0,
-parent -1 at the root. A cylinder that is the extension of its parent goes on with the branch; any other
-starts one, on its parent's axis or skin and not at its end. Sources: Raumonen et al. (2013), TreeQSM 2.4
-manual.
+Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes the same columns numbered from
+0, parent -1 at the root. A cylinder that is the extension of its parent goes on with the branch;
+any other starts one, on its parent's axis or skin and not at its end. Sources: Raumonen et al.
+(2013), TreeQSM 2.4 manual.
 
 """
 

@@ -1,8 +1,8 @@
 """
 TreeQSM's MATLAB files: structs with a field ``cylinder``, or the loose variables of version 2.0.
 
-Versions 5 to 7 of the file format are read here; version 7.3 is HDF5 and needs h5py. A file may hold
-several models, as variables or as an array of structs; each is a tree.
+Versions 5 to 7 of the file format are read here; version 7.3 is HDF5 and needs h5py. A file may
+hold several models, as variables or as an array of structs; each is a tree.
 
 """
 

@@ -1,9 +1,9 @@
 """
 TreeQSM's text of a cylinder model: version 2.3 without a header, 2.4 and PyTLidar with one.
 
-Version 2.3: 15 columns, radius, length, start (3), axis (3), parent, extension, added, unmodified radius,
-branch, order, position. Version 2.4: the header names start and axis once, though each has three
-columns. Tabs or spaces between them.
+Version 2.3: 15 columns, radius, length, start (3), axis (3), parent, extension, added, unmodified
+radius, branch, order, position. Version 2.4: the header names start and axis once, though each has
+three columns. Tabs or spaces between them.
 
 """
 

@@ -1,10 +1,11 @@
 """
 Digitised trees in MTG files (FORM-A), with the position and diameter of each vertex.
 
-Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its diameter
-there in millimetres, as AMAPmod's digitising has them; ``length_unit`` and ``diameter_unit`` say
-otherwise. A vertex of a coarser scale, such as an axis, has the position of its base. A segment goes from
-the vertex before, or from the base of its axis, to each vertex of the finest scales.
+Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its
+diameter there in millimetres, as AMAPmod's digitising has them; ``length_unit`` and
+``diameter_unit`` say otherwise. A vertex of a coarser scale, such as an axis, has the position of
+its base. A segment goes from the vertex before, or from the base of its axis, to each vertex of the
+finest scales.
 
 """
 
@@ -97,7 +98,9 @@ def read_mtg(
 
 def _scale_of_segments(vertices: list[MtgVertex], placed: list[bool]) -> int:
     """Return the finest scale that has positions."""
-    return max((v.scale for v, is_placed in zip(vertices, placed, strict=True) if is_placed), default=0)
+    return max(
+        (v.scale for v, is_placed in zip(vertices, placed, strict=True) if is_placed), default=0
+    )
 
 
 def _before(

@@ -2,8 +2,8 @@
 The multiscale tree graph of an MTG file in the code FORM-A (Godin & Caraglio 1998).
 
 Each line of the section MTG holds a vertex, in the column that is its depth, and the values of its
-features. ``/`` decomposes, ``<`` goes on, ``+`` branches; with ``^`` before, it does so from the vertex
-above in its own column, else from the latest in the column before.
+features. ``/`` decomposes, ``<`` goes on, ``+`` branches; with ``^`` before, it does so from the
+vertex above in its own column, else from the latest in the column before.
 
 """
 
@@ -79,9 +79,7 @@ def parse_mtg(lines: list[str], source: str) -> list[MtgVertex]:
         code = cells[column].strip()
         goes_on = code.startswith("^")
         if column - (not goes_on) >= len(latest):
-            raise TreeError(
-                f"'{code[:20]}' sits on nothing", where=where, cure="check its column"
-            )
+            raise TreeError(f"'{code[:20]}' sits on nothing", where=where, cure="check its column")
         reference = latest[column] if goes_on else (latest[column - 1] if column else -1)
         reference = _add(vertices, code.removeprefix("^"), reference, scales, where)
         del latest[column:]

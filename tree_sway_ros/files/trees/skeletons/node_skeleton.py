@@ -73,7 +73,10 @@ class Skeleton:
 
 
 def _one_root(parent: Ints, width: Floats) -> Ints:
-    """Several segments may begin at the root node: the thickest is the stem, the others sit on it."""
+    """
+    Several segments may begin at the root node: the thickest is the stem, the others sit on it.
+
+    """
     roots = np.flatnonzero(parent < 0)
     if len(roots) > 1:
         stem = roots[np.argmax(width[roots])]

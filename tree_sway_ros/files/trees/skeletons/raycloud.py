@@ -1,9 +1,10 @@
 """
 RayCloudTools' tree file (Lowe & Stepanas 2021): a tree a line, its nodes one after the other.
 
-After comments a header, such as ``height,crown_radius, x,y,z,radius,parent_id,section_id``: attributes of
-the tree, if any, then the fields of a node. The first node of a line is the root, parent -1, and has no
-volume; each other one is a cylinder from its parent's point to its own, of its own radius.
+After comments a header, such as ``height,crown_radius, x,y,z,radius,parent_id,section_id``:
+attributes of the tree, if any, then the fields of a node. The first node of a line is the root,
+parent -1, and has no volume; each other one is a cylinder from its parent's point to its own, of
+its own radius.
 
 """
 
@@ -76,7 +77,9 @@ def read_treefile(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
         raise FormatError("no trees", where=source)
     if not 0 <= tree <= len(trees):
         raise ParameterError(
-            f"tree {tree} of {len(trees)}", where=source, cure=f"give 1 to {len(trees)}, or 0 for all"
+            f"tree {tree} of {len(trees)}",
+            where=source,
+            cure=f"give 1 to {len(trees)}, or 0 for all",
         )
     return (trees[int(tree) - 1],) if tree else tuple(trees)
 

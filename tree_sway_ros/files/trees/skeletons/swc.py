@@ -1,8 +1,8 @@
 """
 SWC, the skeleton format of neuroscience, which tree reconstructions use too.
 
-A node a line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of its own. SWC has
-no unit: ``unit`` says how many metres one is.
+A node a line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of its own.
+SWC has no unit: ``unit`` says how many metres one is.
 
 """
 

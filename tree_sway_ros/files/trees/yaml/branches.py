@@ -50,7 +50,9 @@ def branch_segments(
         A parent that is not there, a cycle, not exactly one stem, a branch in the air.
 
     """
-    where = [f"{source}:{line}: branch '{b['name']}'" for b, line in zip(branches, lines, strict=True)]
+    where = [
+        f"{source}:{line}: branch '{b['name']}'" for b, line in zip(branches, lines, strict=True)
+    ]
     index = _indices(branches, where)
     parents = _parents(branches, index, where)
     table = SegmentTable(branch_names=[branch["name"] for branch in branches])
@@ -147,9 +149,7 @@ def diameter_pair(diameter: float | list[float]) -> list[float]:
     return list(diameter) if isinstance(diameter, list) else [diameter, diameter]
 
 
-def _attachment(
-    branch: Values, on: _Placed, first_node: Floats, where: str
-) -> tuple[int, Floats]:
+def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> tuple[int, Floats]:
     """Return the parent's segment, and the point that the branch's own points are offsets from."""
     axis = on.end - on.start
     length = np.linalg.norm(axis, axis=1)

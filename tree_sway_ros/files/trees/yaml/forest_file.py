@@ -55,7 +55,11 @@ class ForestFile:
 
     @cached_property
     def tree(self) -> Tree:
-        """All trees as one record where they stand, names as ``tree/branch``; to be described, drawn, written."""
+        """
+        All trees as one record where they stand, names as ``tree/branch``; to be described, drawn,
+        written.
+
+        """
         return joined([each.placed() for each in self.trees], self.name)
 
     def of_species(self, species: Species) -> ForestFile:
@@ -103,7 +107,10 @@ class ForestFile:
         )
 
     def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
-        """Place clusters of leaves, as many on a tree as its leaf area is of all; None without leaves."""
+        """
+        Place clusters of leaves, as many on a tree as its leaf area is of all; None without leaves.
+
+        """
         area = np.array(
             [
                 foliage_of(each.tree).area.sum() if each.bears_leaves(leaf_on) else 0.0

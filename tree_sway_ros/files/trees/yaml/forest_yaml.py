@@ -1,8 +1,8 @@
 """
 The YAML form of a forest: which trees, and where each stands.
 
-A tree is the name of a built-in one or a file of any format, found from the forest's own folder. Keys, kinds
-and ranges are those of ``forest_schema.json`` beside this file::
+A tree is the name of a built-in one or a file of any format, found from the forest's own folder.
+Keys, kinds and ranges are those of ``forest_schema.json`` beside this file::
 
     name: glade
     trees:
@@ -128,9 +128,7 @@ def _standing(
     return standing, tree_file.notes
 
 
-def _refuse_same_names(
-    entries: list[dict[str, Any]], nodes: list[YamlNode], source: str
-) -> None:
+def _refuse_same_names(entries: list[dict[str, Any]], nodes: list[YamlNode], source: str) -> None:
     lines: dict[str, int] = {}
     for entry, node in zip(entries, nodes, strict=True):
         name = entry["name"]

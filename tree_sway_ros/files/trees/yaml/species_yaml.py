@@ -1,8 +1,8 @@
 """
 A species by its key, or a file of one's own beside the table.
 
-The file says which entry of the table the species is like and what is measured otherwise, in the keys of a tree's
-YAML; leaves are those of that entry::
+The file says which entry of the table the species is like and what is measured otherwise, in the
+keys of a tree's YAML; leaves are those of that entry::
 
     name: elm of the park
     species: ash
@@ -49,7 +49,8 @@ def open_species(key_or_path: str | Path) -> Species:
         return species_named(text)
     if not path.exists():
         raise SpeciesError(
-            f"no species file '{text}'", cure=f"give a file, or one of: {', '.join(sorted(species_keys()))}"
+            f"no species file '{text}'",
+            cure=f"give a file, or one of: {', '.join(sorted(species_keys()))}",
         )
     return parse_species(read_text(path), str(path))
 

@@ -2,8 +2,8 @@
 The YAML form of a tree, which a person can write by hand.
 
 Either ``branches``, each with a name, the parent's name and its nodes (x, y, z, diameter), or plain
-``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its values by
-measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` beside this file::
+``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its values
+by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` beside this file::
 
     name: seedling
     species: oak
@@ -73,7 +73,11 @@ def parse_yaml_tree(text: str, source: str = "text", default_name: str = "tree")
 
 
 def species_of(values: dict[str, Any], root: YamlNode, source: str) -> Species:
-    """Return the table's species that checked values name, with the wood they give in place of the table's."""
+    """
+    Return the table's species that checked values name, with the wood they give in place of the
+    table's.
+
+    """
     key = values.get("species", "broadleaf")
     try:
         species = species_named(key)

@@ -28,19 +28,41 @@ def run(full: bool = False) -> list[Row]:
     rows = []
     for kind, bound in ((np.float64, 1e-9), (np.float32, 1e-5)):
         worst = max(kernel_growth(r, z, kind) for r in RATIOS for z in DAMPING)
-        rows.append(holds(f"exact_foh kernel, w h .01-1000, z 0-5, {kind.__name__}",
-                          f"energy never grows ({bound:.0e})", f"{worst:.1e}", worst <= bound))
+        rows.append(
+            holds(
+                f"exact_foh kernel, w h .01-1000, z 0-5, {kind.__name__}",
+                f"energy never grows ({bound:.0e})",
+                f"{worst:.1e}",
+                worst <= bound,
+            )
+        )
     steps = STEPS if full else 200
     for kind, bound in ((np.float64, 1e-9), (np.float32, 1e-5)):
-        worst = max(growth(method_named("radau_ggl"), r, z, steps, 1e-2, kind)
-                    for r in RATIOS for z in DAMPING)
-        rows.append(holds(f"radau_ggl, the same, {steps} steps, {kind.__name__}",
-                          f"energy never grows ({bound:.0e})", f"{worst:.1e}", worst <= bound))
-    for name, ratio in (("semi_implicit_euler", 2.1), ("rk4", 3.0),
-                        ("multiplier_explicit_euler", 0.1), ("newmark", 1.9)):
+        worst = max(
+            growth(method_named("radau_ggl"), r, z, steps, 1e-2, kind)
+            for r in RATIOS
+            for z in DAMPING
+        )
+        rows.append(
+            holds(
+                f"radau_ggl, the same, {steps} steps, {kind.__name__}",
+                f"energy never grows ({bound:.0e})",
+                f"{worst:.1e}",
+                worst <= bound,
+            )
+        )
+    for name, ratio in (
+        ("semi_implicit_euler", 2.1),
+        ("rk4", 3.0),
+        ("multiplier_explicit_euler", 0.1),
+        ("newmark", 1.9),
+    ):
         energy = growth(method_named(name), ratio, 0.0, STEPS, 1e-2, np.float64)
-        rows.append(fails(f"{name} at w h = {ratio}", "dies", f"energy x {1 + energy:.1e}",
-                          not energy < DEAD))
+        rows.append(
+            fails(
+                f"{name} at w h = {ratio}", "dies", f"energy x {1 + energy:.1e}", not energy < DEAD
+            )
+        )
     return rows
 
 
@@ -57,15 +79,20 @@ def kernel_growth(ratio: float, damping_ratio: float, kind: Any) -> float:
     guard = np.array([0.0, np.inf, np.inf]).astype(kind)
     worst = 0.0
     for start in ((0.3, 0.0), (0.0, 0.3 * w)):
-        states = run_branch(np.zeros((STEPS, 3), kind), row, guard,
-                            np.array([start[0], 0.0, start[1], 0.0]).astype(kind)).astype(float)
+        states = run_branch(
+            np.zeros((STEPS, 3), kind),
+            row,
+            guard,
+            np.array([start[0], 0.0, start[1], 0.0]).astype(kind),
+        ).astype(float)
         energy = (states[:, 2] / w) ** 2 + states[:, 0] ** 2
         worst = max(worst, _rise(energy))
     return worst
 
 
-def growth(method: Method, ratio: float, damping_ratio: float, steps: int, angle: float,
-           kind: Any) -> float:
+def growth(
+    method: Method, ratio: float, damping_ratio: float, steps: int, angle: float, kind: Any
+) -> float:
     """Largest rise of a method's energy over its smallest so far, relative to the first."""
     w = ratio / DT
     chain = single_segment(w / (2 * np.pi), damping_ratio).astype(kind)

@@ -20,7 +20,8 @@ def fit(samples: NDArray[np.float64], dt: float) -> tuple[float, float]:
     """
     Frequency in [Hz] and damping ratio of a free decay, from its two-term recurrence.
 
-    Two real samples a period cannot tell a sign: the frequency must stay below half the sample rate.
+    Two real samples a period cannot tell a sign: the frequency must stay below half the sample
+    rate.
 
     """
     x = np.asarray(samples, dtype=float)
@@ -41,14 +42,27 @@ def run(full: bool = False) -> list[Row]:
             states = branch.run(np.zeros((60, 3)), np.array([0.2, 0.0, 0.0, 0.0]), kind)
             found, ratio = fit(states[:, 0], DT)
             worst = max(worst, abs(found / frequency - 1), abs(ratio - RATIO))
-        rows.append(holds(f"exact_foh kernel, .5-16 Hz, {kind.__name__}",
-                          f"f/f0 - 1 and z - .02 <= {bound:.0e}", f"{worst:.1e}", worst <= bound))
+        rows.append(
+            holds(
+                f"exact_foh kernel, .5-16 Hz, {kind.__name__}",
+                f"f/f0 - 1 and z - .02 <= {bound:.0e}",
+                f"{worst:.1e}",
+                worst <= bound,
+            )
+        )
     for frequency in (2.0,):
         chain = single_segment(frequency, RATIO)
         calm = np.zeros((240, 1, 1, 2))
-        theta = integrate(method_named("linearly_implicit_euler"), chain, calm, DT,
-                          theta=np.array([1e-4])).theta[20:, 0]
+        theta = integrate(
+            method_named("linearly_implicit_euler"), chain, calm, DT, theta=np.array([1e-4])
+        ).theta[20:, 0]
         ratio = fit(theta, DT)[1]
-        rows.append(fails(f"implicit Euler at {frequency:.0f} Hz", "shows z .120-.126",
-                          f"{ratio:.3f}", 0.120 <= ratio <= 0.126))
+        rows.append(
+            fails(
+                f"implicit Euler at {frequency:.0f} Hz",
+                "shows z .120-.126",
+                f"{ratio:.3f}",
+                0.120 <= ratio <= 0.126,
+            )
+        )
     return rows

@@ -28,14 +28,28 @@ def run(full: bool = False) -> list[Row]:
         length = steps if name == "exact_foh" else steps // 10
         for kind, bound in ((np.float64, 1e-12), (np.float32, 1e-6)):
             worst = float(gaps(method_named(name), length, kind)[1].max())
-            rows.append(holds(f"{name}, {length:.0e} steps, {kind.__name__}", f"gap <= {bound:.0e} m",
-                              f"{worst:.1e} m", worst <= bound))
-    for label, method, slope in (("rk4 unstabilised", method_named("multiplier_rk4"), 2.0),
-                                 ("velocity projection", Projection(position=False), 1.0)):
+            rows.append(
+                holds(
+                    f"{name}, {length:.0e} steps, {kind.__name__}",
+                    f"gap <= {bound:.0e} m",
+                    f"{worst:.1e} m",
+                    worst <= bound,
+                )
+            )
+    for label, method, slope in (
+        ("rk4 unstabilised", method_named("multiplier_rk4"), 2.0),
+        ("velocity projection", Projection(position=False), 1.0),
+    ):
         length = min(steps, 1_000_000)
         found = drift_slope(*gaps(method, length, np.float64))
-        rows.append(fails(label, f"gap grows as t^{slope:.1f} +- .1", f"t^{found:.2f}",
-                          abs(found - slope) <= 0.1))
+        rows.append(
+            fails(
+                label,
+                f"gap grows as t^{slope:.1f} +- .1",
+                f"t^{found:.2f}",
+                abs(found - slope) <= 0.1,
+            )
+        )
     return rows
 
 
@@ -43,8 +57,8 @@ def gaps(method: Method, steps: int, kind: Any) -> tuple[Array, Array]:
     """
     Return step numbers, evenly in their logarithm, and the gap at each in [m].
 
-    All sway in a periodic wind but the projection, which swings freely, undamped, so that what it loses
-    in a step does not cancel over a period.
+    All sway in a periodic wind but the projection, which swings freely, undamped, so that what it
+    loses in a step does not cancel over a period.
 
     """
     free = isinstance(method, Projection)
@@ -52,7 +66,9 @@ def gaps(method: Method, steps: int, kind: Any) -> tuple[Array, Array]:
     phase = 2 * np.pi * (np.arange(PERIOD)[:, None] + np.asarray(method.nodes)) / PERIOD
     loads = np.stack([1 + np.sin(phase), 8 * np.cos(2 * phase)], -1)[:, :, None, :].astype(kind)
     loads *= 0 if free else 1
-    state = method.start(chain, np.full(1, 0.5 if free else 0.0, kind), np.zeros(1, kind), loads[0, 0], DT)
+    state = method.start(
+        chain, np.full(1, 0.5 if free else 0.0, kind), np.zeros(1, kind), loads[0, 0], DT
+    )
     options, step, table = method.options(chain, DT).astype(kind), type(method).kernel, chain.table
     marks = np.unique(np.geomspace(10, steps, 60).astype(int))
     out, at = np.empty(len(marks)), 0

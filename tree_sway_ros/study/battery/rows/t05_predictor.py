@@ -19,8 +19,9 @@ def iterations(from_old_acceleration: bool) -> np.ndarray:
     load = np.zeros((1, 6, 2))
     load[..., 1] = 0.5
     state, options = method.start(chain, theta, 0 * theta, load[0], DT), method.options(chain, DT)
-    return np.array([GeneralizedAlpha.kernel(chain.table, state, load, DT, options)
-                     for _ in range(STEPS)])
+    return np.array(
+        [GeneralizedAlpha.kernel(chain.table, state, load, DT, options) for _ in range(STEPS)]
+    )
 
 
 def run(full: bool = False) -> list[Row]:
@@ -28,8 +29,16 @@ def run(full: bool = False) -> list[Row]:
     old, good = iterations(True), iterations(False)
     failed = int(np.count_nonzero(old < 0))
     return [
-        fails("from the old acceleration", f"fails {STEPS} of {STEPS} steps",
-              f"{failed} of {STEPS}", failed == STEPS),
-        holds("from q + h v", "at most 5 iterations", f"{good.min()} to {good.max()}",
-              bool(good.min() > 0 and good.max() <= 5)),
+        fails(
+            "from the old acceleration",
+            f"fails {STEPS} of {STEPS} steps",
+            f"{failed} of {STEPS}",
+            failed == STEPS,
+        ),
+        holds(
+            "from q + h v",
+            "at most 5 iterations",
+            f"{good.min()} to {good.max()}",
+            bool(good.min() > 0 and good.max() <= 5),
+        ),
     ]

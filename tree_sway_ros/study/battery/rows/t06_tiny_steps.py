@@ -22,7 +22,7 @@ def noise(name: str, dt: float, steps: int = 60) -> float:
         type(method).kernel(chain.table, state, loads, dt, options)
         true = method.reactions(chain, state, load)[0]
         error.append(np.abs(state[3, :2] - true).max() / np.abs(true).max())
-    return float(max(error[steps // 2:]))
+    return float(max(error[steps // 2 :]))
 
 
 def run(full: bool = False) -> list[Row]:
@@ -31,9 +31,14 @@ def run(full: bool = False) -> list[Row]:
     for name in ("generalized_alpha", "multiplier_bdf2"):
         coarse, fine = noise(name, 1e-6), noise(name, 1e-7)
         slope = np.log10(fine / coarse)
-        rows.append(fails(f"{name} on index 3", "noise ~ eps / h^2",
-                          f"{coarse:.1e} at 1e-6, {fine:.1e} at 1e-7: h^-{slope:.1f}",
-                          1.5 <= slope <= 2.5))
+        rows.append(
+            fails(
+                f"{name} on index 3",
+                "noise ~ eps / h^2",
+                f"{coarse:.1e} at 1e-6, {fine:.1e} at 1e-7: h^-{slope:.1f}",
+                1.5 <= slope <= 2.5,
+            )
+        )
     error = noise("radau_ggl", 1e-6)
     rows.append(holds("radau_ggl at h = 1e-6", "<= 1e-9", f"{error:.1e}", error <= 1e-9))
     return rows

@@ -36,8 +36,9 @@ def error(name: str, ratio: float, refine: int = 1) -> float:
 
     truth, method = method_named("radau_ggl"), method_named(name)
     exact = integrate(truth, chain, sample(wind, truth.nodes, DT / 4, 4 * STEPS), DT / 4).theta[::4]
-    got = integrate(method, chain, sample(wind, method.nodes, DT / refine, refine * STEPS),
-                    DT / refine).theta[::refine]
+    got = integrate(
+        method, chain, sample(wind, method.nodes, DT / refine, refine * STEPS), DT / refine
+    ).theta[::refine]
     return float(np.abs(got - exact).max())
 
 
@@ -48,7 +49,12 @@ def run(full: bool = False) -> list[Row]:
         at_one = max(error(name, 1.0), floor)
         errors = {ratio: error(name, ratio) for ratio in RATIOS}
         worst = max(errors, key=lambda ratio: errors[ratio])
-        rows.append(holds(f"{name}, 1e-6 to 1e6", "within 3x of the error at 1",
-                          f"{errors[worst]:.1e} rad at {worst:.0e}, {at_one:.1e} at 1",
-                          errors[worst] <= 3 * at_one))
+        rows.append(
+            holds(
+                f"{name}, 1e-6 to 1e6",
+                "within 3x of the error at 1",
+                f"{errors[worst]:.1e} rad at {worst:.0e}, {at_one:.1e} at 1",
+                errors[worst] <= 3 * at_one,
+            )
+        )
     return rows

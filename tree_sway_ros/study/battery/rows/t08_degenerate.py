@@ -54,14 +54,22 @@ def run(full: bool = False) -> list[Row]:
     for name, inertia, damping, stiffness, wanted in BODIES:
         found, error = outcome(inertia, damping, stiffness)
         if wanted == "static":
-            rows.append(holds(name, "finite, static angle right to 1e-6", f"{found}, {error:.0e} rad",
-                              found == "finite" and error <= 1e-6))
+            rows.append(
+                holds(
+                    name,
+                    "finite, static angle right to 1e-6",
+                    f"{found}, {error:.0e} rad",
+                    found == "finite" and error <= 1e-6,
+                )
+            )
         else:
             rows.append(holds(name, wanted, found, found == wanted))
     good = single_segment().table[0]
-    for name, column, value in (("chain, zero mass and inertia", slice(0, 2), 0.0),
-                                ("chain, NaN length", slice(3, 4), np.nan),
-                                ("chain, negative stiffness", slice(4, 5), -1.0)):
+    for name, column, value in (
+        ("chain, zero mass and inertia", slice(0, 2), 0.0),
+        ("chain, NaN length", slice(3, 4), np.nan),
+        ("chain, negative stiffness", slice(4, 5), -1.0),
+    ):
         table = np.stack([good, good])
         table[1, column] = value
         try:

@@ -14,7 +14,10 @@ SIZES = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4)
 
 
 def run(full: bool = False) -> list[Row]:
-    """Blow at a branch of 2 Hz for a minute at each size; check the angle, the bound and the count."""
+    """
+    Blow at a branch of 2 Hz for a minute at each size; check the angle, the bound and the count.
+
+    """
     branch, rows = Branch(), []
     limit = branch.guard[1]
     for kind in (np.float64, np.float32):
@@ -27,10 +30,28 @@ def run(full: bool = False) -> list[Row]:
                 error = max(error, abs(states[-1, 0] / static - 1))
             load = size * branch.stiffness
             counted = counted and limit_load(0.0, load, 0.0, limit)[3] == (load > limit)
-        rows.append(holds(f"s = .1 to 1e4, {kind.__name__}", "bounded, below pi", f"peak {peak:.2f} rad",
-                          peak < np.pi))
-        rows.append(holds(f"s <= 10, {kind.__name__}", "static angle right to 2 %", f"{error:.1e}",
-                          error <= 0.02))
-        rows.append(holds(f"held loads, {kind.__name__}", "counted, each one and no other",
-                          "counted" if counted else "miscounted", counted))
+        rows.append(
+            holds(
+                f"s = .1 to 1e4, {kind.__name__}",
+                "bounded, below pi",
+                f"peak {peak:.2f} rad",
+                peak < np.pi,
+            )
+        )
+        rows.append(
+            holds(
+                f"s <= 10, {kind.__name__}",
+                "static angle right to 2 %",
+                f"{error:.1e}",
+                error <= 0.02,
+            )
+        )
+        rows.append(
+            holds(
+                f"held loads, {kind.__name__}",
+                "counted, each one and no other",
+                "counted" if counted else "miscounted",
+                counted,
+            )
+        )
     return rows

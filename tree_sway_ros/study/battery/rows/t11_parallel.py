@@ -28,11 +28,17 @@ def _wind(along: float, off: float, turbulence: float) -> Any:
 
 
 def run(full: bool = False) -> list[Row]:
-    """Compare the largest frame step with the ball joint's, from tip and from root, then the plane."""
+    """
+    Compare the largest frame step with the ball joint's, from tip and from root, then the plane.
+
+    """
     branch, rows = Branch(), []
     for kind in (np.float64, np.float32):
-        for name, off, turbulence in (("parallel", 0.0, 0.0), ("1e-8 off", 1e-8, 0.0),
-                                      ("1 % turbulence", 0.0, 0.01)):
+        for name, off, turbulence in (
+            ("parallel", 0.0, 0.0),
+            ("1e-8 off", 1e-8, 0.0),
+            ("1 % turbulence", 0.0, 0.01),
+        ):
             worst, finite = 0.0, True
             for along in (-0.9, -0.3, 0.5, 2.0):
                 wind = _wind(along, off, turbulence)
@@ -42,8 +48,14 @@ def run(full: bool = False) -> list[Row]:
                 ours, theirs = _largest(chord(states)), _largest(truth)
                 floor = 1e-12 if kind == np.float64 else 1e-7
                 worst = max(worst, (ours + floor) / (theirs + floor))
-            rows.append(holds(f"exact_foh, {name}, {kind.__name__}", "frame step <= 1.05 of truth's",
-                              f"{worst:.4f}", finite and worst <= 1.05))
+            rows.append(
+                holds(
+                    f"exact_foh, {name}, {kind.__name__}",
+                    "frame step <= 1.05 of truth's",
+                    f"{worst:.4f}",
+                    finite and worst <= 1.05,
+                )
+            )
     loads = branch.means(_wind(-0.5, 0.0, 0.0), 60) * branch.stiffness
     seen = bool(np.isnan(run_in_rebuilt_plane(loads, branch.row)).any())
     rows.append(fails("rebuilt plane, parallel", "NaN", "NaN" if seen else "finite", seen))

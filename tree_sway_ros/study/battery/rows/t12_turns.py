@@ -42,23 +42,36 @@ def run(full: bool = False) -> list[Row]:
     """Compare with the ball joint; then the planar form that keeps its angle."""
     branch, rows = Branch(), []
     for size, bound in CASES:
-        for name, wind in (("90 degree turn", turning(size, 90)), ("180 degree turn", turning(size, 180)),
-                           ("reversal", reversing(size))):
+        for name, wind in (
+            ("90 degree turn", turning(size, 90)),
+            ("180 degree turn", turning(size, 180)),
+            ("reversal", reversing(size)),
+        ):
             truth = branch.truth(wind, STEPS)
             ours = chord(branch.run(branch.means(wind, STEPS)))
             error = float(np.linalg.norm(ours - truth, axis=1).max())
             jump = _largest(ours) / _largest(truth)
-            peak = np.degrees(np.arccos(truth[int(60 * TURN_AT):, 0].min()))
-            rows.append(holds(f"exact_foh, {name}, s = {size} (peak {peak:.0f} deg)",
-                              f"error <= {bound:g} L, no jump",
-                              f"{error:.1e} L, frame step {jump:.3f} of truth's",
-                              error <= bound and jump <= 1.05))
+            peak = np.degrees(np.arccos(truth[int(60 * TURN_AT) :, 0].min()))
+            rows.append(
+                holds(
+                    f"exact_foh, {name}, s = {size} (peak {peak:.0f} deg)",
+                    f"error <= {bound:g} L, no jump",
+                    f"{error:.1e} L, frame step {jump:.3f} of truth's",
+                    error <= bound and jump <= 1.05,
+                )
+            )
     wind = turning(0.17, 90)
     truth = branch.truth(wind, 180)[121:]
     planar = run_in_rebuilt_plane(branch.means(wind, 180) * branch.stiffness, branch.row)[121:]
     rms = float(np.sqrt(((planar - truth) ** 2).sum(1).mean()))
-    rows.append(fails("rebuilt plane that keeps theta, 90 degree turn at 10 degrees",
-                      "errs .09 L (rms of the next second)", f"{rms:.3f} L", 0.08 <= rms <= 0.10))
+    rows.append(
+        fails(
+            "rebuilt plane that keeps theta, 90 degree turn at 10 degrees",
+            "errs .09 L (rms of the next second)",
+            f"{rms:.3f} L",
+            0.08 <= rms <= 0.10,
+        )
+    )
     return rows
 
 

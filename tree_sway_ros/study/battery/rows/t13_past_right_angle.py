@@ -25,8 +25,12 @@ def run(full: bool = False) -> list[Row]:
         peak = float(np.degrees(np.arccos(truth[:, 0].min())))
         step = np.linalg.norm(np.diff(chord(states), axis=0), axis=1).max()
         theirs = np.linalg.norm(np.diff(truth, axis=0), axis=1).max()
-        rows.append(holds(f"exact_foh kernel to {peak:.0f} degrees, {kind.__name__}",
-                          "regular: <= 1e-2 L, frame step <= 1.05 of truth's",
-                          f"{error:.1e} L, {step / theirs:.3f}",
-                          peak > 95 and error <= 1e-2 and step <= 1.05 * theirs))
+        rows.append(
+            holds(
+                f"exact_foh kernel to {peak:.0f} degrees, {kind.__name__}",
+                "regular: <= 1e-2 L, frame step <= 1.05 of truth's",
+                f"{error:.1e} L, {step / theirs:.3f}",
+                peak > 95 and error <= 1e-2 and step <= 1.05 * theirs,
+            )
+        )
     return rows

@@ -32,8 +32,11 @@ def run(full: bool = False) -> list[Row]:
     matrix[:n, :n], matrix[:n, n:], matrix[n:, :n] = np.diag(mass), g.T, g
     rhs = np.concatenate([force, bias])[:, None]
     solved = solve(matrix, rhs)
-    wild = not solved or not np.abs(rhs[:n, 0] - single).max() <= 1e-6 * np.abs(single).max() \
+    wild = (
+        not solved
+        or not np.abs(rhs[:n, 0] - single).max() <= 1e-6 * np.abs(single).max()
         or bool(np.abs(rhs[n:]).max() > 1e6)
+    )
     found = f"multipliers up to {np.abs(rhs[n:]).max():.0e} N" if solved else "singular"
     return [
         holds("regularised solve", "acceleration changes <= 1e-6", f"{change:.0e}", change <= 1e-6),

@@ -37,12 +37,19 @@ def run(full: bool = False) -> list[Row]:
             whole = once.run(np.zeros((1, 3)), start, kind)[-1]
             scale = np.array([0.3, 1, 0.3 * once.w, 1])
             worst = max(worst, float(np.abs((state - whole) / scale).max()))
-        rows.append(holds(f"exact_foh kernel, 180 uneven frames, {kind.__name__}",
-                          f"equals one step of the same total, {bound:.0e}",
-                          f"{worst:.1e}", worst <= bound))
+        rows.append(
+            holds(
+                f"exact_foh kernel, 180 uneven frames, {kind.__name__}",
+                f"equals one step of the same total, {bound:.0e}",
+                f"{worst:.1e}",
+                worst <= bound,
+            )
+        )
     for name in ("verlet", "rk4"):
         gain = energy_gain(name)
-        rows.append(fails(f"{name}, 2 Hz, three stalls", "energy x 1e8", f"x {gain:.1e}", gain >= 1e8))
+        rows.append(
+            fails(f"{name}, 2 Hz, three stalls", "energy x 1e8", f"x {gain:.1e}", gain >= 1e8)
+        )
     return rows
 
 

@@ -21,8 +21,9 @@ def _mpmath() -> Any:
     try:
         import mpmath  # type: ignore[import-untyped]
     except ImportError as error:
-        raise MissingDependencyError("mpmath is not installed", where="battery T16",
-                                     cure="pip install tree_sway_ros[test]") from error
+        raise MissingDependencyError(
+            "mpmath is not installed", where="battery T16", cure="pip install tree_sway_ros[test]"
+        ) from error
     return mpmath
 
 
@@ -44,7 +45,10 @@ def textbook(inertia: float, damping: float, stiffness: float, dt: float) -> tup
 
 
 def worst_coefficient(exponents: range) -> float:
-    """Largest relative error of any coefficient; c5, which crosses zero, relative to its two terms."""
+    """
+    Largest relative error of any coefficient; c5, which crosses zero, relative to its two terms.
+
+    """
     worst = 0.0
     for exponent in exponents:
         for ratio in RATIOS:
@@ -77,9 +81,17 @@ def run(full: bool = False) -> list[Row]:
     counted = float(abs(Fraction(ticks * (1 / RATE)) - exact))
     drift = float(abs(Fraction(summed_clock(ticks, 1 / RATE)) - exact))
     return [
-        holds("coefficients, w h 1e-8 to 1e4, z 0 to 1000", "<= 1e-12 relative", f"{worst:.1e}",
-              worst <= 1e-12),
-        holds(f"ticks times h after {DAYS} days", "exact to rounding", f"{counted:.0e} s",
-              counted <= float(np.spacing(ticks / RATE))),
+        holds(
+            "coefficients, w h 1e-8 to 1e4, z 0 to 1000",
+            "<= 1e-12 relative",
+            f"{worst:.1e}",
+            worst <= 1e-12,
+        ),
+        holds(
+            f"ticks times h after {DAYS} days",
+            "exact to rounding",
+            f"{counted:.0e} s",
+            counted <= float(np.spacing(ticks / RATE)),
+        ),
         fails(f"t += h after {DAYS} days", "drifts", f"{drift:.0e} s", drift > 1e-6),
     ]

@@ -15,18 +15,24 @@ STEPS, AT = 240, 120
 
 
 def run(full: bool = False) -> list[Row]:
-    """Pass a smooth wind with one bad sample through the gate and the kernel; then the kernel alone."""
+    """
+    Pass a smooth wind with one bad sample through the gate and the kernel; then the kernel alone.
+
+    """
     rows = []
     for kind in (np.float64, np.float32):
         for bad in BAD:
             clean, spoilt = _gated(None, kind), _gated(bad, kind)
             at_once = float(np.abs(spoilt[AT + 1] - clean[AT + 1])[:2].max())
             later = float(np.abs(spoilt[AT + 2] - clean[AT + 2])[:2].max())
-            rows.append(holds(
-                f"gate and kernel, {bad:g} m/s once, {kind.__name__}",
-                "finite; within 3e-4 rad one step later",
-                f"{at_once:.1e} at the sample, {later:.1e} rad one step later",
-                bool(np.isfinite(spoilt).all()) and max(at_once, later) <= 3e-4))
+            rows.append(
+                holds(
+                    f"gate and kernel, {bad:g} m/s once, {kind.__name__}",
+                    "finite; within 3e-4 rad one step later",
+                    f"{at_once:.1e} at the sample, {later:.1e} rad one step later",
+                    bool(np.isfinite(spoilt).all()) and max(at_once, later) <= 3e-4,
+                )
+            )
     branch = Branch()
     finite, peak = True, 0.0
     for bad in BAD:
@@ -36,8 +42,14 @@ def run(full: bool = False) -> list[Row]:
             states = branch.run(loads)
             finite = finite and bool(np.isfinite(states).all())
             peak = max(peak, float(np.hypot(states[:, 0], states[:, 1]).max()))
-    rows.append(holds("kernel alone, the same as loads", "finite, below 3 rad",
-                      f"peak {peak:.2f} rad", finite and peak < 3.0))
+    rows.append(
+        holds(
+            "kernel alone, the same as loads",
+            "finite, below 3 rad",
+            f"peak {peak:.2f} rad",
+            finite and peak < 3.0,
+        )
+    )
     return rows
 
 

@@ -1,4 +1,7 @@
-"""T18: adversarial runs: loads that switch with the motion, at random frequency, damping and angle."""
+"""
+T18: adversarial runs: loads that switch with the motion, at random frequency, damping and angle.
+
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,10 @@ Array = NDArray[Any]
 
 
 def adversaries(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
-    """w h from .1 to 100, z from .001 to 1, a share of the largest load, random angle in space, (n,)."""
+    """
+    w h from .1 to 100, z from .001 to 1, a share of the largest load, random angle in space, (n,).
+
+    """
     ratio = 10 ** rng.uniform(-1, 2, n)
     damping = 10 ** rng.uniform(-3, 0, n)
     direction = rng.normal(size=(n, 3))
@@ -31,13 +37,26 @@ def adversaries(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, 
 def bound(damping: Array) -> Array:
     """Largest |e| over the moment's largest |M| / k1: coth(pi z / 2 sqrt(1 - z^2))."""
     with np.errstate(divide="ignore"):
-        return np.asarray(1 / np.tanh(np.pi * damping / (2 * np.sqrt(np.maximum(1 - damping**2, 0)))))
+        return np.asarray(
+            1 / np.tanh(np.pi * damping / (2 * np.sqrt(np.maximum(1 - damping**2, 0))))
+        )
 
 
 @kernel
-def _attack(rows: Array, guard: Array, stiffness: Array, size: Array, direction: Array,
-            planar: int, steps: int, peak: Array) -> None:
-    """Largest |e| of each run, the load against the motion: it pushes along the velocity, or turns."""
+def _attack(
+    rows: Array,
+    guard: Array,
+    stiffness: Array,
+    size: Array,
+    direction: Array,
+    planar: int,
+    steps: int,
+    peak: Array,
+) -> None:
+    """
+    Largest |e| of each run, the load against the motion: it pushes along the velocity, or turns.
+
+    """
     for n in range(len(rows)):
         c, g, d = rows[n], guard[n], direction[n]
         x = y = vx = vy = c[0] * 0
@@ -55,8 +74,26 @@ def _attack(rows: Array, guard: Array, stiffness: Array, size: Array, direction:
                 else:
                     w1, w2 = load * d[1], load * d[2]
                 wb = load * d[0]
-            x, y, vx, vy, _ = step_branch(x, y, vx, vy, wb, w1, w2, c[0], c[1], c[2], c[3], c[4],
-                                          c[5], c[6], c[7], g[0], g[1], g[2])
+            x, y, vx, vy, _ = step_branch(
+                x,
+                y,
+                vx,
+                vy,
+                wb,
+                w1,
+                w2,
+                c[0],
+                c[1],
+                c[2],
+                c[3],
+                c[4],
+                c[5],
+                c[6],
+                c[7],
+                g[0],
+                g[1],
+                g[2],
+            )
             e = np.sqrt(x * x + y * y)
             if not e <= worst:
                 worst = e
@@ -78,8 +115,16 @@ def attack(n: int, planar: bool, kind: Any, seed: int = 0) -> tuple[int, float]:
     size = share * guard[:, 1]
     peak = np.empty(n, kind)
     guard_, stiffness_ = guard.astype(kind), stiffness.astype(kind)
-    _attack(coefficients, guard_, stiffness_, size.astype(kind), direction.astype(kind), int(planar),
-            STEPS, peak)
+    _attack(
+        coefficients,
+        guard_,
+        stiffness_,
+        size.astype(kind),
+        direction.astype(kind),
+        int(planar),
+        STEPS,
+        peak,
+    )
     limit = (size if planar else guard[:, 2]) * bound(damping)
     return int(np.count_nonzero(~(peak < BLOWN_UP * guard[:, 1]))), float(np.max(peak / limit))
 
@@ -112,12 +157,21 @@ def run(full: bool = False) -> list[Row]:
             runs = n if kind == np.float64 and not planar else n // 5
             blown, share = attack(runs, planar, kind)
             where = "in the plane, s coth(..)" if planar else "in space, guard's moment x coth(..)"
-            rows.append(holds(f"exact_foh kernel, {runs} runs, {kind.__name__}",
-                              f"0 blow-ups, never above the bound ({where})",
-                              f"{blown} blow-ups, peak {share:.4f} of the bound",
-                              blown == 0 and share <= 1 + slack))
-    for name, step in (("semi_implicit_euler", semi_implicit_euler.step), ("verlet", verlet.step),
-                       ("rk4", rk4.step)):
+            rows.append(
+                holds(
+                    f"exact_foh kernel, {runs} runs, {kind.__name__}",
+                    f"0 blow-ups, never above the bound ({where})",
+                    f"{blown} blow-ups, peak {share:.4f} of the bound",
+                    blown == 0 and share <= 1 + slack,
+                )
+            )
+    for name, step in (
+        ("semi_implicit_euler", semi_implicit_euler.step),
+        ("verlet", verlet.step),
+        ("rk4", rk4.step),
+    ):
         share = classic(step, 2000 if full else 150)
-        rows.append(fails(f"{name} at s <= 1", "more than half blow up", f"{share:.0%}", share > 0.5))
+        rows.append(
+            fails(f"{name} at s <= 1", "more than half blow up", f"{share:.0%}", share > 0.5)
+        )
     return rows

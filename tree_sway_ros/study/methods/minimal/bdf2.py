@@ -35,6 +35,8 @@ class Bdf2(MinimalMethod):
     name: ClassVar[str] = "bdf2"
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (1.0,)
-    notes: ClassVar[str] = "A- and L-stable at a constant step; a changing step needs other coefficients"
+    notes: ClassVar[str] = (
+        "A- and L-stable at a constant step; a changing step needs other coefficients"
+    )
     source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, V.1"
     kernel = staticmethod(step)

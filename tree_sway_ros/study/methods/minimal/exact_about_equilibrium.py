@@ -59,9 +59,7 @@ def _remainder(
 
 
 @kernel
-def _advance(
-    a: Array, state: Array, centre: Array, first: Array, last: Array, dt: float
-) -> Array:
+def _advance(a: Array, state: Array, centre: Array, first: Array, last: Array, dt: float) -> Array:
     """Exact motion about the centre under an acceleration that runs linearly from first to last."""
     n = len(centre)
     full = a.copy()
@@ -88,5 +86,7 @@ class ExactAboutEquilibrium(MinimalMethod):
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
     notes: ClassVar[str] = "exact for motion about a steady bent state; curvature is explicit"
-    source: ClassVar[str] = "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.2, about another point"
+    source: ClassVar[str] = (
+        "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.2, about another point"
+    )
     kernel = staticmethod(step)

@@ -29,7 +29,9 @@ class ExactZeroOrderHold(MinimalMethod):
     order: ClassVar[int] = 1
     nodes: ClassVar[tuple[float, ...]] = (0.0,)
     notes: ClassVar[str] = "exact for the linear part at any w h; first order in the load"
-    source: ClassVar[str] = "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.1 (exponential Euler)"
+    source: ClassVar[str] = (
+        "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.1 (exponential Euler)"
+    )
     kernel = staticmethod(step)
 
     def options(self, chain: PlanarChain, dt: float) -> Array:

@@ -17,7 +17,8 @@ Array = NDArray[Any]
 @kernel
 def rest_moment(table: Array, theta: Array, omega: Array, load: Array) -> Array:
     """
-    Moment N in ``M0 theta'' + C theta' + K theta = N``, M0 the straight chain's inertia, (n,) [N m].
+    Moment N in ``M0 theta'' + C theta' + K theta = N``, M0 the straight chain's inertia, (n,) [N
+    m].
 
     For one segment it is the load's moment; a chain adds what its bend changes in the inertia.
 
@@ -49,7 +50,10 @@ def rest_moment(table: Array, theta: Array, omega: Array, load: Array) -> Array:
 
 @kernel
 def apply(options: Array, hold: int, rows: Array, moment: Array) -> Array:
-    """Propagate angles and rates under the moment of the start alone; with hold, for all of the step."""
+    """
+    Propagate angles and rates under the moment of the start alone; with hold, for all of the step.
+
+    """
     n = len(moment)
     out = np.empty((2, n), rows.dtype)
     for part in range(2):

@@ -36,6 +36,8 @@ class RungeKutta4(MinimalMethod):
     order: ClassVar[int] = 4
     nodes: ClassVar[tuple[float, ...]] = (0.0, 0.5, 1.0)
     limit: ClassVar[float] = 2.828
-    notes: ClassVar[str] = "stable for w h < 2 sqrt(2) without damping, 2.785 for an overdamped mode"
+    notes: ClassVar[str] = (
+        "stable for w h < 2 sqrt(2) without damping, 2.785 for an overdamped mode"
+    )
     source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, IV.2"
     kernel = staticmethod(step)

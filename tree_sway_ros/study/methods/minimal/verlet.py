@@ -36,6 +36,8 @@ class Verlet(MinimalMethod):
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
     limit: ClassVar[float] = 2.0
-    notes: ClassVar[str] = "stable for w h < 2; damping lowers it, the predicted rate acts explicitly"
+    notes: ClassVar[str] = (
+        "stable for w h < 2; damping lowers it, the predicted rate acts explicitly"
+    )
     source: ClassVar[str] = "Swope, Andersen, Berens, Wilson 1982, J. Chem. Phys. 76, eq. 11"
     kernel = staticmethod(step)

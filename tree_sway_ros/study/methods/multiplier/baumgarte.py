@@ -52,7 +52,9 @@ class Baumgarte(MultiplierMethod):
         "with alpha = beta the gain must stay below 2.785 / h on Runge-Kutta 4, .828 / h on semi-implicit "
         "Euler; a gain that grows as 1 / h lowers the order from 4 to 2, seen once the error is small"
     )
-    source: ClassVar[str] = "Baumgarte 1972, Comput. Methods Appl. Mech. Eng. 1, 1; Ascher et al. 1994"
+    source: ClassVar[str] = (
+        "Baumgarte 1972, Comput. Methods Appl. Mech. Eng. 1, 1; Ascher et al. 1994"
+    )
     kernel = staticmethod(step)
 
     def options(self, chain: PlanarChain, dt: float) -> Array:

@@ -21,8 +21,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     """
     (1 - am) a1 + am a0 = (1 - af) q1'' + af q0'', then Newmark's formulas with a.
 
-    Rows 4 of the state is a; options are am, af, beta, gamma and whether the iteration starts from the
-    old acceleration (not advised) or from q + h v.
+    Rows 4 of the state is a; options are am, af, beta, gamma and whether the iteration starts from
+    the old acceleration (not advised) or from q + h v.
 
     """
     n = len(table)
@@ -81,7 +81,9 @@ class GeneralizedAlpha(MultiplierMethod):
         """Return the four weights and the choice of the first guess."""
         return np.array([*self.weights(), float(self.from_old_acceleration)])
 
-    def start(self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float) -> Array:
+    def start(
+        self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float
+    ) -> Array:
         """State with the auxiliary acceleration equal to the true one."""
         state = super().start(chain, theta, omega, load, dt)
         state[4] = state[2]

@@ -58,8 +58,11 @@ def solve_index3(
         q, v = q0 + accel * to_q, v0 + accel * to_v
         end = end0 + accel * to_end
         g, g_end = jacobian(table, q), jacobian(table, end)
-        force, gap, slope = forces(table, q, v, load), constraint(table, end), multiplier_slope(
-            table, q, lam)
+        force, gap, slope = (
+            forces(table, q, v, load),
+            constraint(table, end),
+            multiplier_slope(table, q, lam),
+        )
         a = saddle(table, g, 1.0)
         add_joints(table, 4, to_q, a)
         add_joints(table, 5, to_v, a)

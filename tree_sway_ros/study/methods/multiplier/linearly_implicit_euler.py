@@ -40,7 +40,7 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
         return -1
     state[1] = rhs[: 3 * n, 0]
     state[0] = state[0] + state[1] * dt
-    state[3, : 2 * n] = rhs[3 * n:, 0]
+    state[3, : 2 * n] = rhs[3 * n :, 0]
     return 1
 
 

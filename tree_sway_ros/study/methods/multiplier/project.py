@@ -1,4 +1,7 @@
-"""Back to the constraint: positions by Newton's method, velocities in one solve, in the mass metric."""
+"""
+Back to the constraint: positions by Newton's method, velocities in one solve, in the mass metric.
+
+"""
 
 from __future__ import annotations
 

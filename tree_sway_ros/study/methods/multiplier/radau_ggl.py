@@ -41,7 +41,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     """
     Three stages of q' = v - G^T mu, M v' = F - G^T lam, phi = 0, G v = 0 by Newton's method.
 
-    The unknowns of a stage are q, v, h lam and h mu, 10n of them; options hold the weights row by row.
+    The unknowns of a stage are q, v, h lam and h mu, 10n of them; options hold the weights row by
+    row.
 
     """
     n = len(table)
@@ -49,10 +50,11 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
     x = np.zeros(3 * width, state.dtype)
     for stage in range(3):
         at = stage * width
-        x[at:at + 3 * n] = state[0] + state[1] * (dt * (options[3 * stage] + options[3 * stage + 1]
-                                                        + options[3 * stage + 2]))
-        x[at + 3 * n:at + 6 * n] = state[1]
-        x[at + 6 * n:at + 8 * n] = state[3, : 2 * n] * dt
+        x[at : at + 3 * n] = state[0] + state[1] * (
+            dt * (options[3 * stage] + options[3 * stage + 1] + options[3 * stage + 2])
+        )
+        x[at + 3 * n : at + 6 * n] = state[1]
+        x[at + 6 * n : at + 8 * n] = state[3, : 2 * n] * dt
     last = 0.0 * abs(x[0])
     for iteration in range(MAX_ITERATIONS):
         a, rhs = _system(table, state, load, dt, options, x)
@@ -70,9 +72,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
         settled = iteration > 1 and change < 1e-4 and change > 0.5 * last  # rounding is reached
         if change <= TOLERANCE or settled:
             at = 2 * width
-            state[0] = x[at:at + 3 * n]
-            state[1] = x[at + 3 * n:at + 6 * n]
-            state[3, : 2 * n] = x[at + 6 * n:at + 8 * n] * (1.0 / dt)
+            state[0] = x[at : at + 3 * n]
+            state[1] = x[at + 3 * n : at + 6 * n]
+            state[3, : 2 * n] = x[at + 6 * n : at + 8 * n] * (1.0 / dt)
             return iteration + 1
         last = change
     return -1
@@ -88,8 +90,8 @@ def _system(
     a, rhs = np.zeros((3 * width, 3 * width), x.dtype), np.zeros((3 * width, 1), x.dtype)
     for j in range(3):
         at = j * width
-        q, v = x[at:at + 3 * n], x[at + 3 * n:at + 6 * n]
-        lam, mu = x[at + 6 * n:at + 8 * n], x[at + 8 * n:at + 10 * n]
+        q, v = x[at : at + 3 * n], x[at + 3 * n : at + 6 * n]
+        lam, mu = x[at + 6 * n : at + 8 * n], x[at + 8 * n : at + 10 * n]
         g, rate, gap = jacobian(table, q), jacobian_rate(table, q, v), constraint(table, q)
         force = forces(table, q, v, load[j])
         slope, bend = multiplier_slope(table, q, lam), multiplier_slope(table, q, mu)

@@ -23,7 +23,10 @@ Array = NDArray[Any]
 
 @kernel
 def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> int:
-    """Half a kick that lands the positions on the constraint, half a kick that does the velocities."""
+    """
+    Half a kick that lands the positions on the constraint, half a kick that does the velocities.
+
+    """
     n = len(table)
     q, half, g0 = state[0].copy(), state[1].copy(), jacobian(table, state[0])
     force = forces(table, q, half, load[0])
@@ -42,8 +45,8 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
                 if g1[row, k] != 0.0:
                     for col in range(2 * n):
                         if g0[col, k] != 0.0:
-                            matrix[row, col] = (
-                                matrix[row, col] + g1[row, k] * g0[col, k] / _mass(table, k)
+                            matrix[row, col] = matrix[row, col] + g1[row, k] * g0[col, k] / _mass(
+                                table, k
                             )
         if size < 1e-14 * n:
             iterations = iteration
@@ -62,7 +65,7 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
         end[i, 0] = _mass(table, i) * half[i] + 0.5 * dt * force[i]
     solve(a, end)
     state[1] = end[: 3 * n, 0]
-    state[3, : 2 * n] = end[3 * n:, 0]
+    state[3, : 2 * n] = end[3 * n :, 0]
     return iterations
 
 
@@ -79,6 +82,10 @@ class Rattle(MultiplierMethod):
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
     limit: ClassVar[float] = 2.0
-    notes: ClassVar[str] = "stable for w h < 2; positions and velocities on the constraint to rounding"
-    source: ClassVar[str] = "Ryckaert et al. 1977 (SHAKE); Andersen 1983, J. Comput. Phys. 52, 24 (RATTLE)"
+    notes: ClassVar[str] = (
+        "stable for w h < 2; positions and velocities on the constraint to rounding"
+    )
+    source: ClassVar[str] = (
+        "Ryckaert et al. 1977 (SHAKE); Andersen 1983, J. Comput. Phys. 52, 24 (RATTLE)"
+    )
     kernel = staticmethod(step)

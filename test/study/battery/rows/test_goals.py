@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tree_sway_ros.study.battery import goals as case
+from tree_sway_ros.study.battery.rows import goals as case
 
 
 def test_every_row_is_as_it_should_be():

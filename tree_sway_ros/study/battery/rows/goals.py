@@ -26,7 +26,9 @@ def planar_error(wind_name: str) -> float:
     chain, wind = uniform_chain(1, 2.0, 0.05), winds(1)[wind_name]
     first = wind(np.zeros(1))[0]
     reference, method = method_named("radau_ggl"), method_named("exact_foh")
-    exact = integrate(reference, chain, loads_for(reference, wind, wind_name, FINE), 1 / FINE, first=first)
+    exact = integrate(
+        reference, chain, loads_for(reference, wind, wind_name, FINE), 1 / FINE, first=first
+    )
     got = integrate(method, chain, loads_for(method, wind, wind_name, RATE), 1 / RATE, first=first)
     return float(np.sqrt(np.mean((got.theta - exact.theta[:: FINE // RATE]) ** 2)))
 
@@ -61,8 +63,9 @@ def milliseconds_a_frame(n: int = 100_000, frames: int = 40) -> float:
     rng = np.random.default_rng(0)
     w = 2 * np.pi * rng.uniform(0.5, 8, n)
     stiffness = w * w
-    blocks = BranchBlocks(propagator(1.0, 0.1 * w, stiffness, 1 / 60),
-                          guards(np.ones(n), stiffness, 1 / 60))
+    blocks = BranchBlocks(
+        propagator(1.0, 0.1 * w, stiffness, 1 / 60), guards(np.ones(n), stiffness, 1 / 60)
+    )
     blocks.load = rng.normal(0, 0.2, (3, n)) * stiffness
     best = np.inf
     for _ in range(frames):
@@ -78,16 +81,36 @@ def run(full: bool = False) -> list[Row]:
     rows = [holds("operations a step, one segment", "<= 130 flops", f"{cost}", cost <= 130)]
     for name, bound in (("smooth", 1.5e-4), ("gusty", 7e-4)):
         error = planar_error(name)
-        rows.append(holds(f"{name} wind, 60 Hz", f"<= {bound:.1e} rad rms", f"{error:.1e}", error <= bound))
+        rows.append(
+            holds(f"{name} wind, 60 Hz", f"<= {bound:.1e} rad rms", f"{error:.1e}", error <= bound)
+        )
     for size, degrees, bound in ((0.14, 10, 2e-4), (0.42, 30, 2e-3), (1.2, 60, 1e-2)):
         error, peak = spatial_error(size)
-        rows.append(holds(f"two axes to {degrees} degrees", f"<= {bound:.0e} L rms",
-                          f"{error:.1e} at {peak:.0f} degrees", error <= bound and peak >= degrees))
+        rows.append(
+            holds(
+                f"two axes to {degrees} degrees",
+                f"<= {bound:.0e} L rms",
+                f"{error:.1e} at {peak:.0f} degrees",
+                error <= bound and peak >= degrees,
+            )
+        )
     turn = precession(0.2, 0.1)
-    rows.append(holds("free elliptic swing", "(2 pi / 3) a b a cycle within 1 %", f"{turn:.4f} of it",
-                      abs(abs(turn) - 1) <= 0.01))
+    rows.append(
+        holds(
+            "free elliptic swing",
+            "(2 pi / 3) a b a cycle within 1 %",
+            f"{turn:.4f} of it",
+            abs(abs(turn) - 1) <= 0.01,
+        )
+    )
     if full:
         spent = milliseconds_a_frame()
-        rows.append(holds("100,000 two-axis branches, float32, one core", "<= 1 ms a frame",
-                          f"{spent:.2f} ms", spent <= 1.0))
+        rows.append(
+            holds(
+                "100,000 two-axis branches, float32, one core",
+                "<= 1 ms a frame",
+                f"{spent:.2f} ms",
+                spent <= 1.0,
+            )
+        )
     return rows
