@@ -90,7 +90,7 @@ def test_a_pull_and_release_gives_the_tree_back(
 
     """
     truth = open_tree(tree)
-    sim = SwaySimulator(truth.tree, truth.species, rung="modes")
+    sim = SwaySimulator(truth.tree, truth.species, model="modes")
     held, free = round(15.0 / DT), round(20.0 / DT)
     winds = np.repeat([[4.0, 1.5, 0.0], [0.0, 0.0, 0.0]], [held, free], axis=0)
     record(tmp_path / "pull.csv", sim, winds, DT, held=held - 150)
@@ -109,7 +109,7 @@ def test_an_ambient_record_gives_the_tree_back(
 ) -> None:
     """A light wind, that adds little damping of its own."""
     truth = open_tree(tree)
-    sim = SwaySimulator(truth.tree, truth.species, rung="modes")
+    sim = SwaySimulator(truth.tree, truth.species, model="modes")
     rng = np.random.default_rng(4)
     winds = simulate_turbulence(0.6, rate=20.0, duration=400.0, intensity=0.4, rng=rng)
     record(tmp_path / "wind.csv", sim, winds, 0.05, held=400)

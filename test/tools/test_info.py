@@ -71,14 +71,14 @@ def test_a_tree_that_cannot_stand_still_tells_its_size(
     assert len(found["frequencies"]) == 2
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree", "modes", "coupled"])
-def test_every_rung_lists_what_swings(
-    rung: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+def test_every_model_lists_what_swings(
+    model: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "bench.yaml"
     write_tree(path, bench_tree())
-    found = facts(capsys, str(path), "--rung", rung, "--count", "6")
-    assert (found["branches"], found["segments"], found["rung"]) == (121, 726, rung)
+    found = facts(capsys, str(path), "--model", model, "--count", "6")
+    assert (found["branches"], found["segments"], found["model"]) == (121, 726, model)
     assert len(found["frequencies"]) == 6
     assert found["frequencies"] == sorted(found["frequencies"])
     for mode in found["modes"]:
@@ -87,7 +87,7 @@ def test_every_rung_lists_what_swings(
 
 
 def test_a_frozen_tree_has_no_frequencies(capsys: pytest.CaptureFixture[str]) -> None:
-    assert facts(capsys, "goldcrest", "--rung", "frozen")["frequencies"] == []
+    assert facts(capsys, "goldcrest", "--model", "frozen")["frequencies"] == []
 
 
 def test_leaves_weigh_and_slow(capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,12 +18,12 @@ WESTERLY = np.array([5.0, 0.0, 0.0])
 
 @pytest.fixture
 def simulator() -> SwaySimulator:
-    return SwaySimulator(bench_tree(2), rung="subtree")
+    return SwaySimulator(bench_tree(2), model="subtree")
 
 
 def test_a_steady_wind_ends_where_stepping_by_hand_does(simulator: SwaySimulator) -> None:
     found = ride(simulator, ((0.05 * k, WESTERLY) for k in itertools.count()), 30.0)
-    by_hand = SwaySimulator(simulator.tree, rung="subtree")
+    by_hand = SwaySimulator(simulator.tree, model="subtree")
     for _ in range(1800):
         by_hand.step(WESTERLY, 1 / 60)
     by_hand.place()

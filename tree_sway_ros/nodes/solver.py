@@ -8,7 +8,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
 from tree_sway_ros.core.scene.make import simulators_of
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.height_profile import WindProfile
@@ -40,7 +40,7 @@ class SolverNode(TreeSwayNode):
         source = open_scene(self.values["tree"])
         if self.values["species"]:
             source = source.of_species(open_species(self.values["species"]))
-        settings = SimulatorSettings(
+        settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
             damping_ratio=self.values["damping_ratio"] or None,

@@ -8,7 +8,7 @@ from pathlib import Path
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.identification.calibration import Calibration, calibrate
 from tree_sway_ros.core.identification.sway_record import KINDS, SwayEstimate, estimate_sway
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.wind.sway_table import read_csv_sway
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = _measured(arguments)
         frequency, error = found.frequency, found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
-    settings = SimulatorSettings(rung="modes", **leaf_settings(tree_file.tree, arguments))
+    settings = Settings(model="modes", **leaf_settings(tree_file.tree, arguments))
     fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
     for line in _summary(tree_file.species, fitted, error, in_leaf=settings.in_leaf):
         print(line)

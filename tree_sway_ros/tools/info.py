@@ -12,7 +12,7 @@ import numpy as np
 
 from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import RUNGS, SimulatorSettings
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    parser.add_argument("--rung", choices=RUNGS, default="modes", help="model (%(default)s)")
+    parser.add_argument("--model", choices=MODELS, default="modes", help="model (%(default)s)")
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
     )
@@ -55,8 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _facts(arguments: argparse.Namespace, tree_file: TreeFile, leaf_on: bool) -> dict[str, Any]:
-    settings = SimulatorSettings(
-        rung=arguments.rung,
+    settings = Settings(
+        model=arguments.model,
         gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
         # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
         n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
@@ -67,7 +67,7 @@ def _facts(arguments: argparse.Namespace, tree_file: TreeFile, leaf_on: bool) ->
     return tree_facts(tree_file, settings, arguments.count)
 
 
-def tree_facts(tree_file: TreeFile, settings: SimulatorSettings, count: int) -> dict[str, Any]:
+def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
     """
     Gather what there is to say about a tree.
 
@@ -121,7 +121,7 @@ def tree_facts(tree_file: TreeFile, settings: SimulatorSettings, count: int) -> 
         "mass": bank.mass,
         "stem_mass": float(species.density * tree.volume[tree.segments_of(0)].sum()),
         "gravity": settings.gravity,
-        "rung": settings.rung,
+        "model": settings.model,
         "in_leaf": settings.in_leaf,
         "solved": bank.n_solved,
         "copied": tree.n_branches - bank.n_solved,
@@ -167,7 +167,7 @@ def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
         f"{facts['density']:.4g} kg/m^3",
         f"  mass       {facts['mass']:.4g} kg {'in leaf' if facts['in_leaf'] else 'without leaves'}, "
         f"{facts['stem_mass']:.4g} kg of it in the stem",
-        f"  model      {facts['rung']}: {facts['solved']} branches solved, {facts['copied']} copied",
+        f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} copied",
     ]
     lines += [f"  note       {note}" for note in facts["notes"]]
     if facts["modes"]:

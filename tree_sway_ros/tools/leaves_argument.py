@@ -34,7 +34,7 @@ def leaves_are_on(arguments: argparse.Namespace) -> bool:
 
 
 def leaf_settings(tree: Tree, arguments: argparse.Namespace) -> dict[str, Any]:
-    """What the leaves change in `SimulatorSettings`; nothing if they are off."""
+    """What the leaves change in `Settings`; nothing if they are off."""
     if not leaves_are_on(arguments):
         return {}
     foliage = foliage_of(tree)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.scene.make import Simulator, simulators_of
-from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
     )
     parser.add_argument(
-        "--rung", choices=RUNGS, default="modes", help="model of the sway (%(default)s)"
+        "--model", choices=MODELS, default="modes", help="model of the sway (%(default)s)"
     )
     parser.add_argument(
         "-o", "--output", default="sway.png", metavar="FILE", help="picture (%(default)s)"
@@ -94,7 +94,7 @@ def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> No
 
 def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> Simulator:
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
-    model: dict[str, Any] = {"fidelity": arguments.rung, "leaf_on": leaves_are_on(arguments)}
+    model: dict[str, Any] = {"fidelity": arguments.model, "leaf_on": leaves_are_on(arguments)}
     try:
         return scene.simulator(**model)
     except TreeError as error:
@@ -115,5 +115,5 @@ def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None
     result = ride(_simulator(scene, arguments), samples, arguments.seconds)
     if len(result.time) < 2:
         raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
-    title = f"{scene.tree.name}, {arguments.rung}, {source}"
+    title = f"{scene.tree.name}, {arguments.model}, {source}"
     plot_wind_and_tip(result.time, result.wind, result.tip, arguments.output, title=title)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.fidelity.adaptive import CROSS_FADE, REVIEW, RUN_IN, AdaptiveSimulator
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.study.example_trees import forked_tree
@@ -17,7 +17,7 @@ WOOD = Species("example", "example", 8e9, 900.0, damping_bare=0.08)
 
 @pytest.fixture(scope="module")
 def made():
-    return AdaptiveSimulator(forked_tree(0.5, 0.6), WOOD, SimulatorSettings(gravity=0.0))
+    return AdaptiveSimulator(forked_tree(0.5, 0.6), WOOD, Settings(gravity=0.0))
 
 
 @pytest.fixture
@@ -34,8 +34,8 @@ def adaptive(made):
 
 
 def test_a_far_tree_stands_still_and_a_near_one_is_solved(adaptive):
-    assert adaptive(10.0).rung == "frozen"
-    assert adaptive(0.01).rung in ("modes", "coupled")
+    assert adaptive(10.0).model == "frozen"
+    assert adaptive(0.01).model in ("modes", "coupled")
 
 
 def test_within_a_loose_tolerance_branches_are_frozen(adaptive):
@@ -51,7 +51,7 @@ def test_a_budget_comes_before_the_tolerance(adaptive):
     assert tight.cost <= 0.5 * free.cost
     assert free.error < tight.error < free.motion
     assert adaptive(0.1, budget=free.cost).choice.cost < tight.cost
-    assert adaptive(1e-9, budget=1e-3).rung == "frozen"
+    assert adaptive(1e-9, budget=1e-3).model == "frozen"
 
 
 def test_a_slower_machine_can_afford_less(adaptive):
@@ -79,7 +79,7 @@ def test_a_smaller_budget_changes_the_model_without_a_step(adaptive):
 
 
 def test_a_tolerance_nobody_can_meet_takes_the_best(adaptive):
-    assert adaptive(1e-9).rung == "coupled"
+    assert adaptive(1e-9).model == "coupled"
 
 
 def test_coming_nearer_changes_the_model_without_a_step(adaptive):
@@ -91,7 +91,7 @@ def test_coming_nearer_changes_the_model_without_a_step(adaptive):
             sim.tolerance = 0.004
         sim.step(w, DT)
         frames.append(sim.place().copy())
-        if changed_at is None and sim.rung != "frozen":
+        if changed_at is None and sim.model != "frozen":
             changed_at = i
     assert changed_at is not None
     waited = (changed_at - 1200) * DT

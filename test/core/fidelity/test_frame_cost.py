@@ -10,14 +10,14 @@ import pytest
 from tree_sway_ros.core.fidelity.frame_cost import frame_cost
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
 
 @pytest.fixture(scope="module")
 def whole():
-    return CalibratedTree(forked_tree(0.5, 0.6), species_named("oak"), SimulatorSettings())
+    return CalibratedTree(forked_tree(0.5, 0.6), species_named("oak"), Settings())
 
 
 def test_richer_models_cost_more(whole):

@@ -1,4 +1,4 @@
-"""The error of every rung, told before a step is taken, against the truth."""
+"""The error of every model, told before a step is taken, against the truth."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tree_sway_ros.core.fidelity.estimate import choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import record_tips
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.wind.climate import WindClimate
@@ -18,7 +18,7 @@ from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, 
 
 DAMPING = 0.05
 WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY, damping_bare=DAMPING)
-NO_WEIGHT = SimulatorSettings(gravity=0.0)
+NO_WEIGHT = Settings(gravity=0.0)
 RATE, SETTLED = 60, 180
 
 
@@ -41,7 +41,7 @@ def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_
     effectivity, partly_frozen = [], 0
     for estimate in ladder.estimates(WindClimate.of_samples(wind, RATE)):
         model = SwaySimulator(
-            tree, WOOD, NO_WEIGHT, rung=estimate.rung, n_modes=max(estimate.n_modes, 1),
+            tree, WOOD, NO_WEIGHT, model=estimate.model, n_modes=max(estimate.n_modes, 1),
             calibrated=ladder.calibrated(estimate),
         )  # fmt: skip
         assert model.n_frozen == estimate.n_frozen
@@ -54,7 +54,7 @@ def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_
     assert partly_frozen >= 3
 
 
-def test_a_rung_with_more_modes_errs_less(ladder):
+def test_a_model_with_more_modes_errs_less(ladder):
     found = {e.name: e for e in ladder.estimates(WindClimate.steady(6.0, 0.3))}
     errors = [
         found[name].error for name in ("subtree", "modes 3", "modes 6", "modes 12", "coupled")
@@ -76,4 +76,4 @@ def test_the_more_is_frozen_the_less_it_costs_and_the_more_it_errs(ladder):
 
 def test_no_wind_needs_no_model(ladder):
     estimates = ladder.estimates(WindClimate.steady(0.0, 0.2))
-    assert choose(estimates, tolerance=1e-9).rung == "frozen"
+    assert choose(estimates, tolerance=1e-9).model == "frozen"

@@ -10,7 +10,7 @@ import pytest
 from tree_sway_ros.core.fidelity.quiet_branches import quiet_sets
 from tree_sway_ros.core.motion.response import key_response, tip_motion
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
@@ -21,7 +21,7 @@ SHARES = (1e-6, 0.003, 0.01, 0.03, 0.1, 10.0)
 @pytest.fixture(scope="module")
 def answer():
     tree = forked_tree(0.4, 0.35)
-    whole = CalibratedTree(tree, species_named("oak"), SimulatorSettings())
+    whole = CalibratedTree(tree, species_named("oak"), Settings())
     bank = whole.bank("modes", 12)
     rotations = key_response(bank.oscillators, whole.coupled.reduction.n_coordinates, FREQUENCIES)
     return whole, bank.branches, rotations

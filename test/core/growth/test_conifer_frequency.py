@@ -17,12 +17,12 @@ import pytest
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 
-SUBTREE = SimulatorSettings(rung="subtree")
+SUBTREE = Settings(model="subtree")
 FEW = (("spruce", 6.0, 55.0), ("pine", 12.0, 55.0), ("sitka", 24.0, 60.0))
 MANY = tuple(
     product(("spruce", "douglas_fir", "sitka", "pine"), (6.0, 10.0, 15.0, 20.0, 28.0), (50.0, 70.0))

@@ -9,17 +9,17 @@ import pytest
 
 from tree_sway_ros.core.identification.calibration import calibrate
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import ParameterError, TreeError
 
 OAK = species_named("oak")
-COUPLED = SimulatorSettings(rung="coupled")
-WEIGHTLESS = SimulatorSettings(gravity=0.0)
+COUPLED = Settings(model="coupled")
+WEIGHTLESS = Settings(gravity=0.0)
 
 
 def slowest(tree, species, settings=COUPLED):
-    return float(build_bank(tree, species, replace(settings, rung="coupled")).frequencies[0])
+    return float(build_bank(tree, species, replace(settings, model="coupled")).frequencies[0])
 
 
 @pytest.mark.parametrize("share", [0.2, 0.9, 1.0, 1.5, 20.0])
@@ -52,14 +52,14 @@ def test_weight_makes_the_modulus_less_sensitive(fork):
 def test_damping_is_that_of_the_season(fork):
     bare = calibrate(fork(), OAK, 1.0, 0.07).species
     assert (bare.damping_bare, bare.damping_in_leaf) == (0.07, OAK.damping_in_leaf)
-    leafy = calibrate(fork(), OAK, 1.0, 0.07, SimulatorSettings(in_leaf=True)).species
+    leafy = calibrate(fork(), OAK, 1.0, 0.07, Settings(in_leaf=True)).species
     assert (leafy.damping_bare, leafy.damping_in_leaf) == (OAK.damping_bare, 0.07)
     assert calibrate(fork(), OAK, 1.0).species.damping_bare == OAK.damping_bare
 
 
 def test_leaves_weigh_on_the_answer(fork):
     tree = fork()
-    leaves = SimulatorSettings(
+    leaves = Settings(
         leaf_mass=np.full(tree.n_branches, 0.05), leaf_area=np.full(tree.n_branches, 0.01)
     )
     fitted = calibrate(tree, OAK, 1.0, settings=leaves)

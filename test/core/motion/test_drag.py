@@ -15,7 +15,7 @@ from scipy.integrate import quad
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, pressure
 from tree_sway_ros.core.motion.drag import drag as drag_and_slip
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.height_profile import WindProfile
@@ -30,7 +30,7 @@ def drag(record, per_speed_squared, *wind):
 
 
 def record_of(tree, dt=None, **changes):
-    chosen = SimulatorSettings(rung="branch", gravity=0.0, **changes)
+    chosen = Settings(model="branch", gravity=0.0, **changes)
     bank = build_bank(tree, species_named("broadleaf"), chosen)
     if dt is not None:
         bank.oscillators.set_step(dt)
@@ -110,7 +110,7 @@ def test_without_compliance_drag_is_explicit(stem_record):
 @pytest.mark.parametrize("dt", [1e-4, 1 / 60, 1.0])
 def test_a_hair_in_a_storm_follows_the_air_and_does_not_shake(stem, dt):
     tree = stem(length=0.2, base=2e-4, tip=1e-4, cuts=2, direction=(0, 1, 0))
-    sim = SwaySimulator(tree, rung="branch", gravity=0.0)
+    sim = SwaySimulator(tree, model="branch", gravity=0.0)
     for k in range(200):
         before = sim.place().copy()
         sim.step([100.0 * (-1) ** (k // 20), 30.0, 5.0], dt)

@@ -9,7 +9,7 @@ from scipy.sparse.linalg import spsolve
 from tree_sway_ros.core.branch.model import branch_models
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
 WOOD = species_named("broadleaf")
@@ -18,8 +18,8 @@ DT = 1 / 120
 
 
 def modal(tree, **changes):
-    chosen = dict(rung="modes", n_modes=4, gravity=0.0, enrich="none") | changes
-    bank = build_bank(tree, WOOD, SimulatorSettings(**chosen)).oscillators
+    chosen = dict(model="modes", n_modes=4, gravity=0.0, enrich="none") | changes
+    bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(DT)
     return bank
 
@@ -61,7 +61,7 @@ def test_no_motion_without_load(fork):
 
 
 def test_moments_beyond_the_limit_are_held_and_counted(fork):
-    bank = modal(fork(), rung="coupled")
+    bank = modal(fork(), model="coupled")
     assert bank.advance(5.0, 2.0, 0.0, DRAG) == 0
     assert sum(bank.advance(5.0, 2.0, 0.0, 1e12) for _ in range(300)) > 0
     assert np.isfinite(bank.rotations()).all()
@@ -73,7 +73,7 @@ def test_compliance_is_the_answer_to_a_unit_of_force(fork):
 
     """
     tree = fork()
-    bank = modal(tree, rung="coupled")
+    bank = modal(tree, model="coupled")
     branches, shapes = bank.branches, bank.shapes
     b = 3
     own = slice(branches["coordinate"][b], branches["coordinate"][b] + 2)

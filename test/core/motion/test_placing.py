@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway_ros.core.branch.shapes import across
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
 
@@ -25,8 +25,8 @@ seeds = st.integers(0, 10**6)
 class Puppet:
     """A tree that is placed at key rotations given by hand."""
 
-    def __init__(self, tree, rung="coupled", enrich="none"):
-        chosen = SimulatorSettings(rung=rung, enrich=enrich, gravity=0.0, twig_tolerance=-1.0)
+    def __init__(self, tree, model="coupled", enrich="none"):
+        chosen = Settings(model=model, enrich=enrich, gravity=0.0, twig_tolerance=-1.0)
         self.tree = tree
         self.bank = build_bank(tree, species_named("broadleaf"), chosen)
         self.n = len(self.bank.oscillators.rotations())
@@ -86,10 +86,10 @@ def gappy_doll(gappy):
 
 
 @pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("rung", ["branch", "subtree", "coupled"])
-def test_at_rest_the_poses_are_the_input(random_tree, rung, seed):
+@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+def test_at_rest_the_poses_are_the_input(random_tree, model, seed):
     tree = tree_from_segments(*random_tree(seed, 25)[:3])
-    doll = Puppet(tree, rung)
+    doll = Puppet(tree, model)
     start, end = doll.nodes(np.zeros(doll.n))
     assert start == pytest.approx(tree.start, abs=1e-12)
     assert end == pytest.approx(tree.end, abs=1e-12)

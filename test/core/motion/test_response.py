@@ -1,4 +1,4 @@
-"""The linear answer of every rung against the same rung stepped in light wind."""
+"""The linear answer of every model against the same model stepped in light wind."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.response import tip_motion, tip_response
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 
 OAK = species_named("oak")
-RUNGS = ("branch", "subtree", "modes", "coupled")
-DAMPED = SimulatorSettings(gravity=0.0, damping_ratio=0.2, n_modes=8)
+MODELS = ("branch", "subtree", "modes", "coupled")
+DAMPED = Settings(gravity=0.0, damping_ratio=0.2, n_modes=8)
 LIGHT = 0.3
 
 
 @pytest.fixture(scope="module")
 def bank_of(fork):
     calibrated = CalibratedTree(fork(), OAK, DAMPED)
-    return cache(lambda rung: calibrated.bank(rung, 8))
+    return cache(lambda model: calibrated.bank(model, 8))
 
 
 def count(bank):
@@ -44,23 +44,23 @@ def displaced(sim, tree):
 
 
 @pytest.mark.parametrize("way", [0, 1])
-@pytest.mark.parametrize("rung", RUNGS)
-def test_static_answer_is_where_steady_wind_leaves_the_tips(fork, bank_of, rung, way):
+@pytest.mark.parametrize("model", MODELS)
+def test_static_answer_is_where_steady_wind_leaves_the_tips(fork, bank_of, model, way):
     tree = fork()
-    sim = SwaySimulator(tree, OAK, DAMPED, rung=rung)
+    sim = SwaySimulator(tree, OAK, DAMPED, model=model)
     for _ in range(1500):
         sim.step(LIGHT * np.eye(3)[way], 1 / 60)
-    expected = answer(bank_of(rung), [0.0])[:, :, way, 0]
+    expected = answer(bank_of(model), [0.0])[:, :, way, 0]
     assert not expected.imag.any()
     size = np.abs(expected.real).max() * load_of(LIGHT)
     assert displaced(sim, tree) == pytest.approx(expected.real * load_of(LIGHT), abs=5e-3 * size)
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0, 1.6])
-@pytest.mark.parametrize("rung", RUNGS)
-def test_a_load_that_swings_moves_the_tips_as_the_response_says(fork, bank_of, rung, share):
-    tree, bank = fork(), bank_of(rung)
-    sim = SwaySimulator(tree, OAK, DAMPED, rung=rung)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_load_that_swings_moves_the_tips_as_the_response_says(fork, bank_of, model, share):
+    tree, bank = fork(), bank_of(model)
+    sim = SwaySimulator(tree, OAK, DAMPED, model=model)
     frequency = share * float(np.min(sim.frequencies()))
     per_turn, settle, turns = 120, 12, 2
     phase, tips = [], []
@@ -80,17 +80,17 @@ def test_a_frozen_tree_answers_nothing(bank_of):
     assert not answer(bank_of("frozen"), [0.0, 1.0]).any()
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree", "coupled"])
-def test_fast_loads_move_inertia_alone(bank_of, rung):
+@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+def test_fast_loads_move_inertia_alone(bank_of, model):
     """Far above all modes the answer falls with the square of the frequency."""
-    slow, fast, faster = np.moveaxis(answer(bank_of(rung), [0.0, 4e4, 8e4]), -1, 0)
+    slow, fast, faster = np.moveaxis(answer(bank_of(model), [0.0, 4e4, 8e4]), -1, 0)
     assert np.abs(fast).max() < 1e-4 * np.abs(slow).max()
     assert fast == pytest.approx(4.0 * faster, abs=0.05 * np.abs(fast).max())
 
 
 def test_modes_left_out_answer_at_once(bank_of):
     """Truncation keeps their static share: at rest it is exact, far above the modes it stays."""
-    modes, coupled = (answer(bank_of(rung), [0.0, 4e4, 8e4]) for rung in ("modes", "coupled"))
+    modes, coupled = (answer(bank_of(model), [0.0, 4e4, 8e4]) for model in ("modes", "coupled"))
     assert modes[..., 0] == pytest.approx(coupled[..., 0], abs=1e-9 * np.abs(coupled).max())
     assert modes[..., 1] == pytest.approx(modes[..., 2], abs=1e-6 * np.abs(modes).max())
     assert np.abs(modes[..., 2]).max() > 1e-3 * np.abs(coupled[..., 0]).max()

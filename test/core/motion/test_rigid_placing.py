@@ -8,23 +8,23 @@ import pytest
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
 OAK = species_named("oak")
 
 
-@pytest.mark.parametrize("rung", ["subtree", "coupled"])
-def test_as_branches_whose_keys_are_zero(rung):
+@pytest.mark.parametrize("model", ["subtree", "coupled"])
+def test_as_branches_whose_keys_are_zero(model):
     tree = forked_tree(0.5, 0.6)
-    whole = CalibratedTree(tree, OAK, SimulatorSettings())
+    whole = CalibratedTree(tree, OAK, Settings())
     frozen = np.random.default_rng(2).random(tree.n_branches) < 0.3
     pruned = PartlyFrozenTree(whole, frozen)
-    full, part = whole.bank(rung), pruned.bank(rung)
-    keep = pruned.pruning.coordinates(whole.layer(rung).reduction)
+    full, part = whole.bank(model), pruned.bank(model)
+    keep = pruned.pruning.coordinates(whole.layer(model).reduction)
     assert 0 < part.n_frozen < tree.n_branches - 1
-    x = np.zeros(whole.layer(rung).reduction.n_coordinates)
+    x = np.zeros(whole.layer(model).reduction.n_coordinates)
     x[keep] = np.random.default_rng(3).normal(0.0, 0.1, len(keep))
     expected, found = np.zeros((2, tree.n_segments, 7))
     place(

@@ -10,7 +10,7 @@ import pytest
 
 from tree_sway_ros.core.motion.tree_passes import air_records, blow, gather, generalised, ride
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
 DRAG = 0.5 * 1.225 * 1.2
@@ -20,7 +20,7 @@ class Loaded:
     """A tree with its records, forces and rates at hand."""
 
     def __init__(self, tree, enrich="none"):
-        chosen = SimulatorSettings(rung="coupled", enrich=enrich, gravity=0.0)
+        chosen = Settings(model="coupled", enrich=enrich, gravity=0.0)
         bank = build_bank(tree, species_named("broadleaf"), chosen)
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
 WOOD = species_named("broadleaf")
@@ -20,8 +20,8 @@ DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 
 
 def oscillators(tree, dt=1 / 60, **changes):
-    chosen = dict(rung="branch", gravity=0.0, twig_tolerance=-1.0) | changes
-    bank = build_bank(tree, WOOD, SimulatorSettings(**chosen)).oscillators
+    chosen = dict(model="branch", gravity=0.0, twig_tolerance=-1.0) | changes
+    bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(dt)
     return bank
 
@@ -77,8 +77,8 @@ def test_still_air_takes_energy_and_never_gives(stem, dt):
 
 
 def test_what_is_carried_loads_the_stem_only_if_it_carries(fork):
-    for rung, carries in (("branch", False), ("subtree", True)):
-        bank = oscillators(fork(), rung=rung)
+    for model, carries in (("branch", False), ("subtree", True)):
+        bank = oscillators(fork(), model=model)
         bank.advance(5.0, 0.0, 0.0, DRAG)
         every = bank.moment.reshape(-1, 2)[0].copy()
         own = bank.work["force"][0] @ bank.branches["push"][0, :2].T
@@ -87,7 +87,7 @@ def test_what_is_carried_loads_the_stem_only_if_it_carries(fork):
 
 
 def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
-    bank = oscillators(fork(), rung="subtree")
+    bank = oscillators(fork(), model="subtree")
     assert bank.advance(5.0, 0.0, 0.0, DRAG) == 0
     # However heavy the air, at first a branch does no more than go along with it.
     assert bank.advance(5.0, 0.0, 0.0, 1e12) == 0
@@ -101,7 +101,7 @@ def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
 
 
 def test_reset_forgets_everything(fork):
-    bank, fresh = (oscillators(fork(), rung="subtree") for _ in range(2))
+    bank, fresh = (oscillators(fork(), model="subtree") for _ in range(2))
     for k in range(20):
         bank.advance(9.0, 1.0 * k, 0.0, DRAG)
     bank.reset()

@@ -76,25 +76,25 @@ def test_lanczos_finds_what_the_dense_problem_has(sketch, monkeypatch):
     assert np.linalg.svd(overlap, compute_uv=False) == pytest.approx(np.ones(8), abs=1e-6)
 
 
-@pytest.mark.parametrize("rung", ["subtree", "coupled"])
+@pytest.mark.parametrize("model", ["subtree", "coupled"])
 @pytest.mark.parametrize(("share", "ratio"), [(0.5, 0.935), (0.9, 0.521)])
-def test_weight_slows_an_upright_stem(stem, rung, share, ratio):
+def test_weight_slows_an_upright_stem(stem, model, share, ratio):
     """Greenhill (1881): at these shares of the length at which it buckles."""
     tree, wood = flagpole(stem, share)
-    there = SwaySimulator(tree, wood, rung=rung).frequencies(1)[0]
-    without = SwaySimulator(tree, wood, rung=rung, gravity=0.0).frequencies(1)[0]
+    there = SwaySimulator(tree, wood, model=model).frequencies(1)[0]
+    without = SwaySimulator(tree, wood, model=model, gravity=0.0).frequencies(1)[0]
     assert there / without == pytest.approx(ratio, rel=0.03)
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree", "modes", "coupled"])
-def test_a_stem_beyond_greenhills_length_is_refused_by_name(stem, rung):
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+def test_a_stem_beyond_greenhills_length_is_refused_by_name(stem, model):
     tree, wood = flagpole(stem, 1.02)
     with pytest.raises(
         TreeError, match=r"branch 'stem': buckles under its own weight.*thick"
     ) as error:
-        SwaySimulator(tree, wood, rung=rung, n_modes=1)
+        SwaySimulator(tree, wood, model=model, n_modes=1)
     assert "9" in error.value.what
-    assert SwaySimulator(tree, wood, rung=rung, n_modes=1, gravity=0.0).frequencies(1)[0] > 0.0
+    assert SwaySimulator(tree, wood, model=model, n_modes=1, gravity=0.0).frequencies(1)[0] > 0.0
 
 
 def flagpole(stem, share):
@@ -121,7 +121,7 @@ def test_a_thin_branch_that_buckles_is_the_one_that_is_named(sketch):
     drawn.add(0, 2, (1, 0, 1), 0.5, 0.02, 0.01, 2)
     drawn.add(0, 4, (0, 0.01, 1), 3.0, 0.004, 0.004, 3)
     with pytest.raises(TreeError, match="branch 'b2': buckles"):
-        SwaySimulator(drawn.tree(), rung="coupled")
+        SwaySimulator(drawn.tree(), model="coupled")
 
 
 def test_the_cure_in_the_refusal_cures(stem):
@@ -139,7 +139,7 @@ def test_the_cure_in_the_refusal_cures(stem):
 def test_a_branch_without_mass_is_refused_by_name(stem):
     weightless = Species("air", "air", modulus=1e9, density=0.0)
     with pytest.raises(TreeError, match="branch 'stem': massless"):
-        SwaySimulator(stem(), weightless, rung="coupled")
+        SwaySimulator(stem(), weightless, model="coupled")
 
 
 @pytest.mark.parametrize("count", [0, -1, 3])
@@ -151,8 +151,8 @@ def test_a_count_of_modes_that_is_not_there_is_refused(stem, count):
 
 @pytest.mark.parametrize("direction", [(0, 0, 1), (1, 0, 0), (1, 2, 0.3)])
 def test_frequencies_do_not_depend_on_where_a_stem_points(stem, direction):
-    sim = SwaySimulator(stem(direction=direction), rung="coupled", gravity=0.0)
-    upright = SwaySimulator(stem(), rung="coupled", gravity=0.0)
+    sim = SwaySimulator(stem(direction=direction), model="coupled", gravity=0.0)
+    upright = SwaySimulator(stem(), model="coupled", gravity=0.0)
     assert sim.frequencies() == pytest.approx(upright.frequencies(), rel=1e-9)
 
 
@@ -173,7 +173,7 @@ def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
         branch=rows["branch"].astype(int),
     )
     wood = Species("frame", "frame", modulus=8e9, density=900.0)
-    sim = SwaySimulator(tree, wood, rung="modes", n_modes=6, gravity=0.0)
+    sim = SwaySimulator(tree, wood, model="modes", n_modes=6, gravity=0.0)
     found = sim.frequencies(4)
     assert found[0] == pytest.approx(0.7154, rel=0.03)
     assert found[1:] == pytest.approx([0.7254, 1.4084, 1.7586], rel=0.10)
@@ -185,7 +185,7 @@ def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.01, 0.01, 10)
     drawn.add(0, 10, (1, 0, 0), 0.02, 0.1, 0.1, 1)
     drawn.add(0, 10, (-1, 0, 0), 0.02, 0.1, 0.1, 1)
-    sim = SwaySimulator(drawn.tree(), rung="coupled", gravity=0.0, enrich="all")
+    sim = SwaySimulator(drawn.tree(), model="coupled", gravity=0.0, enrich="all")
     wood = species_named("broadleaf")
     tip = 2 * wood.density * np.pi / 4 * 0.1**2 * 0.02
     own = wood.density * np.pi / 4 * 0.01**2

@@ -8,7 +8,7 @@ import pytest
 from tree_sway_ros.core.motion.tree_passes import even_wind_moments
 from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
@@ -17,7 +17,7 @@ OAK = species_named("oak")
 
 @pytest.fixture(scope="module")
 def whole():
-    return CalibratedTree(forked_tree(0.5, 0.6), OAK, SimulatorSettings())
+    return CalibratedTree(forked_tree(0.5, 0.6), OAK, Settings())
 
 
 def twigs_of(tree):

@@ -6,7 +6,7 @@ import pytest
 
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 
@@ -16,7 +16,7 @@ OAK = species_named("oak")
 @pytest.fixture(scope="module")
 def pair(fork):
     trees = fork(), fork(3)
-    return [AdaptiveSimulator(tree, OAK, SimulatorSettings()) for tree in trees]
+    return [AdaptiveSimulator(tree, OAK, Settings()) for tree in trees]
 
 
 def test_each_tree_gets_its_share_of_the_budget(pair):

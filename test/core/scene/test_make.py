@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
@@ -60,8 +60,8 @@ def test_long_steps_of_every_segment_are_cut():
 def test_what_a_model_does_not_know_is_refused(stem):
     with pytest.raises(ParameterError, match=r"unknown fidelity 'best'.*auto"):
         make_simulator(stem, WOOD, fidelity="best")
-    leaves = SimulatorSettings(leaf_mass=np.ones(1))
-    with pytest.raises(ParameterError, match="leaves on rung 'segments'"):
+    leaves = Settings(leaf_mass=np.ones(1))
+    with pytest.raises(ParameterError, match="leaves on model 'segments'"):
         make_simulator(stem, WOOD, leaves, fidelity="segments")
     with pytest.raises(ParameterError, match="volume_rule"):
         make_simulator(stem, WOOD, fidelity="segments", stiffness="volume_rule")

@@ -8,15 +8,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.errors import ParameterError, TreeError
 
 
 def test_a_tree_is_turned_about_its_root_and_moved(fork):
     tree = fork()
-    placed = StandingTree("oak", tree, x=3.0, y=-2.0, z=1.0, yaw=np.pi / 2).placed()
+    placed = PlacedTree("oak", tree, x=3.0, y=-2.0, z=1.0, yaw=np.pi / 2).placed()
     assert placed.name == "oak"
     assert placed.start[0] == pytest.approx([3.0, -2.0, 1.0])
     way, turned = tree.end - tree.start[0], placed.end - placed.start[0]
@@ -27,17 +27,17 @@ def test_a_tree_is_turned_about_its_root_and_moved(fork):
 
 
 def test_the_wind_profile_counts_from_the_ground_it_stands_on(fork):
-    forest = SimulatorSettings(profile=WindProfile("power", ground=0.5))
-    tree = StandingTree("hill", fork(), z=20.0)
+    forest = Settings(profile=WindProfile("power", ground=0.5))
+    tree = PlacedTree("hill", fork(), z=20.0)
     assert tree.settings_where_it_stands(forest).profile == WindProfile("power", ground=20.5)
-    own = StandingTree("own", fork(), settings=SimulatorSettings(rung="branch"))
-    assert own.settings_where_it_stands(forest) == SimulatorSettings(rung="branch")
+    own = PlacedTree("own", fork(), settings=Settings(model="branch"))
+    assert own.settings_where_it_stands(forest) == Settings(model="branch")
 
 
 def test_joined_trees_keep_their_order_and_names(fork, stem):
     trees = [
-        StandingTree("a", fork()).placed(),
-        StandingTree("b", stem(species="oak"), x=5.0).placed(),
+        PlacedTree("a", fork()).placed(),
+        PlacedTree("b", stem(species="oak"), x=5.0).placed(),
     ]
     both = joined(trees, "park")
     n, b = trees[0].n_segments, trees[0].n_branches
@@ -64,4 +64,4 @@ def test_no_trees_cannot_be_joined():
 @pytest.mark.parametrize("pose", [{"x": np.nan}, {"z": np.inf}, {"yaw": np.nan}])
 def test_a_tree_that_is_nowhere_is_refused(fork, pose):
     with pytest.raises(ParameterError, match="oak"):
-        StandingTree("oak", fork(), **pose)
+        PlacedTree("oak", fork(), **pose)

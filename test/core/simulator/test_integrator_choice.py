@@ -14,13 +14,13 @@ from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 WOOD = Species("example", "example", 8e9, 900.0, damping_bare=0.05)
 
 
-@pytest.mark.parametrize("rung", ["branch", "modes"])
+@pytest.mark.parametrize("model", ["branch", "modes"])
 @pytest.mark.parametrize("integrator", REAL_TIME)
-def test_every_method_sways_a_slow_stem_alike(rung, integrator):
+def test_every_method_sways_a_slow_stem_alike(model, integrator):
     tree = tapered_stem(6.0, np.linspace(0.05, 0.04, 7))
     tips = []
     for method in ("exact_foh", integrator):
-        sim = SwaySimulator(tree, WOOD, rung=rung, integrator=method, gravity=0.0, enrich="none")
+        sim = SwaySimulator(tree, WOOD, model=model, integrator=method, gravity=0.0, enrich="none")
         for k in range(400):
             sim.step((3.0 + np.sin(0.02 * k), 0.0, 0.0), 1.0 / 240.0)
             sim.place()
@@ -31,7 +31,7 @@ def test_every_method_sways_a_slow_stem_alike(rung, integrator):
 
 @pytest.mark.parametrize("integrator", ["semi_implicit_euler", "rk4", "verlet"])
 def test_a_method_beyond_its_stable_region_is_refused_by_name(integrator):
-    sim = SwaySimulator(forked_tree(0.4, 0.35), WOOD, rung="coupled", integrator=integrator)
+    sim = SwaySimulator(forked_tree(0.4, 0.35), WOOD, model="coupled", integrator=integrator)
     with pytest.raises(ParameterError, match=rf"{integrator}.*its limit"):
         sim.step((1.0, 0.0, 0.0), 1.0 / 60.0)
 

@@ -8,7 +8,7 @@ import pytest
 from tree_sway_ros.core.reference.measure import record_tips, tip_error
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
@@ -16,7 +16,7 @@ from tree_sway_ros.study.example_trees import forked_tree
 
 OAK = species_named("oak")
 DT = 1.0 / 60.0
-SETTINGS = SimulatorSettings(n_modes=6)
+SETTINGS = Settings(n_modes=6)
 
 
 @pytest.fixture(scope="module")
@@ -29,25 +29,25 @@ def wind():
     return simulate_turbulence(6.0, rate=60, duration=4, rng=np.random.default_rng(1), height=10.0)
 
 
-def tips(calibrated, whole, wind, rung):
-    sim = SwaySimulator(whole.tree, OAK, SETTINGS, rung=rung, calibrated=calibrated)
+def tips(calibrated, whole, wind, model):
+    sim = SwaySimulator(whole.tree, OAK, SETTINGS, model=model, calibrated=calibrated)
     return sim, record_tips(sim, whole.tree, wind, DT)
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree", "modes", "coupled"])
-def test_nothing_frozen_changes_nothing(whole, wind, rung):
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+def test_nothing_frozen_changes_nothing(whole, wind, model):
     none = PartlyFrozenTree(whole, np.zeros(whole.tree.n_branches, bool))
-    _, before = tips(whole, whole, wind[:60], rung)
-    _, after = tips(none, whole, wind[:60], rung)
+    _, before = tips(whole, whole, wind[:60], model)
+    _, after = tips(none, whole, wind[:60], model)
     np.testing.assert_allclose(after, before, atol=1e-12)
 
 
-@pytest.mark.parametrize("rung", ["subtree", "modes", "coupled"])
-def test_frozen_twigs_cost_two_percent_of_the_motion(whole, wind, rung):
+@pytest.mark.parametrize("model", ["subtree", "modes", "coupled"])
+def test_frozen_twigs_cost_two_percent_of_the_motion(whole, wind, model):
     tree = whole.tree
     twigs = tree.subtree_end - np.arange(tree.n_branches) == 1
-    sim, after = tips(PartlyFrozenTree(whole, twigs), whole, wind, rung)
-    _, before = tips(whole, whole, wind, rung)
+    sim, after = tips(PartlyFrozenTree(whole, twigs), whole, wind, model)
+    _, before = tips(whole, whole, wind, model)
     assert (sim.n_frozen, sim.n_solved, sim.n_copied) == (27, 13, 0)
     assert 0.001 < tip_error(tree, after, before) < 0.02
 

@@ -18,7 +18,7 @@ from tree_sway_ros.core.leaves.foliage import foliage_of
 from tree_sway_ros.core.leaves.traits import leaf_traits
 from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_keys, species_named
 
@@ -41,14 +41,16 @@ def branch_wood(tree):
 
 
 def first_frequency(tree, settings):
-    bank = build_bank(tree, species_named(tree.species), replace(settings, rung="modes", n_modes=1))
+    bank = build_bank(
+        tree, species_named(tree.species), replace(settings, model="modes", n_modes=1)
+    )
     return bank.frequencies[0]
 
 
 def test_leaves_weigh_catch_and_damp(fork):
     tree = replace(fork(), species="oak")
     foliage = foliage_of(tree)
-    usual = SimulatorSettings(rung="branch", gravity=0.0)
+    usual = Settings(model="branch", gravity=0.0)
     leafy = in_season(tree, usual, leaf_on=True)
     assert (leafy.leaf_mass == foliage.mass).all()
     assert (leafy.leaf_area == foliage.drag_area).all()
@@ -62,7 +64,7 @@ def test_leaves_weigh_catch_and_damp(fork):
 def test_in_winter_an_oak_is_bare_and_a_spruce_is_not(fork):
     oak, spruce = (replace(fork(), species=key) for key in ("oak", "spruce"))
     leafy = in_season(oak, leaf_on=True)
-    assert in_season(oak, leafy, leaf_on=False) == SimulatorSettings()
+    assert in_season(oak, leafy, leaf_on=False) == Settings()
     assert in_season(spruce, leaf_on=False).in_leaf
 
 
@@ -103,7 +105,7 @@ def test_leaves_lower_the_first_frequency(name, shares):
     tree = tree_named(name)
     leafy = in_season(tree, leaf_on=True)
     mass = leafy.leaf_mass / leafy.leaf_mass.sum() * branch_wood(tree)
-    bare = first_frequency(tree, SimulatorSettings())
+    bare = first_frequency(tree, Settings())
     most, least = (
         first_frequency(tree, replace(leafy, leaf_mass=mass * share)) / bare for share in shares
     )
@@ -136,7 +138,7 @@ def growth_of_load(tree, settings):
     ],
 )
 def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
-    tree, usual = tree_named(name), SimulatorSettings(rung="subtree")
+    tree, usual = tree_named(name), Settings(model="subtree")
     assert 1.90 <= growth_of_load(tree, usual) <= 2.05
     assert 1.05 <= growth_of_load(tree, in_season(tree, usual, leaf_on=True)) <= 1.70
 
@@ -144,7 +146,7 @@ def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
 def test_the_base_moment_is_that_of_drag(stem):
     """A stem in a steady wind: pressure times area times the height of its middle."""
     tree = stem(length=2.0, base=0.05)
-    sim = SwaySimulator(tree, rung="branch", damping_ratio=0.7)
+    sim = SwaySimulator(tree, model="branch", damping_ratio=0.7)
     for _ in range(200):
         sim.step((3.0, 0.0, 0.0), 0.1)
     pushed = 0.5 * 1.225 * 1.2 * 3.0**2 * (2.0 * 0.05)

@@ -6,31 +6,34 @@ import dataclasses
 
 import pytest
 
-from tree_sway_ros.core.simulator.settings import RUNGS, SimulatorSettings
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.errors import ParameterError
 
 
 def test_the_defaults_stand():
-    chosen = SimulatorSettings()
-    assert chosen.rung in RUNGS
+    chosen = Settings()
+    assert chosen.model in MODELS
     assert chosen.damping_ratio is None
     with pytest.raises(dataclasses.FrozenInstanceError):
-        chosen.rung = "frozen"
+        chosen.model = "frozen"
 
 
-@pytest.mark.parametrize("rung", RUNGS)
-def test_every_rung_can_be_asked_for(rung):
-    assert SimulatorSettings(rung=rung).rung == rung
+@pytest.mark.parametrize("model", MODELS)
+def test_every_model_can_be_asked_for(model):
+    assert Settings(model=model).model == model
 
 
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        (dict(rung="fast"), "unknown rung 'fast'; use one of: frozen, branch, subtree"),
+        (dict(model="fast"), "unknown model 'fast'; use one of: frozen, branch, subtree"),
         (dict(stiffness="felt"), "unknown stiffness 'felt'; use one of: beam, volume_rule"),
         (dict(enrich="some"), "unknown enrich 'some'; use one of: none"),
-        (dict(stiffness="volume_rule", rung="modes"), "stiffness: the volume rule on rung 'modes'"),
-        (dict(stiffness="volume_rule", rung="coupled"), "use it on 'branch' or 'subtree'"),
+        (
+            dict(stiffness="volume_rule", model="modes"),
+            "stiffness: the volume rule on model 'modes'",
+        ),
+        (dict(stiffness="volume_rule", model="coupled"), "use it on 'branch' or 'subtree'"),
         (dict(damping_ratio=-0.1), "damping ratio -0.1; give 0 or more"),
         (dict(damping_ratio=float("nan")), "damping ratio nan"),
         (dict(n_modes=0), "n_modes: 0 modes; ask for 1 or more"),
@@ -43,4 +46,4 @@ def test_every_rung_can_be_asked_for(rung):
 )
 def test_what_is_out_of_range_is_refused(given, message):
     with pytest.raises(ParameterError, match=message):
-        SimulatorSettings(**given)
+        Settings(**given)

@@ -1,4 +1,4 @@
-"""The tree in the wind: laws that hold for every rung."""
+"""The tree in the wind: laws that hold for every model."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import pytest
 from scipy.integrate import quad
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
-from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import ParameterError, SpeciesError
 
-MOVING = [rung for rung in RUNGS if rung != "frozen"]
+MOVING = [model for model in MODELS if model != "frozen"]
 DT = 1.0 / 60.0
 
 
@@ -33,22 +33,22 @@ def run(sim, winds, dt=DT):
 
 
 @pytest.fixture(params=MOVING)
-def rung(request):
+def model(request):
     return request.param
 
 
-def swaying(tree, rung, **changes):
-    return SwaySimulator(tree, rung=rung, **({"n_modes": 4} | changes))
+def swaying(tree, model, **changes):
+    return SwaySimulator(tree, model=model, **({"n_modes": 4} | changes))
 
 
-def test_the_same_wind_gives_the_same_bits(fork, rung):
+def test_the_same_wind_gives_the_same_bits(fork, model):
     winds = gusts(100)
-    one, other = (run(swaying(fork(), rung), winds) for _ in range(2))
+    one, other = (run(swaying(fork(), model), winds) for _ in range(2))
     assert one.tobytes() == other.tobytes()
 
 
-def test_without_wind_a_tree_stands_exactly_at_rest(fork, rung):
-    sim = swaying(fork(), rung)
+def test_without_wind_a_tree_stands_exactly_at_rest(fork, model):
+    sim = swaying(fork(), model)
     rest = sim.place().copy()
     frames = run(sim, np.zeros((50, 3)))
     assert (frames == rest).all()
@@ -61,25 +61,25 @@ def test_a_westerly_bends_every_tree_to_the_east(name):
     bends_east(builtin_tree(name), "subtree")
 
 
-@pytest.mark.parametrize("rung", RUNGS)
-def test_a_westerly_bends_the_tree_of_every_rung_to_the_east(fork, rung):
-    bends_east(fork(), rung, n_modes=4)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_westerly_bends_the_tree_of_every_model_to_the_east(fork, model):
+    bends_east(fork(), model, n_modes=4)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", BUILTIN_TREES)
-@pytest.mark.parametrize("rung", ["frozen", "branch", "modes", "coupled"])
-def test_a_westerly_bends_every_tree_on_every_rung_to_the_east(name, rung):
-    bends_east(builtin_tree(name), rung)
+@pytest.mark.parametrize("model", ["frozen", "branch", "modes", "coupled"])
+def test_a_westerly_bends_every_tree_on_every_model_to_the_east(name, model):
+    bends_east(builtin_tree(name), model)
 
 
-def bends_east(tree, rung, **changes):
-    sim = SwaySimulator(tree, rung=rung, damping_ratio=0.5, **changes)
+def bends_east(tree, model, **changes):
+    sim = SwaySimulator(tree, model=model, damping_ratio=0.5, **changes)
     rest = sim.place()[:, :3].copy()
     for _ in range(240):
         sim.step([6.0, 0.0, 0.0], DT)
     moved = sim.place()[:, :3] - rest
-    if rung == "frozen":
+    if model == "frozen":
         assert not moved.any()
         return
     assert sim.tip_displacement[0] > 1e-5
@@ -87,19 +87,19 @@ def bends_east(tree, rung, **changes):
     assert mean[0] > 5.0 * abs(mean[1])
 
 
-def test_mirrored_wind_gives_mirrored_motion(mirror_fork, rung):
+def test_mirrored_wind_gives_mirrored_motion(mirror_fork, model):
     tree, partner = mirror_fork()
     mirror = np.array([1.0, -1.0, 1.0])
     winds = gusts(150)
-    one = run(swaying(tree, rung, n_modes=12), winds)
-    other = run(swaying(tree, rung, n_modes=12), winds * mirror)
+    one = run(swaying(tree, model, n_modes=12), winds)
+    other = run(swaying(tree, model, n_modes=12), winds * mirror)
     assert np.abs(one[-1] - one[0]).max() > 1e-3
     assert other[:, partner, :3] == pytest.approx(one[:, :, :3] * mirror, abs=1e-9)
 
 
 @pytest.mark.parametrize("heading", [0.7, np.pi])
 @pytest.mark.parametrize(
-    ("rung", "within", "gravity"),
+    ("model", "within", "gravity"),
     # What is left: the inertia a branch gives way with, and the static rest under weight, go by
     # each axis.
     [
@@ -109,7 +109,7 @@ def test_mirrored_wind_gives_mirrored_motion(mirror_fork, rung):
         ("coupled", 1e-12, 9.81),
     ],
 )
-def test_a_turned_tree_in_turned_wind_moves_alike(fork, rung, within, gravity, heading):
+def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, heading):
     tree = fork()
     c, s = np.cos(heading), np.sin(heading)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -121,15 +121,15 @@ def test_a_turned_tree_in_turned_wind_moves_alike(fork, rung, within, gravity, h
         branch=tree.branch_of_segment,
     )
     winds = gusts(60)
-    one, other = (swaying(t, rung, n_modes=8, gravity=gravity) for t in (tree, turned))
+    one, other = (swaying(t, model, n_modes=8, gravity=gravity) for t in (tree, turned))
     moved = run(one, winds)[:, :, :3]
     assert np.ptp(moved, axis=0).max() > 5e-3
     assert run(other, winds @ turn)[:, :, :3] == pytest.approx(moved @ turn, abs=within)
 
 
-@pytest.mark.parametrize("rung", RUNGS)
-def test_a_step_allocates_nothing(fork, rung):
-    sim = swaying(fork(), rung)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_step_allocates_nothing(fork, model):
+    sim = swaying(fork(), model)
     wind, out = np.array([5.0, 1.0, 0.0]), np.zeros((sim.tree.n_segments, 7))
     for _ in range(3):
         sim.step(wind, DT)
@@ -152,10 +152,10 @@ def test_a_step_allocates_nothing(fork, rung):
 
 
 @pytest.mark.parametrize("taper", [0.0, 0.6])
-def test_static_deflection_is_the_beams(stem, rung, taper):
+def test_static_deflection_is_the_beams(stem, model, taper):
     length, base, wind = 1.2, 0.012, 5.0
     tree = stem(length, base, base * (1 - taper), cuts=8)
-    sim = swaying(tree, rung, gravity=0.0, damping_ratio=1.0, n_modes=1)
+    sim = swaying(tree, model, gravity=0.0, damping_ratio=1.0, n_modes=1)
     for _ in range(1200):
         sim.step([wind, 0.0, 0.0], DT)
     sim.place()
@@ -170,9 +170,9 @@ def test_static_deflection_is_the_beams(stem, rung, taper):
     assert abs(sim.tip_displacement[1]) < 1e-9
 
 
-def test_the_step_is_of_second_order(fork, rung):
+def test_the_step_is_of_second_order(fork, model):
     def tip_after(n):
-        sim = swaying(fork(), rung, n_modes=8, gravity=0.0)
+        sim = swaying(fork(), model, n_modes=8, gravity=0.0)
         h = 1.0 / n
         for k in range(n):
             # Mean over the step of 5 + 3 sin 4t.
@@ -198,7 +198,7 @@ def test_place_writes_where_it_is_told(fork):
 
 def test_what_it_says_of_the_tree(fork):
     sim = swaying(fork(), "coupled", leaf_mass=np.array([0.0, 0.1, 0.1, 0.1]))
-    assert sim.rung == "coupled"
+    assert sim.model == "coupled"
     assert sim.mass == pytest.approx(900.0 * sim.tree.volume.sum() + 0.3)
     assert sim.n_solved + sim.n_copied == sim.tree.n_branches
     assert (np.diff(sim.frequencies()) >= 0).all()
@@ -210,7 +210,7 @@ def test_errors_of_a_simulator(fork):
     with pytest.raises(SpeciesError, match="unknown species 'plastic'"):
         SwaySimulator(plastic(fork()))
     with pytest.raises(ParameterError, match="100 modes of a tree that has"):
-        SwaySimulator(fork(), rung="modes", n_modes=100)
+        SwaySimulator(fork(), model="modes", n_modes=100)
     with pytest.raises(TypeError, match="no_such_setting"):
         SwaySimulator(fork(), no_such_setting=1)
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.core.simulator.simulator import LOAD_HELD, OK, WIND_REFUSED, SwaySimulator
 from tree_sway_ros.errors import ParameterError
 
@@ -32,13 +32,13 @@ def run(sim, winds):
     return np.array(frames)
 
 
-@pytest.fixture(params=[rung for rung in RUNGS if rung != "frozen"])
-def rung(request):
+@pytest.fixture(params=[model for model in MODELS if model != "frozen"])
+def model(request):
     return request.param
 
 
-def swaying(tree, rung, **changes):
-    return SwaySimulator(tree, rung=rung, **({"n_modes": 4} | changes))
+def swaying(tree, model, **changes):
+    return SwaySimulator(tree, model=model, **({"n_modes": 4} | changes))
 
 
 @pytest.mark.parametrize(
@@ -49,8 +49,8 @@ def swaying(tree, rung, **changes):
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_a_wind_that_cannot_be_is_refused_and_the_last_one_held(fork, bad, axis):
     winds = gusts(40)
-    for rung in ("subtree", "modes"):
-        held, struck = swaying(fork(), rung), swaying(fork(), rung)
+    for model in ("subtree", "modes"):
+        held, struck = swaying(fork(), model), swaying(fork(), model)
         for k, wind in enumerate(winds):
             blow = np.array(wind)
             if k == 20:
@@ -62,8 +62,8 @@ def test_a_wind_that_cannot_be_is_refused_and_the_last_one_held(fork, bad, axis)
         assert (struck.counts.refused, struck.counts.steps, held.counts.refused) == (1, 40, 0)
 
 
-def test_bad_wind_from_the_start_is_no_wind(fork, rung):
-    sim = swaying(fork(), rung)
+def test_bad_wind_from_the_start_is_no_wind(fork, model):
+    sim = swaying(fork(), model)
     rest = sim.place().copy()
     assert sim.step([np.nan, 0.0, 0.0], DT) == WIND_REFUSED
     assert (sim.place() == rest).all()
@@ -83,11 +83,11 @@ def test_no_wind_ever_poisons_a_tree(wild_sim, wind):
 
 @pytest.fixture(scope="module")
 def wild_sim(fork):
-    return SwaySimulator(fork(), rung="subtree", gravity=0.0)
+    return SwaySimulator(fork(), model="subtree", gravity=0.0)
 
 
-def test_late_and_uneven_steps_end_at_the_same_place(fork, rung):
-    even, uneven = (swaying(fork(), rung, damping_ratio=0.3) for _ in range(2))
+def test_late_and_uneven_steps_end_at_the_same_place(fork, model):
+    even, uneven = (swaying(fork(), model, damping_ratio=0.3) for _ in range(2))
     rng = np.random.default_rng(0)
     run(even, [[5.0, 1.0, 0.0]] * 1800)
     for k in range(600):
@@ -112,7 +112,7 @@ def test_a_stall_is_one_long_step(stem):
     assert np.abs(one).max() < 1e-3 * moved
 
 
-def test_a_change_of_step_does_not_move_the_tree(fork, rung):
+def test_a_change_of_step_does_not_move_the_tree(fork, model):
     """Half steps, then whole ones: the same motion to the second order of the step."""
 
     def wind(t):
@@ -120,7 +120,7 @@ def test_a_change_of_step_does_not_move_the_tree(fork, rung):
 
     ends = []
     for plan in ([DT / 8] * 960, [DT / 2] * 120 + [DT] * 60):
-        sim, t = swaying(fork(), rung), 0.0
+        sim, t = swaying(fork(), model), 0.0
         for dt in plan:
             sim.step(wind(t + dt / 2), dt)
             t += dt
@@ -129,8 +129,8 @@ def test_a_change_of_step_does_not_move_the_tree(fork, rung):
     assert ends[0] == pytest.approx(ends[1], abs=0.01 * np.abs(ends[0]).max())
 
 
-def test_reset_goes_back_to_rest_and_repeats(fork, rung):
-    sim = swaying(fork(), rung)
+def test_reset_goes_back_to_rest_and_repeats(fork, model):
+    sim = swaying(fork(), model)
     winds = gusts(30)
     first = run(sim, winds)
     sim.reset()
@@ -143,7 +143,7 @@ def test_reset_goes_back_to_rest_and_repeats(fork, rung):
 
 
 def test_a_storm_that_is_held_says_so(stem):
-    sim = SwaySimulator(stem(length=1.0, base=0.002, cuts=4), rung="subtree", gravity=0.0)
+    sim = SwaySimulator(stem(length=1.0, base=0.002, cuts=4), model="subtree", gravity=0.0)
     status = [sim.step([140.0, 0.0, 0.0], DT) for _ in range(30)]
     assert set(status) <= {OK, LOAD_HELD}
     assert LOAD_HELD in status

@@ -25,8 +25,8 @@ def gusty():
     return np.array([8.0, 0.0, 0.0]) + turbulence[: int(10.0 * RATE)]
 
 
-def tip_motion(tree, rung, winds):
-    sim = SwaySimulator(tree, rung=rung, twig_tolerance=-1.0)
+def tip_motion(tree, model, winds):
+    sim = SwaySimulator(tree, model=model, twig_tolerance=-1.0)
     tips = np.empty((len(winds), 3))
     for i, wind in enumerate(winds):
         sim.step(wind, 1.0 / RATE)
@@ -48,14 +48,14 @@ def limbs(sketch, cuts):
     return s.tree()
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree", "coupled"])
+@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
 @pytest.mark.parametrize("kind", ["one branch", "four branches"])
-def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty, rung, kind):
+def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty, model, kind):
     # Cut in 4, so that a cut in 3 leaves the twig within a segment.
     tree = (
         stem(length=2.0, base=0.02, tip=0.006, cuts=4) if kind == "one branch" else limbs(sketch, 4)
     )
-    finest, *others = [tip_motion(resegment(tree, cut), rung, gusty) for cut in CUTS[::-1]]
+    finest, *others = [tip_motion(resegment(tree, cut), model, gusty) for cut in CUTS[::-1]]
     size = np.sqrt(np.square(finest).sum(axis=1).mean())
     assert size > 0.005
     for tips in others:
@@ -63,11 +63,11 @@ def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty
         assert away <= 1e-3 * size
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree", "coupled"])
-def test_finer_cuts_change_no_frequency(fork, rung):
+@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+def test_finer_cuts_change_no_frequency(fork, model):
     tree = fork()
     for cut in (4, 7, 24):
-        sims = [SwaySimulator(each, rung=rung) for each in (tree, resegment(tree, cut))]
+        sims = [SwaySimulator(each, model=model) for each in (tree, resegment(tree, cut))]
         coarse, fine = (sim.frequencies(6) for sim in sims)
         assert fine == pytest.approx(coarse, rel=1e-6)
 

@@ -24,7 +24,7 @@ ALIKE = ((1.0, 0.0, 1.0), 0.2, 0.004)
 def test_of_many_alike_one_is_solved(sketch):
     tree = brush(sketch, [ALIKE] * 4)
     assert twig_sources(tree, 0.0).tolist() == [0, 1, 1, 1, 1]
-    sim = SwaySimulator(tree, rung="subtree")
+    sim = SwaySimulator(tree, model="subtree")
     assert (sim.n_solved, sim.n_copied) == (2, 3)
 
 
@@ -56,11 +56,11 @@ def test_only_twigs_of_one_parent_and_one_segment_that_carry_nothing_copy(sketch
     assert twig_sources(tree, 0.1).tolist() == list(range(tree.n_branches))
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree"])
-def test_copies_move_as_their_source(sketch, rung):
+@pytest.mark.parametrize("model", ["branch", "subtree"])
+def test_copies_move_as_their_source(sketch, model):
     thin, near = ((1.0, 0.0, 1.0), 0.2, 0.002), ((1.0, 0.02, 1.0), 0.203, 0.00205)
-    sim = SwaySimulator(brush(sketch, [thin, thin, near]), rung=rung)
-    every = SwaySimulator(sim.tree, rung=rung, twig_tolerance=-1.0)
+    sim = SwaySimulator(brush(sketch, [thin, thin, near]), model=model)
+    every = SwaySimulator(sim.tree, model=model, twig_tolerance=-1.0)
     assert (sim.n_copied, every.n_copied) == (2, 0)
     for k in range(60):
         wind = [8.0 + 4.0 * np.sin(k / 5.0), 3.0, 0.0]
@@ -69,7 +69,7 @@ def test_copies_move_as_their_source(sketch, rung):
     poses, solved = sim.place(), every.place()
     # An equal twig stands where its source does; a like one nearly where it would by itself.
     assert (poses[5] == poses[4]).all()
-    tip = np.abs(poses[4, 3:] - SwaySimulator(sim.tree, rung=rung).place()[4, 3:]).max()
+    tip = np.abs(poses[4, 3:] - SwaySimulator(sim.tree, model=model).place()[4, 3:]).max()
     assert tip > 1e-3
     assert np.abs(poses - solved).max() < 0.2 * tip
     x = sim._bank.oscillators.x.reshape(-1, 2)

@@ -8,7 +8,7 @@ import pytest
 from scipy.io import loadmat
 
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.trees.tree_file import read_tree
 
@@ -123,7 +123,7 @@ def test_the_walnut_sways_as_walnuts_do():
 
     """
     tree_file = read_tree(TREES / "walnut.mtg", species="walnut")
-    settings = SimulatorSettings(rung="modes", n_modes=20, mode_choice="slowest")
+    settings = Settings(model="modes", n_modes=20, mode_choice="slowest")
     slowest = build_bank(tree_file.tree, tree_file.species, settings).frequencies
     assert 1.2 <= slowest[0] <= 1.9
     assert len(slowest) == 20

@@ -51,17 +51,17 @@ def test_articulated_tree_is_the_same_mechanism(golden, tree):
     assert error_of(model, tree, golden["wind"], golden["same"], substeps=2) < 5e-3
 
 
-@pytest.mark.parametrize("rung", ["modes", "coupled"])
-def test_reduced_tree_errs_by_less_than_a_twentieth(golden, tree, rung):
+@pytest.mark.parametrize("model", ["modes", "coupled"])
+def test_reduced_tree_errs_by_less_than_a_twentieth(golden, tree, model):
     model = SwaySimulator(
-        tree, SPECIES, rung=rung, damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
+        tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
     )
     assert error_of(model, tree, golden["wind"], golden["beam"]) < 0.05
 
 
 def test_uncoupled_branches_are_caught(golden, tree):
     model = SwaySimulator(
-        tree, SPECIES, rung="branch", damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
+        tree, SPECIES, model="branch", damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
     )
     assert error_of(model, tree, golden["wind"], golden["beam"]) > 0.5
 

@@ -64,7 +64,7 @@ def test_each_period_is_a_step():
 def test_late_ticks_leave_no_trace_in_the_motion():
     poses = []
     for lateness in ([1] * 600, [4] * 150, [1, 7, 2, 20, 3, 5, 8, 4] * 12):
-        simulator = SwaySimulator(TREE, rung="subtree")
+        simulator = SwaySimulator(TREE, model="subtree")
         made = stepper(simulator)
         made.warm_up()
         play(made, lateness)

@@ -20,7 +20,7 @@ TREE = builtin_tree("goldcrest")
 
 @pytest.fixture(scope="module")
 def message():
-    poses = SwaySimulator(TREE, rung="frozen").place()
+    poses = SwaySimulator(TREE, model="frozen").place()
     return deserialize_message(TreeMarkers(TREE, "map", 5).to_bytes(poses, 3 * 10**9), MarkerArray)
 
 

@@ -3,7 +3,7 @@ import json
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.ros.wire.tree_description import SCHEMA, VERSION, describe
 
@@ -42,7 +42,7 @@ def test_leaves_are_part_of_it():
 
 
 def test_every_tree_of_several_begins_with_a_segment_without_a_parent():
-    trees = [StandingTree("a", TREE), StandingTree("b", TREE, x=3.0)]
+    trees = [PlacedTree("a", TREE), PlacedTree("b", TREE, x=3.0)]
     told = json.loads(describe(joined([each.placed() for each in trees]), "map"))
     fits(told, SCHEMA)
     parents, names = told["segments"]["parents"], told["segments"]["names"]

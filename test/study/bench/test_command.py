@@ -34,9 +34,9 @@ def test_the_tree_keeps_its_shape_however_it_is_cut(segments: int) -> None:
     assert coarse.volume.sum() == pytest.approx(fine.volume.sum())
 
 
-@pytest.mark.parametrize("rung", ["branch", "subtree"])
-def test_kernels_and_twin_agree_and_are_timed(rung: str) -> None:
-    timing = bench_step.time_steps(bench_tree(), rung, 1)
+@pytest.mark.parametrize("model", ["branch", "subtree"])
+def test_kernels_and_twin_agree_and_are_timed(model: str) -> None:
+    timing = bench_step.time_steps(bench_tree(), model, 1)
     assert timing.difference < 1e-9
     assert 0.0 < timing.minimum <= timing.median
     assert timing.ratio is not None
@@ -54,5 +54,5 @@ def test_the_command_prints_what_a_program_can_read(capsys: pytest.CaptureFixtur
     assert cli.main(["bench", "step", "--rounds", "1", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["segments"] == 726
-    assert [row["rung"] for row in found["timings"]] == ["branch", "subtree", "modes"]
+    assert [row["model"] for row in found["timings"]] == ["branch", "subtree", "modes"]
     assert found["timings"][2]["ratio"] is None

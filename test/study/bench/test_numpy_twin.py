@@ -30,10 +30,10 @@ def tree():
 
 
 @pytest.mark.parametrize(
-    ("name", "rung"), [("wild", "branch"), ("wild", "subtree"), ("bench", "subtree")]
+    ("name", "model"), [("wild", "branch"), ("wild", "subtree"), ("bench", "subtree")]
 )
-def test_two_hundred_random_steps_agree(tree, name, rung):
-    sim = SwaySimulator(tree if name == "wild" else bench_tree(), rung=rung, gravity=0.0)
+def test_two_hundred_random_steps_agree(tree, name, model):
+    sim = SwaySimulator(tree if name == "wild" else bench_tree(), model=model, gravity=0.0)
     twin = NumpyTwin(sim)
     rng = np.random.default_rng(2)
     largest = 0.0
@@ -48,7 +48,7 @@ def test_two_hundred_random_steps_agree(tree, name, rung):
 
 
 def test_they_agree_where_loads_are_held(tree):
-    sim = SwaySimulator(tree, rung="subtree", gravity=0.0)
+    sim = SwaySimulator(tree, model="subtree", gravity=0.0)
     twin = NumpyTwin(sim)
     held = 0
     for k in range(20):
@@ -63,7 +63,7 @@ def test_they_agree_where_loads_are_held(tree):
 
 @pytest.mark.parametrize("enrich", ["none", "carriers", "all"])
 def test_placing_agrees_for_every_way_to_move(tree, enrich):
-    sim = SwaySimulator(tree, rung="modes", n_modes=6, enrich=enrich, gravity=0.0)
+    sim = SwaySimulator(tree, model="modes", n_modes=6, enrich=enrich, gravity=0.0)
     twin = NumpyTwin(sim)
     for k in range(20):
         sim.step([9.0, 4.0 * np.sin(k), 1.0], 1 / 30)
@@ -74,13 +74,13 @@ def test_placing_agrees_for_every_way_to_move(tree, enrich):
 
 
 def test_it_writes_where_it_is_told(tree):
-    twin = NumpyTwin(SwaySimulator(tree, rung="branch"))
+    twin = NumpyTwin(SwaySimulator(tree, model="branch"))
     out = np.zeros((tree.n_segments, 7))
     assert twin.place(out) is out
     assert out[:, :3] == pytest.approx(tree.start, abs=1e-12)
 
 
 def test_it_does_not_step_modes(tree):
-    twin = NumpyTwin(SwaySimulator(tree, rung="modes", n_modes=2, gravity=0.0))
-    with pytest.raises(ParameterError, match=r"rung: .*use 'branch' or 'subtree'"):
+    twin = NumpyTwin(SwaySimulator(tree, model="modes", n_modes=2, gravity=0.0))
+    with pytest.raises(ParameterError, match=r"model: .*use 'branch' or 'subtree'"):
         twin.step([1.0, 0.0, 0.0], 1 / 60)

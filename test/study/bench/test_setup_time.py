@@ -1,4 +1,4 @@
-"""That set-ups are timed from nothing, each on its rung."""
+"""That set-ups are timed from nothing, each on its model."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from tree_sway_ros.study.bench import setup_time as bench_setup
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 
 
-def test_every_rung_is_set_up_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_model_is_set_up_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     built = []
     honest = bench_setup.SwaySimulator
 
     def noted(tree, **settings):
         simulator = honest(tree, **settings)
-        built.append((tree.n_branches, simulator.rung))
+        built.append((tree.n_branches, simulator.model))
         return simulator
 
     monkeypatch.setattr(bench_setup, "SwaySimulator", noted)

@@ -25,7 +25,7 @@ def test_both_run_on_one_tree_and_agree():
     # A stiff bush has modes that decay fast, which MuJoCo's dampers take at shorter steps only.
     tree = forked_tree(0.65, 0.6, generations=2)
     wind = np.tile([6.0, 2.0, 0.0], (20, 1))
-    found = compare_with_mujoco(tree, WOOD, wind, rung="coupled", steps=64)
+    found = compare_with_mujoco(tree, WOOD, wind, model="coupled", steps=64)
     assert found.first_frequency == pytest.approx(1.0, abs=0.01)
     assert found.static_sway == pytest.approx(1.0, abs=0.01)
     assert found.step_error < 0.01

@@ -1,11 +1,11 @@
 """
 A tree that uses no more model than its scene needs, and changes models unseen.
 
-The error and the cost of every rung in the wind of the last minute are known beforehand
+The error and the cost of every model in the wind of the last minute are known beforehand
 (`fidelity_ladder`); the cheapest that stays within the tolerance is used, or, where none that can
 be afforded does, the most accurate of those. When wind or camera ask for another, the new one first
 sways along unseen until it has forgotten that it started at rest, then the picture goes over to it
-within a second: every pose is a mix of two that agree but for the tolerance. A rung is left upwards
+within a second: every pose is a mix of two that agree but for the tolerance. A model is left upwards
 as soon as it must be, downwards only when a lesser one would do with a third to spare, so that a
 wind on the border does not flicker.
 
@@ -23,7 +23,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
@@ -43,12 +43,12 @@ _SPARE = 2.0 / 3.0
 
 class AdaptiveSimulator:
     """
-    A tree on the least rung that its scene needs; otherwise as `SwaySimulator`.
+    A tree on the least model that its scene needs; otherwise as `SwaySimulator`.
 
     Parameters
     ----------
     tree, species, settings
-        As for `SwaySimulator`; the rung of the settings does not matter.
+        As for `SwaySimulator`; the model of the settings does not matter.
     tolerance
         Largest error of the tips in [m], root mean square over time and tips.
     budget
@@ -62,16 +62,16 @@ class AdaptiveSimulator:
         self,
         tree: Tree,
         species: Species | None = None,
-        settings: SimulatorSettings | None = None,
+        settings: Settings | None = None,
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
         expected: WindClimate | None = None,
     ) -> None:
-        """Judge all rungs once, and start on the one that the expected wind asks for."""
+        """Judge all models once, and start on the one that the expected wind asks for."""
         self.tree = tree
         self.species = species if species is not None else species_named(tree.species)
-        self.settings = settings or SimulatorSettings()
+        self.settings = settings or Settings()
         self.ladder = FidelityLadder(tree, self.species, self.settings)
         self.tolerance, self.budget = tolerance, budget
         self.pace = 1.0
@@ -89,9 +89,9 @@ class AdaptiveSimulator:
         self._mixed = np.zeros((tree.n_segments, 7))
 
     @property
-    def rung(self) -> str:
+    def model(self) -> str:
         """Model in use."""
-        return self._shown.rung
+        return self._shown.model
 
     @property
     def n_solved(self) -> int:
@@ -197,7 +197,7 @@ class AdaptiveSimulator:
 
     def _simulator(self, wanted: Estimate) -> SwaySimulator:
         if wanted.name not in self._built:
-            model = replace(self.settings, rung=wanted.rung, n_modes=max(wanted.n_modes, 1))
+            model = replace(self.settings, model=wanted.model, n_modes=max(wanted.n_modes, 1))
             calibrated = self.ladder.calibrated(wanted)
             sim = SwaySimulator(self.tree, self.species, model, calibrated=calibrated)
             sim.step((0.0, 0.0, 0.0), 1.0 / 60.0)

@@ -18,12 +18,12 @@ from tree_sway_ros.errors import ParameterError
 @dataclass(frozen=True)
 class Estimate:
     """
-    What a rung is worth in a wind.
+    What a model is worth in a wind.
 
     Parameters
     ----------
-    rung, n_modes
-        The rung, and its number of modes if it is ``modes``.
+    model, n_modes
+        The model, and its number of modes if it is ``modes``.
     error
         Bound of the root mean square over time and tips of the error in [m].
     motion
@@ -35,7 +35,7 @@ class Estimate:
 
     """
 
-    rung: str
+    model: str
     n_modes: int
     error: float
     motion: float
@@ -45,23 +45,23 @@ class Estimate:
     @property
     def name(self) -> str:
         """As people say it: ``modes 6``, or ``modes 6 with 20 branches frozen``."""
-        return model_name(self.rung, self.n_modes, self.n_frozen)
+        return model_name(self.model, self.n_modes, self.n_frozen)
 
 
 def choose(
     estimates: Sequence[Estimate], *, tolerance: float | None = None, budget: float | None = None
 ) -> Estimate:
     """
-    Choose the least rung that a scene needs.
+    Choose the least model that a scene needs.
 
     Parameters
     ----------
     estimates
-        Of all rungs.
+        Of all models.
     tolerance
-        Largest error in [m]; the cheapest rung within it is chosen.
+        Largest error in [m]; the cheapest model within it is chosen.
     budget
-        Largest cost of a step in [us]; the most accurate rung within it is chosen. With both, the
+        Largest cost of a step in [us]; the most accurate model within it is chosen. With both, the
         cheapest within the tolerance among those within the budget.
 
     Returns
@@ -72,14 +72,14 @@ def choose(
     Raises
     ------
     ParameterError
-        A tolerance or budget that no rung meets; the error names the nearest.
+        A tolerance or budget that no model meets; the error names the nearest.
 
     """
     within = [e for e in estimates if budget is None or e.cost <= budget]
     if not within:
         cheapest = min(estimates, key=lambda e: e.cost)
         raise ParameterError(
-            f"no rung costs less than {budget:g} us a step",
+            f"no model costs less than {budget:g} us a step",
             where="budget",
             cure=f"allow {cheapest.cost:.3g} us for '{cheapest.name}'",
         )
@@ -89,9 +89,9 @@ def choose(
     if not good:
         best = min(within, key=lambda e: e.error)
         raise ParameterError(
-            f"no rung errs less than {tolerance:g} m in this wind",
+            f"no model errs less than {tolerance:g} m in this wind",
             where="tolerance",
-            cure=f"allow {best.error:.3g} m for '{best.name}', or pin a rung",
+            cure=f"allow {best.error:.3g} m for '{best.name}', or pin a model",
         )
     return min(good, key=lambda e: e.cost)
 
@@ -139,8 +139,8 @@ def distance_to(tree: Tree, position: Floats) -> float:
     return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)
 
 
-def model_name(rung: str, n_modes: int, n_frozen: int) -> str:
+def model_name(model: str, n_modes: int, n_frozen: int) -> str:
     """Name of a model as people say it."""
-    name = f"{rung} {n_modes}" if rung == "modes" else rung
-    is_told = n_frozen > 0 and rung != "frozen"
+    name = f"{model} {n_modes}" if model == "modes" else model
+    is_told = n_frozen > 0 and model != "frozen"
     return f"{name} with {n_frozen} branches frozen" if is_told else name

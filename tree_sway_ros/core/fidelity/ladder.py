@@ -1,13 +1,13 @@
 """
-The ladder of models of one tree: the error of every rung in any wind, known before a step is taken.
+The ladder of models of one tree: the error of every model in any wind, known before a step is taken.
 
-The coupled tree is linear to first order, so the error of a lesser rung need not be tried: it is
+The coupled tree is linear to first order, so the error of a lesser model need not be tried: it is
 the difference of the two responses, summed over the frequencies of the wind's load. That
 difference, joined from the root to the tips of all branches, is what a viewer would see. To it
 comes a margin for what no linear model knows.
 
-Between the rungs stand those in which the quietest branches are frozen and move with their parents
-as one body; they are rungs like any other, as the response of a tree with frozen branches is known
+Between the models stand those in which the quietest branches are frozen and move with their parents
+as one body; they are models like any other, as the response of a tree with frozen branches is known
 too.
 
 Symbols: D(f) difference of two tip responses, S(f) spectrum of the load, C its covariance.
@@ -30,7 +30,7 @@ from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.response import Complexes, key_response, tip_motion
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
@@ -48,7 +48,7 @@ LADDER: tuple[tuple[str, int, float], ...] = (
     ("subtree", 0, 0.0), ("subtree", 0, 0.1), ("branch", 0, 0.0), ("frozen", 0, math.inf),
 )  # fmt: skip
 """
-Rungs, the best first, with their number of modes and the share of the motion that freezing may
+Models, the best first, with their number of modes and the share of the motion that freezing may
 cost.
 
 """
@@ -64,17 +64,17 @@ _FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 160)])
 
 class FidelityLadder:
     """
-    The rungs of a tree, each with its response.
+    The models of a tree, each with its response.
 
     Parameters
     ----------
     tree, species, settings
-        As for `SwaySimulator`; the settings' rung does not matter.
+        As for `SwaySimulator`; the settings' model does not matter.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
-        """Find the response of every rung."""
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
+        """Find the response of every model."""
         self.tree, self.species = tree, species
         self._coefficient = species.drag_law(settings.in_leaf)
         whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
@@ -91,20 +91,20 @@ class FidelityLadder:
         for share, quiet in zip(shares, sets, strict=True):
             if quiet.any():
                 self._trees[share] = PartlyFrozenTree(whole, quiet)
-        self._rungs: dict[str, _Rung] = {}
-        for rung, n_modes, share in LADDER:
-            if rung == "coupled":
-                rung, n_modes = best, best_modes
-            self._add(rung, n_modes, share)
+        self._models: dict[str, _Model] = {}
+        for model, n_modes, share in LADDER:
+            if model == "coupled":
+                model, n_modes = best, best_modes
+            self._add(model, n_modes, share)
         del self._truth
 
     def calibrated(self, estimate: Estimate) -> CalibratedTree:
         """Return the tree, calibrated and frozen as an estimate has it."""
-        return self._trees[self._rungs[estimate.name].share]
+        return self._trees[self._models[estimate.name].share]
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """
-        Judge every rung in a wind.
+        Judge every model in a wind.
 
         Parameters
         ----------
@@ -121,21 +121,21 @@ class FidelityLadder:
         swing = _root(self._motion, climate, with_mean=False) * load
         offset = _root(self._motion, climate, with_mean=True) * load
         found = []
-        for each in self._rungs.values():
-            floor = FLOOR * offset if each.rung != "frozen" else 0.0
+        for each in self._models.values():
+            floor = FLOOR * offset if each.model != "frozen" else 0.0
             bound = MARGIN * _root(each.error, climate, with_mean=True) * load + floor
-            found.append(Estimate(each.rung, each.n_modes, bound, swing, each.cost, each.n_frozen))
+            found.append(Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen))
         return sorted(found, key=lambda e: e.cost)
 
-    def _add(self, rung: str, n_modes: int, share: float) -> None:
-        """Set a rung against the best one, both on the coordinates of the whole tree."""
-        calibrated, whole = self._trees.get(share), self._trees[0.0].layer(rung)
+    def _add(self, model: str, n_modes: int, share: float) -> None:
+        """Set a model against the best one, both on the coordinates of the whole tree."""
+        calibrated, whole = self._trees.get(share), self._trees[0.0].layer(model)
         n = whole.reduction.n_coordinates
-        if calibrated is None or n_modes > calibrated.layer(rung).reduction.n_coordinates:
+        if calibrated is None or n_modes > calibrated.layer(model).reduction.n_coordinates:
             return
-        bank = calibrated.bank(rung, n_modes)
-        name = model_name(rung, n_modes, bank.n_frozen)
-        if name in self._rungs:
+        bank = calibrated.bank(model, n_modes)
+        name = model_name(model, n_modes, bank.n_frozen)
+        if name in self._models:
             return
         moving = np.arange(n)
         if isinstance(calibrated, PartlyFrozenTree):
@@ -146,14 +146,14 @@ class FidelityLadder:
         )
         error = _gram(tip_motion(whole.branches, rotations) - self._truth)
         cost = frame_cost(bank, self.tree)
-        self._rungs[name] = _Rung(rung, n_modes, share, bank.n_frozen, cost, error)
+        self._models[name] = _Model(model, n_modes, share, bank.n_frozen, cost, error)
 
 
 @dataclass(frozen=True)
-class _Rung:
+class _Model:
     """One way to solve the tree, its cost and its error, as `_gram`."""
 
-    rung: str
+    model: str
     n_modes: int
     share: float
     n_frozen: int
@@ -162,7 +162,7 @@ class _Rung:
 
 
 def _best(tree: Tree) -> tuple[str, int]:
-    """Find the rung that all others are set against, and its number of modes."""
+    """Find the model that all others are set against, and its number of modes."""
     return ("coupled", 0) if tree.n_branches <= MOST_COUPLED else ("modes", MOST_MODES)
 
 

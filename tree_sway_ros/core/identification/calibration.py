@@ -20,7 +20,7 @@ from tree_sway_ros.core.branch.model import branch_models, enriched_branches
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TreeError
@@ -66,7 +66,7 @@ def calibrate(
     species: Species,
     frequency: float,
     damping_ratio: float | None = None,
-    settings: SimulatorSettings | None = None,
+    settings: Settings | None = None,
 ) -> Calibration:
     """
     Fit modulus and damping of a tree to its slowest sway.
@@ -81,7 +81,7 @@ def calibrate(
         Measured damping ratio in [-]; taken for the season of the settings. That of the species
         stays if None.
     settings
-        Season, leaves and gravity; the defaults if None. The model is that of the rungs ``modes``
+        Season, leaves and gravity; the defaults if None. The model is that of the models ``modes``
         and ``coupled``.
 
     Returns
@@ -98,7 +98,7 @@ def calibrate(
 
     """
     within("frequency", frequency, 0.0, 1e3, "Hz", above=True)
-    settings = settings or SimulatorSettings()
+    settings = settings or Settings()
     model = _ScaledTree(tree, species, settings)
     found = model.swaying_at((2.0 * math.pi * frequency) ** 2)
     if found is None:
@@ -144,7 +144,7 @@ class _Sway:
 class _ScaledTree:
     """A coupled tree whose modulus is scaled."""
 
-    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         models = branch_models(
             tree,
             species.density,

@@ -1,9 +1,9 @@
 """
-Rungs 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
+Models 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
 
-Rung 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q
+Model 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q
 + Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what the modes
-already hold. Rung 4, `coupled`, steps all modes and leaves nothing. As in rungs 1 and 2 the load is
+already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and 2 the load is
 found once a step, at the state half a step on.
 
 Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments

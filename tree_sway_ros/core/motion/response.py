@@ -1,10 +1,10 @@
 """
-How far tips go in a wind that swings at one pace: linear response of every rung, before a step is
+How far tips go in a wind that swings at one pace: linear response of every model, before a step is
 taken.
 
 Loads are split as turbulence is: along the mean wind, where the load goes with the square of the
-speed, and across it. The gain of a rung is the motion of the tips of all branches, joined from the
-root, per unit of load at each frequency. Gains of two rungs can be set against each other; that is
+speed, and across it. The gain of a model is the motion of the tips of all branches, joined from the
+root, per unit of load at each frequency. Gains of two models can be set against each other; that is
 how the error of the lesser one is known without running the greater.
 
 """
@@ -39,7 +39,7 @@ def key_response(oscillators: Responding, n_coordinates: int, frequencies: Float
     Parameters
     ----------
     oscillators
-        A rung of a tree.
+        A model of a tree.
     n_coordinates
         N.
     frequencies

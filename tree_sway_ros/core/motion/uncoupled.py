@@ -1,7 +1,7 @@
 """
-Rungs 1 and 2 of the ladder: every branch an oscillator of its own, on two axes.
+Models 1 and 2 of the ladder: every branch an oscillator of its own, on two axes.
 
-Rung 1, `branch`, is the paper's: a branch feels its own wind and its own inertia. Rung 2,
+Model 1, `branch`, is the paper's: a branch feels its own wind and its own inertia. Model 2,
 `subtree`, gives it the inertia of all it carries and the moment of all the wind on it, and lets it
 ride on its parent; it still swings at a pace of its own.
 
@@ -39,7 +39,7 @@ class UncoupledBank:
     inertia, damping, stiffness
         In [kg m^2], [N m s/rad] and [N m/rad], (b,).
     carries
-        Whether branches carry their children (rung 2) or are alone (rung 1).
+        Whether branches carry their children (model 2) or are alone (model 1).
     integrator
         Method of the oscillators, one of `REAL_TIME`.
 

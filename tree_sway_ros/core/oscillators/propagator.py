@@ -1,5 +1,5 @@
 """
-The exact propagator of a bank of oscillators, the kernel that every rung of the ladder stands on.
+The exact propagator of a bank of oscillators, the kernel that every model of the ladder stands on.
 
 One row of eight coefficients advances ``I x'' + k2 x' + k1 x = M(t)`` over a step h, exactly, for a
 moment M that runs linearly from M0 to M1 (first-order hold)::

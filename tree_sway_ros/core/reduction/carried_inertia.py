@@ -1,5 +1,5 @@
 """
-The inertia a branch feels when what it carries gives way: what rung 2 knows of coupling.
+The inertia a branch feels when what it carries gives way: what model 2 knows of coupling.
 
 Taken as rigid, a crown makes its stem too quick, for its branches bend back as the stem
 accelerates. One step of inverse iteration from the stem's own coordinate lets them: ``q = K^-1 M

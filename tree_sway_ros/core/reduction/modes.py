@@ -90,8 +90,8 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     if count is None and n > MOST_ALL_MODES:
         raise ParameterError(
             f"all {n} modes of a tree of {tree.n_branches} branches",
-            where="rung 'coupled'",
-            cure="use rung 'modes', which errs by a few percent of the motion with 12",
+            where="model 'coupled'",
+            cure="use model 'modes', which errs by a few percent of the motion with 12",
         )
     if not 1 <= wanted <= n:
         raise ParameterError(

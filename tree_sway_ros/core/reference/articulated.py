@@ -4,7 +4,7 @@ The tree as a chain of rigid segments, solved whole: the conventional method, sl
 Every segment bends at one joint inside it (see `articulated_bodies`), the articulated-body
 algorithm gives the accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit
 (`articulated_step`). It stands beside the reduced model as the truth for large, coupled motion, and
-as the last rung of the ladder.
+as the last model of the ladder.
 
 """
 

@@ -1,7 +1,7 @@
 """
 How far one model of a tree is from another: tip error over tip motion.
 
-Anything that steps and places will do: the reduced model at any rung, and the articulated truth.
+Anything that steps and places will do: the reduced model at any model, and the articulated truth.
 
 """
 

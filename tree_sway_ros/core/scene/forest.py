@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
-from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
@@ -39,7 +39,7 @@ class Forest:
     settings
         How they are modelled, but for those with settings of their own.
     fidelity
-        Model of trees without settings of their own, as of `make_simulator`; the rung of the
+        Model of trees without settings of their own, as of `make_simulator`; the model of the
         settings if None.
     tolerance
         Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on
@@ -66,8 +66,8 @@ class Forest:
 
     Examples
     --------
-    >>> row = [StandingTree(f"tree{i}", tree, x=8.0 * i) for i in range(5)]
-    >>> forest = Forest(row, rung="subtree")
+    >>> row = [PlacedTree(f"tree{i}", tree, x=8.0 * i) for i in range(5)]
+    >>> forest = Forest(row, model="subtree")
     >>> forest.step((8.0, 0.0, 0.0), 1 / 60)
     0
 
@@ -75,8 +75,8 @@ class Forest:
 
     def __init__(
         self,
-        trees: Sequence[StandingTree],
-        settings: SimulatorSettings | None = None,
+        trees: Sequence[PlacedTree],
+        settings: Settings | None = None,
         *,
         fidelity: str | None = None,
         tolerance: float = 0.005,
@@ -90,7 +90,7 @@ class Forest:
         for name in names:
             if names.count(name) > 1:
                 raise ParameterError(f"two trees called '{name}'", where="forest", cure="name each")
-        self.settings = replace(settings or SimulatorSettings(), **changes)
+        self.settings = replace(settings or Settings(), **changes)
         self.names = tuple(names)
         self.tree: Tree = joined([tree.placed() for tree in trees])
         self.simulators = tuple(
@@ -116,9 +116,9 @@ class Forest:
         self.place()
 
     @property
-    def rung(self) -> str:
+    def model(self) -> str:
         """Model in use; several where trees differ."""
-        return ", ".join(dict.fromkeys(sim.rung for sim in self.simulators))
+        return ", ".join(dict.fromkeys(sim.model for sim in self.simulators))
 
     @property
     def n_solved(self) -> int:
@@ -246,7 +246,7 @@ class Forest:
 
 
 def _simulator(
-    tree: StandingTree, settings: SimulatorSettings, fidelity: str | None, tolerance: float
+    tree: PlacedTree, settings: Settings, fidelity: str | None, tolerance: float
 ) -> Simulator:
     """Simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
@@ -255,7 +255,7 @@ def _simulator(
             placed,
             tree.species if tree.species is not None else species_named(placed.species),
             settings,
-            fidelity=fidelity or settings.rung,
+            fidelity=fidelity or settings.model,
             tolerance=tolerance,
         )
     except TreeSwayError as error:

@@ -13,24 +13,24 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.simulator.segments import SegmentsSimulator
-from tree_sway_ros.core.simulator.settings import RUNGS, SimulatorSettings
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
-FIDELITIES = ("auto", *RUNGS, "segments")
-"""Names of the models: ``auto`` chooses among the rungs, ``segments`` solves every segment."""
+FIDELITIES = ("auto", *MODELS, "segments")
+"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
 
 class Simulator(Protocol):
     """A tree that sways, whatever the model; or a forest."""
 
     tree: Tree
-    settings: SimulatorSettings
+    settings: Settings
 
     @property
-    def rung(self) -> str:
+    def model(self) -> str:
         """Model in use."""
 
     @property
@@ -66,7 +66,7 @@ class Simulator(Protocol):
 def make_simulator(
     tree: Tree,
     species: Species,
-    settings: SimulatorSettings | None = None,
+    settings: Settings | None = None,
     *,
     fidelity: str = "auto",
     tolerance: float = 0.005,
@@ -102,12 +102,12 @@ def make_simulator(
         raise ParameterError(
             f"unknown fidelity '{fidelity}'", cure=f"use one of: {', '.join(FIDELITIES)}"
         )
-    model = replace(settings or SimulatorSettings(), **changes)
+    model = replace(settings or Settings(), **changes)
     if fidelity == "auto":
         return AdaptiveSimulator(tree, species, model, tolerance=tolerance, budget=budget)
     if fidelity == "segments":
         return SegmentsSimulator(tree, species, model)
-    return SwaySimulator(tree, species, replace(model, rung=fidelity))
+    return SwaySimulator(tree, species, replace(model, model=fidelity))
 
 
 def simulators_of(simulator: Any) -> tuple[Any, ...]:

@@ -13,14 +13,14 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
 
 
 @dataclass(frozen=True)
-class StandingTree:
+class PlacedTree:
     """
     A tree of a forest.
 
@@ -55,7 +55,7 @@ class StandingTree:
     z: float = 0.0
     yaw: float = 0.0
     species: Species | None = None
-    settings: SimulatorSettings | None = None
+    settings: Settings | None = None
     leaf_on: bool | None = None
 
     def __post_init__(self) -> None:
@@ -84,9 +84,7 @@ class StandingTree:
             self.tree, start=moved(self.tree.start), end=moved(self.tree.end), name=self.name
         )
 
-    def settings_where_it_stands(
-        self, forest: SimulatorSettings, leaf_on: bool = False
-    ) -> SimulatorSettings:
+    def settings_where_it_stands(self, forest: Settings, leaf_on: bool = False) -> Settings:
         """
         Return its settings, the ground of the wind profile raised to where it stands.
 

@@ -1,5 +1,5 @@
 """
-From a tree to the oscillators that move it, for every rung of the ladder.
+From a tree to the oscillators that move it, for every model of the ladder.
 
 """
 
@@ -29,14 +29,14 @@ from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
 
 class Oscillators(Responding, Protocol):
-    """What every rung gives: key rotations that a wind moves."""
+    """What every model gives: key rotations that a wind moves."""
 
     work: Any
 
@@ -60,7 +60,7 @@ USUAL_MODES = 12
 
 
 class Frozen:
-    """Rung 0: a tree that stands still, for one too far away to be seen moving."""
+    """Model 0: a tree that stands still, for one too far away to be seen moving."""
 
     carries = True
 
@@ -122,17 +122,17 @@ class Bank:
     n_frozen: int = 0
 
 
-def build_bank(tree: Tree, species: Species, settings: SimulatorSettings) -> Bank:
+def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
     """
-    Calibrate a tree for the rung of its settings; see `CalibratedTree.bank`.
+    Calibrate a tree for the model of its settings; see `CalibratedTree.bank`.
 
     """
-    return CalibratedTree(tree, species, settings).bank(settings.rung, settings.n_modes)
+    return CalibratedTree(tree, species, settings).bank(settings.model, settings.n_modes)
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A tree reduced in one of the three ways that rungs differ in."""
+    """A tree reduced in one of the three ways that models differ in."""
 
     models: list[BranchModel]
     reduction: Reduction
@@ -143,16 +143,16 @@ class Layer:
 
 class CalibratedTree:
     """
-    A tree calibrated once, for all rungs.
+    A tree calibrated once, for all models.
 
     Parameters
     ----------
     tree, species, settings
-        As for `SwaySimulator`; the settings' rung does not matter.
+        As for `SwaySimulator`; the settings' model does not matter.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Wait to be asked."""
         self.tree, self.species, self.settings = tree, species, settings
         self._slowest: Modes | None = None
@@ -165,16 +165,16 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping_in_leaf if settings.in_leaf else species.damping_bare
 
-    def bank(self, rung: str, n_modes: int | None = None) -> Bank:
+    def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
-        Build the oscillators of a rung.
+        Build the oscillators of a model.
 
         Parameters
         ----------
-        rung
-            One of `RUNGS`.
+        model
+            One of `MODELS`.
         n_modes
-            How many modes the rung ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if
+            How many modes the model ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if
             None.
 
         Raises
@@ -185,12 +185,12 @@ class CalibratedTree:
             More modes than there are.
 
         """
-        layer = self.layer(rung)
+        layer = self.layer(model)
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
-        if rung == "frozen":
+        if model == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
-        elif rung in _COUPLED:
-            modes = self._modes(rung, n_modes)
+        elif model in _COUPLED:
+            modes = self._modes(model, n_modes)
             oscillators = ModalBank(
                 branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
             )
@@ -199,7 +199,7 @@ class CalibratedTree:
             refuse_buckling(self.tree, layer.reduction)
             branches["source"] = twig_sources(self.tree, self.settings.twig_tolerance)
             _share_frames(branches)
-            bank = self._uncoupled(layer, branches, carries=rung == "subtree")
+            bank = self._uncoupled(layer, branches, carries=model == "subtree")
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
         solved = int((branches["source"] == np.arange(len(branches))).sum())
@@ -207,11 +207,11 @@ class CalibratedTree:
         heads = head_records(branches, segments)
         return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
 
-    def layer(self, rung: str) -> Layer:
-        """Reduction that a rung starts from."""
-        if rung == "branch":
+    def layer(self, model: str) -> Layer:
+        """Reduction that a model starts from."""
+        if model == "branch":
             return self.alone
-        return self.coupled if rung in _COUPLED else self.carried
+        return self.coupled if model in _COUPLED else self.carried
 
     @cached_property
     def alone(self) -> Layer:
@@ -258,14 +258,14 @@ class CalibratedTree:
             float(sum(model.beam.integral(model.mass) for model in models)),
         )
 
-    def _modes(self, rung: str, count: int | None) -> Modes:
+    def _modes(self, model: str, count: int | None) -> Modes:
         """All modes, or those of the slowest that the wind drives most."""
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
-        is_driven = rung == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
+        is_driven = model == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
         candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
-        wanted = n if rung == "coupled" else candidates
+        wanted = n if model == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:
             self._slowest = natural_modes(self.tree, reduction, None if wanted == n else wanted)
         modes = self._slowest.slowest(wanted)

@@ -1,5 +1,5 @@
 """
-A calibrated tree some of whose branches move with their parents: the rungs between one rung and the
+A calibrated tree some of whose branches move with their parents: the models between one model and the
 next.
 
 """
@@ -35,11 +35,11 @@ class PartlyFrozenTree(CalibratedTree):
         super().__init__(self.pruning.tree(), whole.species, whole.settings)
         self._whole = whole
 
-    def bank(self, rung: str, n_modes: int | None = None) -> Bank:
-        """Build the oscillators of a rung, as `CalibratedTree.bank`, and lay out what is frozen."""
+    def bank(self, model: str, n_modes: int | None = None) -> Bank:
+        """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out what is frozen."""
         return replace(
-            super().bank(rung, n_modes),
-            frozen=RigidParts.of(self.pruning, self._whole.layer(rung).branches),
+            super().bank(model, n_modes),
+            frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),
             n_frozen=int(self.pruning.frozen.sum()),
         )
 

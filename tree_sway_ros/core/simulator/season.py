@@ -9,17 +9,17 @@ from dataclasses import replace
 
 from tree_sway_ros.core.leaves.foliage import foliage_of
 from tree_sway_ros.core.leaves.traits import LeafTraits
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.tree import Tree
 
 
 def in_season(
     tree: Tree,
-    settings: SimulatorSettings | None = None,
+    settings: Settings | None = None,
     *,
     leaf_on: bool,
     traits: LeafTraits | None = None,
-) -> SimulatorSettings:
+) -> Settings:
     """
     Return settings for a tree with its leaves on or off.
 
@@ -38,7 +38,7 @@ def in_season(
         Its leaves; those of its species if None.
 
     """
-    given = settings if settings is not None else SimulatorSettings()
+    given = settings if settings is not None else Settings()
     foliage = foliage_of(tree, leaf_on=leaf_on, traits=traits)
     if not foliage.area.any():
         return replace(given, in_leaf=False, leaf_mass=None, leaf_area=None)

@@ -1,5 +1,5 @@
 """
-Rung 5, `segments`: every segment solved, the conventional method, behind the same face as the
+Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
 reduced tree.
 
 It is there to compare with, and for a scene that has the time: its steps are many times as dear
@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -39,23 +39,23 @@ class SegmentsSimulator:
     Raises
     ------
     ParameterError
-        Leaves or the volume rule, which this rung does not know.
+        Leaves or the volume rule, which this model does not know.
 
     """
 
-    rung = "segments"
+    model = "segments"
 
-    def __init__(self, tree: Tree, species: Species, settings: SimulatorSettings) -> None:
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
         if settings.leaf_mass is not None or settings.leaf_area is not None:
             raise ParameterError(
-                "leaves on rung 'segments'",
+                "leaves on model 'segments'",
                 where="fidelity",
                 cure="leave them out or use 'coupled'",
             )
         if settings.stiffness != "beam":
             raise ParameterError(
-                f"stiffness '{settings.stiffness}' on rung 'segments'", cure="use 'beam'"
+                f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
         self.tree, self.species, self.settings = tree, species, settings
         self.counts = Counts()

@@ -13,28 +13,28 @@ from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.errors import ParameterError
 
-RUNGS = ("frozen", "branch", "subtree", "modes", "coupled")
-"""Rungs of the ladder of models, the least first."""
+MODELS = ("frozen", "branch", "subtree", "modes", "coupled")
+"""Models of the ladder of models, the least first."""
 
 STIFFNESS_RULES = ("beam", "volume_rule")
 """Ways to set the stiffness of a branch."""
 
 
 @dataclass(frozen=True)
-class SimulatorSettings:
+class Settings:
     """
     How a tree is modelled; what it is made of is its species.
 
     Parameters
     ----------
-    rung
+    model
         Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``modes`` or ``coupled``.
     n_modes
-        How many modes the rung ``modes`` steps; 12, or all if there are fewer, if None.
+        How many modes the model ``modes`` steps; 12, or all if there are fewer, if None.
     mode_choice
         Which modes these are: the most ``driven`` by wind among the slow ones, or the ``slowest``.
     stiffness
-        ``beam``, or ``volume_rule`` (the paper's, rungs ``branch`` and ``subtree``).
+        ``beam``, or ``volume_rule`` (the paper's, models ``branch`` and ``subtree``).
     volume_stiffness, volume_damping
         The two constants of the volume rule in [N m/rad/m^3] and [N m s/rad/m^3].
     damping_ratio
@@ -51,7 +51,7 @@ class SimulatorSettings:
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
-        Branches that get further shapes and twists in the rungs ``modes`` and ``coupled``:
+        Branches that get further shapes and twists in the models ``modes`` and ``coupled``:
         ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
         branches), all ``carriers`` of others, or ``all``.
     leaf_mass, leaf_area
@@ -61,7 +61,7 @@ class SimulatorSettings:
 
     """
 
-    rung: str = "subtree"
+    model: str = "subtree"
     n_modes: int | None = None
     mode_choice: str = "driven"
     stiffness: str = "beam"
@@ -80,14 +80,14 @@ class SimulatorSettings:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
-        _one_of("rung", self.rung, RUNGS)
+        _one_of("model", self.model, MODELS)
         _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)
         _one_of("enrich", self.enrich, ("none", "stem", "limbs", "carriers", "all"))
-        if self.stiffness == "volume_rule" and self.rung in ("modes", "coupled"):
+        if self.stiffness == "volume_rule" and self.model in ("modes", "coupled"):
             raise ParameterError(
-                f"the volume rule on rung '{self.rung}'",
+                f"the volume rule on model '{self.model}'",
                 where="stiffness",
                 cure="use it on 'branch' or 'subtree', or stiffness 'beam'",
             )

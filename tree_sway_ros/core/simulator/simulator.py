@@ -16,7 +16,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -59,9 +59,9 @@ class SwaySimulator:
     settings
         How it is modelled.
     calibrated
-        The same tree, species and settings calibrated before, to share the work among rungs.
+        The same tree, species and settings calibrated before, to share the work among models.
     **changes
-        Fields of the settings, as keywords: ``SwaySimulator(tree, rung="branch")``.
+        Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
     Raises
     ------
@@ -74,7 +74,7 @@ class SwaySimulator:
 
     Examples
     --------
-    >>> sim = SwaySimulator(tree, rung="subtree")
+    >>> sim = SwaySimulator(tree, model="subtree")
     >>> for wind in record:
     ...     sim.step(wind, 1 / 60)
     ...     poses = sim.place()
@@ -85,7 +85,7 @@ class SwaySimulator:
         self,
         tree: Tree,
         species: Species | None = None,
-        settings: SimulatorSettings | None = None,
+        settings: Settings | None = None,
         *,
         calibrated: CalibratedTree | None = None,
         **changes: Any,
@@ -93,11 +93,11 @@ class SwaySimulator:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
         self.tree = tree
         self.species = species if species is not None else species_named(tree.species)
-        self.settings = replace(settings or SimulatorSettings(), **changes)
+        self.settings = replace(settings or Settings(), **changes)
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
-        self._bank: Bank = calibrated.bank(self.settings.rung, self.settings.n_modes)
+        self._bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self._drag_law = self.species.drag_law(self.settings.in_leaf)
         self._advance = self._bank.oscillators.advance
         self._max_wind = self.settings.max_wind
@@ -110,9 +110,9 @@ class SwaySimulator:
         self.place()
 
     @property
-    def rung(self) -> str:
+    def model(self) -> str:
         """Model in use."""
-        return self.settings.rung
+        return self.settings.model
 
     @property
     def n_solved(self) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -48,7 +48,7 @@ class TreeFile:
 
     def simulator(
         self,
-        settings: SimulatorSettings | None = None,
+        settings: Settings | None = None,
         *,
         fidelity: str = "auto",
         tolerance: float = 0.005,
@@ -71,7 +71,7 @@ class TreeFile:
             As `make_simulator`.
 
         """
-        model = replace(settings or SimulatorSettings(), **changes)
+        model = replace(settings or Settings(), **changes)
         if leaf_on:
             model = in_season(self.tree, model, leaf_on=True)
         return make_simulator(

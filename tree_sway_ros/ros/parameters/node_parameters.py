@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
 from tree_sway_ros.core.scene.make import FIDELITIES
-from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, SimulatorSettings
+from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
 from tree_sway_ros.core.wind.simulated.turbulence import TURBULENCE_MODELS
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
-_MODEL = SimulatorSettings()
+_MODEL = Settings()
 WIND_TYPE_NAMES = (
     "geometry_msgs/Vector3Stamped",
     "geometry_msgs/TwistStamped",

@@ -76,7 +76,7 @@ def _wind(state: str) -> Status:
 
 def _model(simulator: Any) -> Status:
     values = {
-        "fidelity": simulator.rung,
+        "fidelity": simulator.model,
         "branches solved": simulator.n_solved,
         "branches copied": simulator.n_copied,
         "branches frozen": simulator.n_frozen,
@@ -84,7 +84,7 @@ def _model(simulator: Any) -> Status:
     }
     trees = simulators_of(simulator)
     if trees != (simulator,):
-        values |= {f"fidelity of {each.tree.name}": each.rung for each in trees}
+        values |= {f"fidelity of {each.tree.name}": each.model for each in trees}
     adaptive = [each for each in trees if hasattr(each, "choice")]
     if adaptive:
         worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
@@ -106,7 +106,7 @@ def _model(simulator: Any) -> Status:
             return Status(
                 "model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values
             )
-    return Status("model", OK, simulator.rung, values)
+    return Status("model", OK, simulator.model, values)
 
 
 def _gusts(history: Any) -> Status:

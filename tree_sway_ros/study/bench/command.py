@@ -43,7 +43,9 @@ def run(arguments: argparse.Namespace) -> int:
             print(forest_table() if arguments.what == "forest" else setup_table())
         return 0
     tree = bench_tree(arguments.segments)
-    timings = [time_steps(tree, rung, arguments.rounds) for rung in ("branch", "subtree", "modes")]
+    timings = [
+        time_steps(tree, model, arguments.rounds) for model in ("branch", "subtree", "modes")
+    ]
     if arguments.json:
         rows = [{**asdict(timing), "ratio": timing.ratio} for timing in timings]
         print(
@@ -72,7 +74,7 @@ def core_name() -> str:
 
 
 def _row(timing: StepTiming) -> str:
-    own = f"  {timing.rung:19} {1e6 * timing.median:7.1f}  {1e6 * timing.minimum:7.1f}"
+    own = f"  {timing.model:19} {1e6 * timing.median:7.1f}  {1e6 * timing.minimum:7.1f}"
     if timing.twin_median is None or timing.twin_minimum is None:
         return f"{own}                     -        -       -"
     twin = f"{1e6 * timing.twin_median:9.0f}  {1e6 * timing.twin_minimum:7.0f}"

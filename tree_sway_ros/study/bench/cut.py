@@ -22,13 +22,13 @@ _STEPS_A_ROUND = 20
 _QUIET = 0.1
 
 
-def time_cuts(rung: str, rounds: int, cuts: Sequence[int] = CUTS) -> dict[int, float]:
+def time_cuts(model: str, rounds: int, cuts: Sequence[int] = CUTS) -> dict[int, float]:
     """
     Time the same tree cut in several ways.
 
     Parameters
     ----------
-    rung
+    model
         Model.
     rounds
         Of twenty steps of each; all cuts take turns, so that they meet the same load of the
@@ -43,7 +43,7 @@ def time_cuts(rung: str, rounds: int, cuts: Sequence[int] = CUTS) -> dict[int, f
 
     """
     tree = bench_tree()
-    simulators = [SwaySimulator(resegment(tree, cut), rung=rung) for cut in cuts]
+    simulators = [SwaySimulator(resegment(tree, cut), model=model) for cut in cuts]
     winds = gusts(_STEPS_A_ROUND)
     spent = np.empty((rounds, len(cuts)))
     for row in spent:
@@ -64,12 +64,12 @@ def unevenness(by_cut: dict[int, float]) -> float:
 
 
 def cut_table(rounds: int) -> str:
-    """Time all rungs and lay out what is found."""
+    """Time all models and lay out what is found."""
     lines = [
         "solve [us], segments a branch" + "".join(f"{cut:9}" for cut in CUTS) + "   most over least"
     ]
-    for rung in ("branch", "subtree", "modes"):
-        by_cut = time_cuts(rung, rounds)
+    for model in ("branch", "subtree", "modes"):
+        by_cut = time_cuts(model, rounds)
         times = "".join(f"{1e6 * spent:9.1f}" for spent in by_cut.values())
-        lines.append(f"  {rung:27}{times}   {100.0 * unevenness(by_cut):+13.1f} %")
+        lines.append(f"  {model:27}{times}   {100.0 * unevenness(by_cut):+13.1f} %")
     return "\n".join(lines)

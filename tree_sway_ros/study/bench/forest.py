@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.scene.forest import Forest
-from tree_sway_ros.core.scene.placed_tree import StandingTree
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.study.bench.bench_tree import SEGMENTS_A_BRANCH, bench_tree
 from tree_sway_ros.study.bench.step import gusts
 
@@ -31,7 +31,7 @@ class ForestTiming:
 
     Parameters
     ----------
-    rung
+    model
         Model of every tree.
     n_trees, n_branches, n_segments
         Size of the forest.
@@ -42,7 +42,7 @@ class ForestTiming:
 
     """
 
-    rung: str
+    model: str
     n_trees: int
     n_branches: int
     n_segments: int
@@ -51,7 +51,7 @@ class ForestTiming:
     median: float
 
 
-def bench_forest(n_trees: int, rung: str, segments_a_branch: int = SEGMENTS_A_BRANCH) -> Forest:
+def bench_forest(n_trees: int, model: str, segments_a_branch: int = SEGMENTS_A_BRANCH) -> Forest:
     """
     Plant trees of 85 branches in rows, each turned another way; they share no memory.
 
@@ -59,7 +59,7 @@ def bench_forest(n_trees: int, rung: str, segments_a_branch: int = SEGMENTS_A_BR
     ----------
     n_trees
         How many.
-    rung
+    model
         Model of every tree.
     segments_a_branch
         How finely branches are cut.
@@ -69,7 +69,7 @@ def bench_forest(n_trees: int, rung: str, segments_a_branch: int = SEGMENTS_A_BR
     columns = int(np.ceil(np.sqrt(n_trees)))
     return Forest(
         [
-            StandingTree(
+            PlacedTree(
                 f"tree{i}",
                 tree,
                 x=_SPACING * (i % columns),
@@ -78,7 +78,7 @@ def bench_forest(n_trees: int, rung: str, segments_a_branch: int = SEGMENTS_A_BR
             )
             for i in range(n_trees)
         ],
-        rung=rung,
+        model=model,
     )
 
 
@@ -98,7 +98,7 @@ def time_forest(forest: Forest, frames: int = 600) -> ForestTiming:
     share = spent * 1e-9 * RATE
     solve, place = np.quantile(share, _QUIET, axis=0)
     return ForestTiming(
-        forest.rung,
+        forest.model,
         len(forest.names),
         forest.tree.n_branches,
         forest.tree.n_segments,
@@ -109,8 +109,8 @@ def time_forest(forest: Forest, frames: int = 600) -> ForestTiming:
 
 
 def forest_table(n_trees: int = N_TREES) -> str:
-    """Time the forest on the two rungs for many branches and lay out what is found."""
-    timings = [time_forest(bench_forest(n_trees, rung)) for rung in ("branch", "subtree")]
+    """Time the forest on the two models for many branches and lay out what is found."""
+    timings = [time_forest(bench_forest(n_trees, model)) for model in ("branch", "subtree")]
     size = timings[0]
     lines = [
         f"{size.n_trees} trees, {size.n_branches} branches, {size.n_segments} segments at {RATE:g} Hz",
@@ -118,5 +118,5 @@ def forest_table(n_trees: int = N_TREES) -> str:
     ]
     for timing in timings:
         shares = timing.solve, timing.place, timing.solve + timing.place, timing.median
-        lines.append(f"  {timing.rung:13}" + "".join(f"{100.0 * each:7.2f} %" for each in shares))
+        lines.append(f"  {timing.model:13}" + "".join(f"{100.0 * each:7.2f} %" for each in shares))
     return "\n".join(lines)

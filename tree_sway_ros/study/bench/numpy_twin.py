@@ -99,14 +99,14 @@ class NumpyTwin:
         Raises
         ------
         ParameterError
-            A rung other than ``branch`` and ``subtree``.
+            A model other than ``branch`` and ``subtree``.
 
         """
         bank = self._oscillators
         if not isinstance(bank, UncoupledBank):
             raise ParameterError(
                 "the numpy twin steps uncoupled branches only",
-                where="rung",
+                where="model",
                 cure="use 'branch' or 'subtree'",
             )
         if dt != self._dt:
@@ -132,7 +132,7 @@ class NumpyTwin:
         out
             Where to write, (n, 7); a new array if None.
         rotations
-            Key rotations in [rad], (N,), of any rung; the twin's own if None.
+            Key rotations in [rad], (N,), of any model; the twin's own if None.
 
         Returns
         -------

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.study.bench.bench_tree import bench_tree
@@ -20,41 +20,41 @@ _CHILDREN = (12, 6, 13)
 _SMALL = (3, 2)
 
 
-def time_setups(tree: Tree, rungs: Sequence[str]) -> dict[str, float]:
+def time_setups(tree: Tree, models: Sequence[str]) -> dict[str, float]:
     """
-    Set a tree up on several rungs, each from nothing.
+    Set a tree up on several models, each from nothing.
 
     Parameters
     ----------
     tree
         The tree.
-    rungs
-        Some of `RUNGS`; ``modes`` steps as many as it does where nothing is said.
+    models
+        Some of `MODELS`; ``modes`` steps as many as it does where nothing is said.
 
     Returns
     -------
     dict
-        By rung, CPU time in [s], of all threads together.
+        By model, CPU time in [s], of all threads together.
 
     """
     small = bench_tree(3, _SMALL)
     spent = {}
-    for rung in rungs:
-        SwaySimulator(small, rung=rung)
+    for model in models:
+        SwaySimulator(small, model=model)
         begin = time.process_time()
-        SwaySimulator(tree, rung=rung)
-        spent[rung] = time.process_time() - begin
+        SwaySimulator(tree, model=model)
+        spent[model] = time.process_time() - begin
     return spent
 
 
 def setup_table() -> str:
     """
-    Time all rungs on the tree of the other benchmarks and on a big one, and lay out what is found.
+    Time all models on the tree of the other benchmarks and on a big one, and lay out what is found.
 
     """
-    rungs = RUNGS[1:]
-    lines = ["set-up [s]" + " " * 26 + "".join(f"{rung:>9}" for rung in rungs)]
+    models = MODELS[1:]
+    lines = ["set-up [s]" + " " * 26 + "".join(f"{model:>9}" for model in models)]
     for tree in (bench_tree(), bench_tree(children=_CHILDREN)):
-        times = "".join(f"{each:9.2f}" for each in time_setups(tree, rungs).values())
+        times = "".join(f"{each:9.2f}" for each in time_setups(tree, models).values())
         lines.append(f"  {tree.n_branches:5} branches, {tree.n_segments:6} segments  {times}")
     return "\n".join(lines)

@@ -34,7 +34,7 @@ class StepTiming:
 
     Parameters
     ----------
-    rung
+    model
         Model.
     median, minimum
         Of the compiled step.
@@ -45,7 +45,7 @@ class StepTiming:
 
     """
 
-    rung: str
+    model: str
     median: float
     minimum: float
     twin_median: float | None = None
@@ -58,7 +58,7 @@ class StepTiming:
         return None if self.twin_median is None else self.twin_median / self.median
 
 
-def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
+def time_steps(tree: Tree, model: str, rounds: int) -> StepTiming:
     """
     Time a step of a tree.
 
@@ -66,7 +66,7 @@ def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
     ----------
     tree
         The tree; no twig of it copies another.
-    rung
+    model
         Model; ``branch`` and ``subtree`` have a twin to race.
     rounds
         Of 200 steps each.
@@ -82,8 +82,8 @@ def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
         If the two disagree, so that there is nothing to compare.
 
     """
-    simulator = SwaySimulator(tree, rung=rung, twig_tolerance=-1.0)
-    twin = NumpyTwin(simulator) if rung in ("branch", "subtree") else None
+    simulator = SwaySimulator(tree, model=model, twig_tolerance=-1.0)
+    twin = NumpyTwin(simulator) if model in ("branch", "subtree") else None
     winds = gusts(_STEPS_A_ROUND)
     poses = np.zeros((tree.n_segments, 7))
     difference = 0.0 if twin is None else _agree(simulator, twin, winds, poses)
@@ -105,9 +105,9 @@ def time_steps(tree: Tree, rung: str, rounds: int) -> StepTiming:
         if twin is not None:
             others += _timed(twin_step, winds[:_TWIN_STEPS_A_ROUND])
     if not others:
-        return StepTiming(rung, float(np.median(own)), min(own))
+        return StepTiming(model, float(np.median(own)), min(own))
     return StepTiming(
-        rung, float(np.median(own)), min(own), float(np.median(others)), min(others), difference
+        model, float(np.median(own)), min(own), float(np.median(others)), min(others), difference
     )
 
 
@@ -127,7 +127,7 @@ def _agree(simulator: SwaySimulator, twin: NumpyTwin, winds: Floats, poses: Floa
     if not difference <= _AGREEMENT:
         raise TreeSwayError(
             f"the kernels and their numpy twin differ by {difference:.2e}",
-            where=simulator.rung,
+            where=simulator.model,
             cure=f"find out which is wrong; {_AGREEMENT:g} is allowed",
         )
     return difference

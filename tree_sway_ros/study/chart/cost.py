@@ -90,15 +90,15 @@ def chart_cost(
 
 def _costs(tree: Tree, cut: int, frames: int) -> list[Cost]:
     models: dict[str, Swaying] = {
-        rung: SwaySimulator(
+        model: SwaySimulator(
             tree,
             EXAMPLE_WOOD,
-            rung=rung,
+            model=model,
             damping_ratio=DAMPING_RATIO,
             gravity=0.0,
             twig_tolerance=-1.0,
         )
-        for rung in ("branch", "subtree", "modes")
+        for model in ("branch", "subtree", "modes")
     }
     # Dampers at the joints alone, the cheapest; what they are set to does not matter here.
     models["segments"] = ArticulatedTree(

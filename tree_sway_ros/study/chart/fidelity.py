@@ -1,5 +1,5 @@
 """
-The ladder of models against the truth: error of each rung, and what it costs a frame.
+The ladder of models against the truth: error of each model, and what it costs a frame.
 
 The truth solves every segment, each in two pieces, at four times the frame rate; trees are the
 three of 40 branches in `example_trees`, in turbulent wind of the spectrum that engineers use, or in
@@ -33,21 +33,21 @@ DAMPING_RATIO = 0.05
 EXAMPLE_WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY)
 
 LADDER: dict[str, dict[str, Any]] = {
-    "branch": {"rung": "branch"},
-    "subtree": {"rung": "subtree"},
-    "modes 3": {"rung": "modes", "n_modes": 3},
-    "modes 6": {"rung": "modes", "n_modes": 6},
-    "modes 12": {"rung": "modes", "n_modes": 12},
-    "coupled": {"rung": "coupled"},
+    "branch": {"model": "branch"},
+    "subtree": {"model": "subtree"},
+    "modes 3": {"model": "modes", "n_modes": 3},
+    "modes 6": {"model": "modes", "n_modes": 6},
+    "modes 12": {"model": "modes", "n_modes": 12},
+    "coupled": {"model": "coupled"},
 }
-"""Rungs of the chart, and how a simulator is told."""
+"""Models of the chart, and how a simulator is told."""
 
 _COLOURS = ("#1f6fb4", "#c0682b", "#2f6b2f")
 _MARKERS = ("o", "s", "^")
 
 
 @dataclass(frozen=True)
-class Rung:
+class Model:
     """One point: tree, model, tip error over tip motion in [-], time a frame in [ns]."""
 
     tree: str
@@ -64,7 +64,7 @@ def chart_fidelity(
     trees: Iterable[Tree] | None = None,
     gravity: float = 9.81,
     seed: int = 1,
-) -> list[Rung]:
+) -> list[Model]:
     """
     Measure and draw ``fidelity.csv`` and ``fidelity.png``.
 
@@ -109,8 +109,8 @@ def simulated_wind(duration: float, seed: int) -> tuple[Floats, Floats]:
     return np.arange(len(velocity)) / rate, velocity
 
 
-def climb(tree: Tree, wind: Floats, gravity: float) -> list[Rung]:
-    """Every rung of the ladder on one tree in one wind, mean of each frame in [m/s], (t, 3)."""
+def climb(tree: Tree, wind: Floats, gravity: float) -> list[Model]:
+    """Every model of the ladder on one tree in one wind, mean of each frame in [m/s], (t, 3)."""
     truth = record_tips(articulated(tree, gravity, pieces=2), tree, wind, FRAME, substeps=4)
     models: dict[str, Swaying] = {
         name: SwaySimulator(
@@ -127,7 +127,7 @@ def climb(tree: Tree, wind: Floats, gravity: float) -> list[Rung]:
     tips = {name: record_tips(model, tree, wind, FRAME) for name, model in models.items()}
     cost = frame_times(models, tree, wind, FRAME)
     return [
-        Rung(
+        Model(
             tree.name,
             name,
             tip_error(tree, tips[name], truth),
@@ -152,7 +152,7 @@ def articulated(tree: Tree, gravity: float, *, pieces: int) -> ArticulatedTree:
     )
 
 
-def _draw(points: list[Rung], path: Path) -> None:
+def _draw(points: list[Model], path: Path) -> None:
     figure = new_figure(8.4, 5.2)
     axes = figure.add_axes((0.09, 0.11, 0.88, 0.8))
     names = list(dict.fromkeys(point.tree for point in points))
@@ -184,5 +184,5 @@ def _draw(points: list[Rung], path: Path) -> None:
     axes.grid(alpha=0.25)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(title="length and diameter ratio", frameon=False, loc="upper right")
-    figure.suptitle("Each rung of the ladder against every segment solved")
+    figure.suptitle("Each model of the ladder against every segment solved")
     save_figure(figure, path)

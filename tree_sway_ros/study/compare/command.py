@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from tree_sway_ros.core.reference.measure import frame_means
-from tree_sway_ros.core.simulator.settings import RUNGS
+from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.study.chart.fidelity import simulated_wind
@@ -25,8 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="how long, in the wind (%(default)s)",
     )
     parser.add_argument(
-        "--rung",
-        choices=("auto", *RUNGS[1:]),
+        "--model",
+        choices=("auto", *MODELS[1:]),
         default="modes",
         help="of ours; auto: the cheapest for 5 %% of the motion (%(default)s)",
     )
@@ -43,5 +43,5 @@ def run(arguments: argparse.Namespace) -> int:
         record = read_wind(arguments.wind)
         time, velocity = record.time, record.velocity
     wind = frame_means(time, velocity, FRAME)[: round(arguments.seconds / FRAME)]
-    print(compare_with_mujoco(tree_file.tree, tree_file.species, wind, rung=arguments.rung))
+    print(compare_with_mujoco(tree_file.tree, tree_file.species, wind, model=arguments.model))
     return 0

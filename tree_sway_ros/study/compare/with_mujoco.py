@@ -19,7 +19,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.reference.measure import Swaying, record_tips, tip_error
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -46,7 +46,7 @@ class Comparison:
     ----------
     n_branches, n_segments
         Size of the tree.
-    rung
+    model
         Of ours.
     first_frequency, static_sway
         MuJoCo's over the beam model's in [-].
@@ -65,7 +65,7 @@ class Comparison:
 
     n_branches: int
     n_segments: int
-    rung: str
+    model: str
     first_frequency: float
     static_sway: float
     tip_motion: float
@@ -87,9 +87,9 @@ class Comparison:
                 f"{self.n_branches} branches, {self.n_segments} segments, tips move up to {self.tip_motion:.3f} m",
                 f"MuJoCo's f1 / the beam's {self.first_frequency:.4f}, static sway / the beam's "
                 f"{self.static_sway:.4f}, error at twice the truth's step {self.step_error:.4f}",
-                f"tip error over tip motion: {self.rung} {self.error:.4f}, MuJoCo at 1/60 s "
+                f"tip error over tip motion: {self.model} {self.error:.4f}, MuJoCo at 1/60 s "
                 f"{self.error_at_60:.4f}",
-                f"CPU time a simulated second at 60 Hz: {self.rung} {1e3 * self.cost:.3f} ms, MuJoCo "
+                f"CPU time a simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, MuJoCo "
                 f"{1e3 * self.mujoco_cost:.1f} ms, {self.speed_up:.0f} times as much",
             )
         )
@@ -100,7 +100,7 @@ def compare_with_mujoco(
     species: Species,
     wind: Floats,
     *,
-    rung: str = "modes",
+    model: str = "modes",
     damping_ratio: float = 0.05,
     steps: int = 32,
 ) -> Comparison:
@@ -114,7 +114,7 @@ def compare_with_mujoco(
         are.
     wind
         Mean of each frame of 1/60 s in [m/s], (t, 3).
-    rung
+    model
         Of ours; ``auto`` is the cheapest that says of itself that it errs by no more than `AUTO` of
         the motion.
     damping_ratio
@@ -134,23 +134,23 @@ def compare_with_mujoco(
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
     quick = MujocoTree(tree, wood, damping_ratio, even=False)
-    settings = SimulatorSettings(damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0)
+    settings = Settings(damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0)
     rest = tree.end[tree.branch_first[1:] - 1]
     ours: SwaySimulator | AdaptiveSimulator
-    if rung == "auto":
+    if model == "auto":
         motion = float(np.sqrt(np.square(truth - rest).sum(axis=2).mean()))
         expected = WindClimate.of_samples(wind, 1.0 / FRAME)
         ours = AdaptiveSimulator(tree, wood, settings, tolerance=AUTO * motion, expected=expected)
-        rung = ours.choice.name
+        model = ours.choice.name
     else:
-        ours = SwaySimulator(tree, wood, settings, rung=rung)
+        ours = SwaySimulator(tree, wood, settings, model=model)
     tips = record_tips(ours, tree, wind, FRAME)
     ours.reset()
     at_60, cost, mujoco_cost = _race(quick, ours, wind)
     return Comparison(
         n_branches=tree.n_branches,
         n_segments=tree.n_segments,
-        rung=rung,
+        model=model,
         first_frequency=first_frequency,
         static_sway=static_sway,
         tip_motion=float(np.linalg.norm(truth - rest, axis=2).max()),

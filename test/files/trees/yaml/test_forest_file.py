@@ -6,7 +6,7 @@ import pytest
 
 from tree_sway_ros.core.leaves.foliage import foliage_of
 from tree_sway_ros.core.scene.forest import Forest
-from tree_sway_ros.core.scene.placed_tree import StandingTree
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.source import open_scene, open_tree
@@ -17,7 +17,7 @@ FILE = open_tree(Path(__file__).parents[2] / "data" / "seedling.yaml")
 
 def forest_of(*leaf_on):
     trees = tuple(
-        StandingTree(f"tree{i}", FILE.tree, x=3.0 * i, species=FILE.species, leaf_on=each)
+        PlacedTree(f"tree{i}", FILE.tree, x=3.0 * i, species=FILE.species, leaf_on=each)
         for i, each in enumerate(leaf_on)
     )
     return ForestFile("row", trees, "row.yaml")
@@ -33,7 +33,7 @@ def test_it_sways_as_a_forest():
     file = replace(forest_of(None, True), anemometer=(-9.0, 0.0, 0.0), convection_ratio=2.0)
     forest = file.simulator(fidelity="subtree", damping_ratio=0.2)
     assert isinstance(forest, Forest)
-    assert forest.rung == "subtree"
+    assert forest.model == "subtree"
     assert [each.settings.in_leaf for each in forest.simulators] == [False, True]
     forest.step((6.0, 0.0, 0.0), 1.0 / 60.0)
     assert forest.gusts.delay == pytest.approx([0.75, 1.0])
@@ -62,7 +62,7 @@ def test_leaves_stand_on_their_own_trees():
 
 def test_a_tree_file_makes_its_simulator_too():
     sim = FILE.simulator(fidelity="coupled", leaf_on=True)
-    assert sim.rung == "coupled"
+    assert sim.model == "coupled"
     assert sim.settings.leaf_area == pytest.approx(foliage_of(FILE.tree).drag_area)
     assert FILE.leaves(False, 40) is None
     assert FILE.leaves(True, 40).segment.shape == (40,)

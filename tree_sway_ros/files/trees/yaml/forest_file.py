@@ -17,8 +17,8 @@ from tree_sway_ros.core.leaves.foliage import (
     no_clusters,
 )
 from tree_sway_ros.core.scene.forest import Forest
-from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
-from tree_sway_ros.core.simulator.settings import SimulatorSettings
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -47,7 +47,7 @@ class ForestFile:
     """
 
     name: str
-    trees: tuple[StandingTree, ...]
+    trees: tuple[PlacedTree, ...]
     source: str
     notes: tuple[str, ...] = ()
     anemometer: tuple[float, float, float] | None = None
@@ -72,7 +72,7 @@ class ForestFile:
 
     def simulator(
         self,
-        settings: SimulatorSettings | None = None,
+        settings: Settings | None = None,
         *,
         fidelity: str = "auto",
         tolerance: float = 0.005,
@@ -135,6 +135,6 @@ def forest_of_files(files: Sequence[TreeFile], name: str) -> ForestFile:
     trees = []
     for each in files:
         x, y, z = (np.array(each.origin) - first + each.tree.start[0]).tolist()
-        trees.append(StandingTree(each.tree.name, each.tree, x, y, z, species=each.species))
+        trees.append(PlacedTree(each.tree.name, each.tree, x, y, z, species=each.species))
     notes = [f"{each.tree.name}: {note}" for each in files for note in each.notes]
     return ForestFile(name, tuple(trees), files[0].source, tuple(notes))

@@ -20,7 +20,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tree_sway_ros.core.scene.placed_tree import StandingTree
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import FormatError, TreeSwayError
 from tree_sway_ros.files.text_file import read_head, read_text
@@ -111,7 +111,7 @@ def parse_forest(
 
 def _standing(
     entry: dict[str, Any], open_tree: OpenTree, open_species: OpenSpecies, where: str
-) -> tuple[StandingTree, tuple[str, ...]]:
+) -> tuple[PlacedTree, tuple[str, ...]]:
     """One tree of the list, and the notes of its file."""
     name = entry["name"]
     try:
@@ -122,7 +122,7 @@ def _standing(
         inner = f"{error.where}: {error.what}" if error.where else error.what
         raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
     place: dict[str, Any] = {key: entry[key] for key in ("x", "y", "z", "yaw") if key in entry}
-    standing = StandingTree(
+    standing = PlacedTree(
         name, tree_file.tree, species=tree_file.species, leaf_on=entry.get("leaf_on"), **place
     )
     return standing, tree_file.notes
