@@ -13,48 +13,51 @@ from numba import njit
 from numba.core import types
 from numba.extending import overload
 
+from tree_sway_ros.kernel_cache import KernelCache
+
 _F = TypeVar("_F", bound=Callable[..., Any])
+
+
+_LOOSE = {"contract", "reassoc", "nsz"}
 
 
 def kernel(function: _F) -> _F:
     """
     Compile a function of numbers and arrays to machine code at its first call.
 
-    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released;
-    the code is cached beside the module. The plain function stays reachable as ``py_func``.
+    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released; the
+    code is kept on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
 
     """
-    return cast(_F, njit(cache=True, error_model="numpy", nogil=True)(function))
+    return _compiled(function)
 
 
 def fused(function: _F) -> _F:
     """
-    Compile like `kernel`, but let a product and a sum be one instruction and sums of a loop run
-    side by side.
+    Compile like `kernel`, but let a product and a sum be one instruction and reorder sums of a loop.
 
     For what is placed and summed, where the last bit does not matter; the result is still the same
     bit for bit on one machine. Not for code that counts on rounding.
 
     """
-    flags = {"contract", "reassoc", "nsz"}
-    return cast(_F, njit(cache=True, error_model="numpy", nogil=True, fastmath=flags)(function))
+    return _compiled(function, fastmath=_LOOSE)
 
 
 def inlined(function: _F) -> _F:
     """
-    Compile like `fused` and paste the body into each caller, so that a loop of calls becomes one of
-    vectors.
+    Compile like `fused` and paste the body into each caller, so that a loop of calls vectorises.
 
     For short functions of numbers in the innermost loop; callers compile longer.
 
     """
-    flags = {"contract", "reassoc", "nsz"}
-    return cast(
-        _F,
-        njit(cache=True, error_model="numpy", nogil=True, fastmath=flags, inline="always")(
-            function
-        ),
-    )
+    return _compiled(function, fastmath=_LOOSE, inline="always")
+
+
+def _compiled(function: _F, **options: Any) -> _F:
+    dispatcher = njit(error_model="numpy", nogil=True, **options)(function)
+    if hasattr(dispatcher, "_cache"):  # not where NUMBA_DISABLE_JIT leaves the plain function
+        dispatcher._cache = KernelCache(function, repr(sorted(options)))
+    return cast(_F, dispatcher)
 
 
 def like(value: float, model: Any) -> Any:

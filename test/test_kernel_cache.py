@@ -1,0 +1,83 @@
+"""Compiled kernels on disk: keyed by all they are made from, and never a reason to fail."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tree_sway_ros.kernel_cache import ROOT, source_digest
+
+pytest.importorskip("numba", reason="there is no cache of kernels without numba")
+
+#: One step of a small tree; prints what the load's kernel makes of the wind.
+PROGRAM = """
+import numpy as np
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.building import tree_from_segments
+nodes = np.linspace((0.0, 0.0, 0.0), (0.0, 0.0, 2.0), 5)
+tree = tree_from_segments(nodes[:-1], nodes[1:], np.full((4, 2), 0.02), parent=np.arange(-1, 3))
+sim = SwaySimulator(tree, model="branch", gravity=0.0)
+for _ in range(10):
+    sim.step((2.0, 0.0, 0.0), 0.02)
+sim.place()
+print(sim.tip_displacement[0])
+"""
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """Copy the package, to be edited, and return a function that runs the program on it."""
+    shutil.copytree(ROOT, tmp_path / "tree_sway_ros", ignore=shutil.ignore_patterns("__pycache__"))
+
+    def run(cache: Path | str) -> tuple[float, str]:
+        environment = {**os.environ, "PYTHONPATH": str(tmp_path), "TREE_SWAY_CACHE": str(cache)}
+        done = subprocess.run(
+            [sys.executable, "-c", PROGRAM],
+            env=environment, capture_output=True, text=True, check=True, cwd=tmp_path,
+        )  # fmt: skip
+        return float(done.stdout), done.stderr
+
+    run.package = tmp_path / "tree_sway_ros"
+    return run
+
+
+def test_an_edited_callee_is_run_by_callers_in_other_files(copy, tmp_path):
+    cache = tmp_path / "kernels"
+    before, _ = copy(cache)
+    assert copy(cache)[0] == before, "compiled and cached runs give the same bits"
+    path = copy.package / "core" / "motion" / "drag.py"
+    text = path.read_text(encoding="utf-8")
+    assert "return f * nx," in text
+    path.write_text(text.replace("return f * nx,", "return 2.0 * f * nx,"), encoding="utf-8")
+    assert copy(cache)[0] > 1.5 * before
+
+
+def test_damaged_kernels_are_compiled_again(copy, tmp_path):
+    cache = tmp_path / "kernels"
+    before, said = copy(cache)
+    assert not said
+    for path in cache.glob("*.kernel"):
+        path.write_bytes(path.read_bytes()[:100])
+    after, said = copy(cache)
+    assert after == before
+    assert said.count("\n") <= 2
+    assert "cannot be read" in said
+
+
+def test_a_folder_that_cannot_be_written_is_passed_by(copy, tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    value, said = copy(tmp_path / "file" / "kernels")
+    assert value > 0.0
+    assert "Traceback" not in said
+
+
+def test_the_digest_follows_imports_and_nothing_else():
+    first = ROOT / "core" / "motion" / "uncoupled.py"
+    assert len(source_digest(first)) == 32
+    assert source_digest(first) != source_digest(ROOT / "core" / "motion" / "modal.py")
+    assert source_digest(ROOT / "nowhere.py") == ""
