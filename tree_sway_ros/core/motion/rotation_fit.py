@@ -2,8 +2,8 @@
 Key rotations that come nearest to given poses: the way back from segments to branches.
 
 From the root out, each branch's base is turned as placing would turn it; what its segments are
-turned by beyond that is fitted by the branch's shapes and twists, by least squares weighted with the
-lengths of the segments.
+turned by beyond that is fitted by the branch's shapes and twists, by least squares weighted with
+the lengths of the segments.
 
 """
 

@@ -30,7 +30,7 @@ LEFT_OUT = 0.004
 SPEEDS = (2.0, 6.0, 12.0)
 """Mean winds in [m/s] of the runs."""
 
-MARGIN = 6.0
+MARGIN = 10.0
 """Full scale over the greatest value of a coordinate in the runs."""
 
 _DT, _STEPS, _EVERY = 1.0 / 60.0, 960, 4
@@ -65,14 +65,18 @@ class Swaying(Protocol):
         """Go back to rest."""
 
 
-def state_basis(simulator: Swaying, n_coordinates: int | None = None, *, seed: int = 1) -> StateBasis:
+def state_basis(
+    simulator: Swaying, n_coordinates: int | None = None, *, seed: int = 1
+) -> StateBasis:
     """
     Find the coordinates that hold a tree's shapes.
 
     Parameters
     ----------
     simulator
-        The tree, on its model. It is run, and then set back to the state that it was in.
+        The tree, on its model. It is run, and then set back to the state that it was in. Models
+        that share their joints can share a basis: ``coupled`` and ``segments`` that of ``modes``,
+        which is found in a second.
     n_coordinates
         How many to keep; the least of `COUNTS` that leaves out no more than `LEFT_OUT` if None.
     seed
@@ -130,10 +134,8 @@ def _run(
     wind = simulate_turbulence(speed, rate=1.0 / _DT, duration=steps * _DT, rng=rng)
     bearing = 2.0 * np.pi * (turns * np.arange(steps) / steps + rng.uniform())
     cosine, sine = np.cos(bearing), np.sin(bearing)
-    turned = np.stack(
-        [cosine * wind[:, 0] - sine * wind[:, 1], sine * wind[:, 0] + cosine * wind[:, 1], wind[:, 2]],
-        axis=1,
-    )
+    x, y, z = wind.T
+    turned = np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=1)
     simulator.reset()
     for number, each in enumerate(turned):
         simulator.step(each, _DT)

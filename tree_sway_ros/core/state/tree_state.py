@@ -72,14 +72,14 @@ class TreeState:
         try:
             told = json.loads(head[:_LARGEST_HEAD])
             version = told["version"]
-            texts = [str(told[name]) for name in ("tree", "digest", "model")]
+            tree, digest, model = (str(told[name]) for name in ("tree", "digest", "model"))
             numbers = np.frombuffer(values, dtype="<f8").astype(np.float64)
         except (ValueError, KeyError, TypeError) as error:
             raise StateError(
-                f"{len(data)} bytes that hold no state", where="state", cure="give those of to_bytes"
+                f"{len(data)} bytes that hold no state", cure="give those of to_bytes"
             ) from error
         refuse_version(version)
-        return TreeState(*texts, numbers, VERSION)
+        return TreeState(tree, digest, model, numbers)
 
 
 def refuse_version(version: object) -> None:
