@@ -13,7 +13,7 @@ from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
 LEAVES: dict[str, bool | None] = {"auto": None, "on": True, "off": False}
-"""What a user may say of leaves; ``auto`` leaves it to the species, of which evergreens bear them."""
+"""What a user may say of leaves; ``auto`` leaves it to the species: evergreens bear them."""
 
 
 def is_in_leaf(species: Species, told: bool | None = None) -> bool:
