@@ -110,7 +110,7 @@ def test_a_date_that_no_clock_can_say_is_left_out(compose, observer, tmp_path, e
 def test_a_clock_in_steps_that_no_node_follows_is_refused(compose, tmp_path):
     options = {"file": gusty(tmp_path), "publish_clock": True}
     with pytest.raises(
-        TreeSwayError, match=r"steps of 1 s.* give speed up to 62.5, or clock_rate 1000"
+        TreeSwayError, match=r"steps of 1 s.* give speed up to 62.5, or clock_rate 1000$"
     ):
         compose(player={**options, "speed": 250.0})
     compose(player={**options, "speed": 250.0, "clock_rate": 1000.0})

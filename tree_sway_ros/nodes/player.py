@@ -61,13 +61,13 @@ class PlayerNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a clock in steps so long that nodes would take them for a clock set forward."""
-        step = values["speed"] / values["clock_rate"]
-        if values["publish_clock"] and step > LONGEST_CLOCK_STEP:
+        speed, rate = values["speed"], values["clock_rate"]
+        step, longest = speed / rate, LONGEST_CLOCK_STEP
+        if values["publish_clock"] and step > longest:
             raise ParameterError(
-                f"/clock would go in steps of {step:g} s; nodes follow up to {LONGEST_CLOCK_STEP:g} s",
+                f"/clock would go in steps of {step:g} s; nodes follow up to {longest:g} s",
                 where="parameters 'speed' and 'clock_rate'",
-                cure=f"give speed up to {LONGEST_CLOCK_STEP * values['clock_rate']:g}, or clock_rate "
-                f"{values['speed'] / LONGEST_CLOCK_STEP:g} Hz (1000 at most)",
+                cure=f"give speed up to {longest * rate:g}, or clock_rate {speed / longest:g}",
             )
 
     def _publish(self, row: int, stamp: int) -> None:

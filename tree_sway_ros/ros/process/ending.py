@@ -3,7 +3,8 @@ Told to end, a process ends soon, whatever it is doing.
 
 Ctrl-C and SIGTERM set a flag that a loop looks at, or break into what runs before there is a loop.
 Python looks at signals between two of its own instructions, and the compiler of the kernels may not
-come back to one for seconds; so a thread watches as well, and ends the process when the time is over.
+come back to one for seconds; so a thread watches as well, and ends the process when the time is
+over.
 
 """
 

@@ -1,8 +1,9 @@
 """
-The one guard around every callback of a node: what is raised in it is counted and told, not passed on.
+The one guard around every callback of a node: what is raised in it is counted and told, not passed
+on.
 
-An exception that leaves a callback ends the executor, and with it every node that shares it; one that
-leaves the callback of a service leaves its caller without an answer.
+An exception that leaves a callback ends the executor, and with it every node that shares it; one
+that leaves the callback of a service leaves its caller without an answer.
 
 """
 
@@ -35,8 +36,8 @@ class CallbackGuard:
         """
         Return a callback that never raises.
 
-        Where the wrapped one raises, it returns its last argument: of a service this is the response
-        as it was made, so that the caller gets an answer.
+        Where the wrapped one raises, it returns its last argument: of a service this is the
+        response as it was made, so that the caller gets an answer.
 
         """
 
