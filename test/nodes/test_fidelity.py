@@ -62,7 +62,7 @@ def test_a_budget_is_told_and_kept_where_it_can_be(compose, observer, statuses, 
 
 
 def test_leaves_are_told_once_and_never_by_the_frame(compose, observer, tree_file):
-    compose(solver={"tree": tree_file, "leaf_on": True, "leaf_clusters": 40, "profile": "power"})
+    compose(solver={"tree": tree_file, "leaves": "on", "leaf_clusters": 40, "profile": "power"})
     described = observer.listen(TREE_DESCRIPTION)
     frames = observer.listen(SEGMENT_POSES)
     observer.until(lambda: described and len(frames) > 30, "the description and frames")

@@ -8,6 +8,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.gate import WindGate
@@ -43,6 +44,7 @@ class SolverNode(TreeSwayNode):
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
+            in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
             profile=WindProfile(
                 self.values["profile"],
@@ -52,7 +54,7 @@ class SolverNode(TreeSwayNode):
             ),
         )
         self.simulator: Any = source.simulator(
-            settings, **self.values("fidelity", "tolerance", "leaf_on")
+            settings, **self.values("fidelity", "tolerance")
         )
         self._camera: Any = None
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
@@ -63,7 +65,7 @@ class SolverNode(TreeSwayNode):
         # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
         self._gate = WindGate(max_speed=150.0, max_rate=1e4)
         self._sway_report = SwayReport()
-        leaves = source.leaves(**self.values("leaf_on"), count=self.values["leaf_clusters"])
+        leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)

@@ -29,6 +29,7 @@ from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
 from tree_sway_ros.core.tree.species import Species
@@ -154,7 +155,8 @@ class CalibratedTree:
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Wait to be asked."""
-        self.tree, self.species, self.settings = tree, species, settings
+        self.tree, self.species = tree, species
+        self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
 
     @property
@@ -163,7 +165,7 @@ class CalibratedTree:
         settings, species = self.settings, self.species
         if settings.damping_ratio is not None:
             return settings.damping_ratio
-        return species.damping_in_leaf if settings.in_leaf else species.damping_bare
+        return species.damping(bool(settings.in_leaf))
 
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """

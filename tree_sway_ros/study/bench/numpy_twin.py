@@ -50,7 +50,7 @@ class NumpyTwin:
         """Take over what the simulator knows of its tree."""
         tree = sim.tree
         bank = build_bank(tree, sim.species, sim.settings)
-        self._drag_law = sim.species.drag_law(sim.settings.in_leaf)
+        self._drag_law = sim.species.drag_law(bool(sim.settings.in_leaf))
         self._oscillators = bank.oscillators
         branches, segments = bank.branches, bank.segments
         self._branch: dict[str, Any] = {n: branches[n].copy() for n in branches.dtype.names}
