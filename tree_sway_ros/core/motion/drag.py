@@ -1,6 +1,6 @@
 """
-What the wind does to a branch: one load centre per branch, so that cost does not depend on how finely
-it is cut.
+What the wind does to a branch: one load centre per branch, so that cost does not depend on how
+finely it is cut.
 
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
 piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement

@@ -81,7 +81,9 @@ def head_records(branches: Any, segments: Any) -> Any:
     heads["is_plain"][block[branches["n_coordinates"] > 2]] = 0
     heads["branch"][block, lane] = np.arange(len(branches))
     heads["is_parent_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
-    for name in ("parent", "coordinate", "base_segment", "first", "frame", "skew", "tip_skew", "offset"):
+    for name in ("parent", "coordinate", "base_segment", "first"):
+        heads[name][block, lane] = branches[name]
+    for name in ("frame", "skew", "tip_skew", "offset"):
         heads[name][block, ..., lane] = branches[name]
     for name in ("steepest", "base_slope"):
         heads[name][block, lane] = branches[name][:, 0]

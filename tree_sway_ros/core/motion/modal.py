@@ -197,8 +197,8 @@ def _to_middle(
 
 @fused
 def _advance(
-    branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats, held: Floats,
-    flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
+    branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats,
+    held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     _to_middle(modal, state, shapes, half, flexibility)

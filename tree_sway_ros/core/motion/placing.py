@@ -278,7 +278,8 @@ def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, floa
 @inlined
 def _turn(segment: Any, scratch: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
     """Turn the segment of the lane j from rest, at the end of the one before."""
-    rest, chord, pose, at, ahead = segment.rest, segment.chord, scratch.pose, scratch.at, scratch.ahead
+    rest, chord = segment.rest, segment.chord
+    pose, at, ahead = scratch.pose, scratch.at, scratch.ahead
     at[0, j], at[1, j], at[2, j] = (
         at[0, j] + ahead[0, j],
         at[1, j] + ahead[1, j],

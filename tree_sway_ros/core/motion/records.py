@@ -6,9 +6,10 @@ together; a kernel takes a record array as one argument, where each plain array 
 0.2 us. `fill_records` is the one that writes what stays.
 
 Segments follow their branch and not each other, so those at the same place in sixteen branches are
-computed at once: a record holds sixteen lanes, one per branch, and distances within it are constants
-that let the compiler use vectors. The wind load is found for sixteen branches at once too. The records of sixteen branches, from base to tip, make a block;
-parents are in earlier blocks than their children.
+computed at once: a record holds sixteen lanes, one per branch, and distances within it are
+constants that let the compiler use vectors. The records of sixteen branches, from base to tip, make
+a block; parents are in earlier blocks than their children. The wind load is found for sixteen
+branches at once too, in the order of the branches.
 
 Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations
 in [rad].
@@ -130,7 +131,7 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
             ("offset", "f8", (3, LANES)),
             # Scratch:
             ("key", "f8", (2, LANES)),  # key rotation
-            ("parent_base", "f8", (4, LANES)),  # orientation of the parent's base, from rest, w x y z
+            ("parent_base", "f8", (4, LANES)),  # orientation, from rest, w x y z
             ("carrier", "f8", (7, LANES)),  # pose of the base segment
             (
                 "carrier_turn",

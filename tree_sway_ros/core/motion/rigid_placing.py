@@ -1,8 +1,8 @@
 """
 Placing what is frozen: a subtree that moves with its parent as one body.
 
-Its base turns and goes with the segment it sits on, as that of any branch; from there on every segment keeps its
-place and orientation relative to the base.
+Its base turns and goes with the segment it sits on, as that of any branch; from there on every
+segment keeps its place and orientation relative to the base.
 
 """
 
