@@ -27,6 +27,7 @@ from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
@@ -77,7 +78,7 @@ class AdaptiveSimulator(KeepsState):
         """Judge all models once, and start on the one that the expected wind asks for."""
         self.tree = tree
         self.species = species if species is not None else species_named(tree.species)
-        self.settings = settings or Settings()
+        self.settings = in_season(tree, self.species, settings or Settings())
         self.ladder = FidelityLadder(tree, self.species, self.settings)
         self.tolerance, self.budget = tolerance, budget
         self.pace = 1.0

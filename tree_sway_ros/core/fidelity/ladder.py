@@ -77,8 +77,8 @@ class FidelityLadder:
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Find the response of every model."""
         self.tree, self.species = tree, species
-        self._coefficient = species.drag_law(settings.in_leaf)
         whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
+        self._coefficient = species.drag_law(bool(whole.settings.in_leaf))
         best, best_modes = _best(tree)
         bank = whole.bank(best, best_modes)
         rotations = key_response(bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES)
