@@ -200,6 +200,38 @@ def _to_middle(
 
 
 @fused
+def wind_moments(
+    branches: Any, work: Any, loads: Any, x: Floats, v: Floats, moment: Floats, pull: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> None:  # fmt: skip
+    """
+    Find the moments of a wind on the key rotations of a tree that bends and moves.
+
+    Parameters
+    ----------
+    branches, work, loads
+        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`.
+    x, v
+        Key rotations in [rad] and their rates in [rad/s], (N,).
+    moment, pull
+        As of `generalised_loads`, written; the moments are true at any deflection.
+    wx, wy, wz, per_speed_squared
+        As of `wind_forces`.
+
+    """
+    outward_pass(branches, work, x, v)
+    for b in range(len(branches)):
+        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        for c in range(branches[b].n_coordinates):
+            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
+    wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
+    generalised_loads(branches, work, loads, True, moment, pull)
+    for b in range(len(branches)):
+        i = branches[b].coordinate
+        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+
+
+@fused
 def _advance(
     branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats,
     held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
@@ -208,17 +240,8 @@ def _advance(
     _to_middle(modal, state, shapes, half, flexibility)
     eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
     moment, x, v = state[0], state[1], state[2]
-    outward_pass(branches, work, x, v)
-    for b in range(len(branches)):
-        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
-        for c in range(branches[b].n_coordinates):
-            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
-    wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
-    generalised_loads(branches, work, loads, True, moment, pull)
+    wind_moments(branches, work, loads, x, v, moment, pull, wx, wy, wz, per_speed_squared)
     over = 0
-    for b in range(len(branches)):
-        i = branches[b].coordinate
-        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
     for i in range(len(moment)):
         if not abs(moment[i]) <= limit[i]:
             moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
