@@ -53,9 +53,7 @@ class SolverNode(TreeSwayNode):
                 self.values["roughness"],
             ),
         )
-        self.simulator: Any = source.simulator(
-            settings, **self.values("fidelity", "tolerance")
-        )
+        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
         self._camera: Any = None
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
