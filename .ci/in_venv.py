@@ -17,6 +17,7 @@ import fcntl
 import hashlib
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -210,9 +211,10 @@ def pip(environment, *arguments):
 
 def failure(words, log):
     """Return what went wrong and the cure, from pip's words."""
-    signs = ("NewConnectionError", "Name or service", "name resolution", "ConnectTimeout", "ProxyError")
-    if any(sign in words for sign in signs):
-        return "no network: the package index cannot be reached", "connect, or set a proxy, and run again"
+    signs = "NewConnectionError|Name or service|name resolution|ConnectTimeout|ProxyError"
+    if re.search(signs, words):
+        cure = "connect, or set a proxy, and run again"
+        return "no network: the package index cannot be reached", cure
     if "No space left" in words:
         return "the disk is full", f"make about 1 GB of room at {VENV}"
     errors = [line for line in words.splitlines() if line.startswith("ERROR")]

@@ -127,7 +127,8 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     ]
     if not min(moduli) / _FAR < after.modulus / 1e9 < max(moduli) * _FAR:
         lines.append(
-            "  note       no green wood has such a modulus: check density, diameters and leaves, and "
+            "  note       no green wood has such a modulus: check density, diameters and leaves, "
+            "and "
             "whether this was the slowest sway"
         )
     season = "damping_in_leaf" if in_leaf else "damping_bare"
@@ -137,7 +138,8 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     else:
         lines += [
             f"  damping    {old:.3g} -> {new:.3g} {'in leaf' if in_leaf else 'bare'}",
-            "  note       a measured damping holds that of the air; the solver adds the air's drag to it, "
+            "  note       a measured damping holds that of the air; the solver adds the air's "
+            "drag to it, "
             "so it damps a little more than the tree in strong wind",
         ]
     return lines

@@ -165,9 +165,11 @@ def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
         + (f", {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m" if breast is not None else ""),
         f"  wood       {tree_file.species.title}{estimate}: {facts['modulus'] / 1e9:.3g} GPa, "
         f"{facts['density']:.4g} kg/m^3",
-        f"  mass       {facts['mass']:.4g} kg {'in leaf' if facts['in_leaf'] else 'without leaves'}, "
+        f"  mass       {facts['mass']:.4g} kg "
+        f"{'in leaf' if facts['in_leaf'] else 'without leaves'}, "
         f"{facts['stem_mass']:.4g} kg of it in the stem",
-        f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} copied",
+        f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} "
+        f"copied",
     ]
     lines += [f"  note       {note}" for note in facts["notes"]]
     if facts["modes"]:

@@ -58,9 +58,11 @@ def forest_text(facts: dict[str, Any]) -> str:
     wide = max(4, *(len(tree["name"]) for tree in trees))
     lines = [
         f"{facts['name']}, from {facts['source']}",
-        f"  size       {len(trees)} trees, {facts['branches']} branches, {facts['segments']} segments, "
+        f"  size       {len(trees)} trees, {facts['branches']} branches, {facts['segments']} "
+        f"segments, "
         f"{facts['volume'] * 1e3:.4g} l of wood, {facts['mass']:.4g} kg",
-        f"  {'tree':{wide}}   species       east    north   height   segments       mass       sways",
+        f"  {'tree':{wide}}   species       east    north   height   segments       mass       "
+        f"sways",
     ]
     for tree in trees:
         place, slowest = tree["place"], tree["frequencies"]

@@ -5,9 +5,9 @@ The error and the cost of every model in the wind of the last minute are known b
 (`fidelity_ladder`); the cheapest that stays within the tolerance is used, or, where none that can
 be afforded does, the most accurate of those. When wind or camera ask for another, the new one first
 sways along unseen until it has forgotten that it started at rest, then the picture goes over to it
-within a second: every pose is a mix of two that agree but for the tolerance. A model is left upwards
-as soon as it must be, downwards only when a lesser one would do with a third to spare, so that a
-wind on the border does not flicker.
+within a second: every pose is a mix of two that agree but for the tolerance. A model is left
+upwards as soon as it must be, downwards only when a lesser one would do with a third to spare, so
+that a wind on the border does not flicker.
 
 """
 

@@ -104,7 +104,8 @@ def calibrate(
     if found is None:
         weakest, limit = model.weakest, model.sway(model.least)
         raise TreeError(
-            f"{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz when branch "
+            f"{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz "
+            f"when branch "
             f"'{weakest}' is about to buckle under its own weight",
             where=tree.name,
             cure="check the measured frequency, the density and the diameters",

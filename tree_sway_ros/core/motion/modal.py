@@ -1,10 +1,10 @@
 """
 Models 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
 
-Model 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q
-+ Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what the modes
-already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and 2 the load is
-found once a step, at the state half a step on.
+Model 3, `modes`, steps the m slowest modes and takes what is left of the motion as static,
+``x = D Q + Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what
+the modes already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and 2
+the load is found once per step, at the state half a step on.
 
 Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -114,7 +114,8 @@ class ModalBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self._air, self.modal, self.state, self._shapes, self._held,
+                self.branches, self.work, self._air, self.modal, self.state, self._shapes,
+                self._held,
                 self._flexibility, self._limit, self._whole, self._half, self._pull,
                 wx, wy, wz, per_speed_squared,
             )

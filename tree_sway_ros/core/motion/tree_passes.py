@@ -146,7 +146,8 @@ def press(air: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -
         tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
         ux, uy, uz = turned(
             -tx, -ty, -tz,
-            speed[j] * wx - motion[0, j], speed[j] * wy - motion[1, j], speed[j] * wz - motion[2, j],
+            speed[j] * wx - motion[0, j], speed[j] * wy - motion[1, j],
+            speed[j] * wz - motion[2, j],
         )  # fmt: skip
         beta = air.compliance[j]
         ux, uy, uz = ux + beta * slip[0, j], uy + beta * slip[1, j], uz + beta * slip[2, j]

@@ -1,6 +1,6 @@
 """
-A calibrated tree some of whose branches move with their parents: the models between one model and the
-next.
+A calibrated tree some of whose branches move with their parents: the models between one model and
+the next.
 
 """
 
@@ -36,7 +36,7 @@ class PartlyFrozenTree(CalibratedTree):
         self._whole = whole
 
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
-        """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out what is frozen."""
+        """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out the frozen."""
         return replace(
             super().bank(model, n_modes),
             frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),

@@ -155,7 +155,8 @@ SOLVER: Table = (
     Parameter(
         "fidelity",
         "modes",
-        "Model of the sway, from the least to the most; `auto` takes the least within tolerance and budget.",
+        "Model of the sway, from the least to the most; `auto` takes the least within tolerance "
+        "and budget.",
         choices=FIDELITIES,
         source="`branch` is the paper's, `segments` its predecessors'",
     ),
@@ -258,7 +259,8 @@ SOLVER: Table = (
     Parameter(
         "wind_delay",
         0.02,
-        "The wind is felt so much later; samples that arrive within it give the same motion in every run.",
+        "The wind is felt so much later; samples that arrive within it give the same motion in "
+        "every run.",
         "s",
         0.0,
         2.0,
