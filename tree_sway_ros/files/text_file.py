@@ -36,8 +36,9 @@ def path_of(name: str | Path) -> Path:
     text = str(name)
     try:
         path = Path(text).expanduser()
-        os.fsencode(path)
-        path.exists()
+        os.stat(path)
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return path
     except RuntimeError:
         raise FormatError(
             f"no user '{text.split('/')[0]}'", where=text[:80], cure="write the folder in full"

@@ -110,7 +110,7 @@ def test_matlab_without_a_model(tmp_path):
         read_tree(tmp_path / "part.mat")
     text = {**columns_of_fork(), "axis": "up"}
     savemat(tmp_path / "text.mat", {"QSM": {"cylinder": text}})
-    with pytest.raises(FormatError, match="'axis' is not numeric"):
+    with pytest.raises(FormatError, match="QSM: 'axis' is not numeric"):
         read_tree(tmp_path / "text.mat")
     (tmp_path / "cut.mat").write_bytes((tmp_path / "text.mat").read_bytes()[:300])
     with pytest.raises(FormatError, match="not a MATLAB file that can be read"):

@@ -25,8 +25,11 @@ from tree_sway_ros.files.text_file import MAX_BYTES, read_bytes
 
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
-_HOLDERS = (1, 2, 3)
-"""Classes of arrays that hold arrays: cell, struct, object."""
+_CELL, _STRUCT, _OBJECT, _TEXT, _NUMERIC = 1, 2, 3, 4, range(6, 16)
+_BYTES = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8}
+"""Bytes of a number of each type."""
+_TEXT_TYPES = (2, 4, 16, 17, 18)
+_MAX_NAME = 4096
 _MAX_DEPTH = 8
 _DEFLATE = 1032
 """The most that deflate can shrink, so that no file holds more than this times its size."""
@@ -110,7 +113,7 @@ def _plain(value: Any, depth: int) -> Any:
 
 
 def _unpacked(content: bytes) -> bytes:
-    """Return the same file with its variables unpacked, each checked by `_check_claims`."""
+    """Return the same file with its variables unpacked, each as of `_readable`."""
     order = {b"IM": "<", b"MI": ">"}.get(content[126:_HEADER])
     if order is None:
         raise FormatError("no header of a MATLAB file of version 5 to 7")
@@ -125,9 +128,8 @@ def _unpacked(content: bytes) -> bytes:
                 raise FormatError(f"variables larger than {MAX_BYTES >> 20} MiB")
         left -= len(unpacked)
         kind, body, _ = _element(unpacked, 0, len(unpacked), order)
-        if kind == _MATRIX:
-            _check_claims(unpacked, body, order, 0)
-            plain.append(unpacked[: body.stop])
+        variable = _readable(unpacked, body, order, 0) if kind == _MATRIX else b""
+        plain.append(variable if len(variable) > 8 else b"")
     return b"".join(plain)
 
 
@@ -149,13 +151,22 @@ def _element(
     return kind, body, following
 
 
-def _check_claims(data: bytes, body: range, order: str, depth: int) -> None:
-    """Refuse an array of more elements than it has bytes, and one that is nested too deep."""
+def _readable(data: bytes, body: range, order: str, depth: int) -> bytes:
+    """
+    Return an array, an empty one in place of each that is neither numbers, text, cell nor struct.
+
+    A damaged one, on which scipy may end the process, is refused.
+
+    """
     if depth > _MAX_DEPTH:
         raise FormatError(f"nested deeper than {_MAX_DEPTH}")
     if not body:
-        return
-    _, flags, at = _element(data, body.start, body.stop, order)
+        return struct.pack(order + "II", _MATRIX, 0)
+    kind, flags, at = _element(data, body.start, body.stop, order)
+    if (kind, len(flags), at - flags.start) != (6, 8, 8):
+        raise FormatError("an array without flags")
+    word = struct.unpack_from(order + "I", data, flags.start)[0]
+    of_class, parts = word & 0xFF, 2 if word & 0x800 else 1  # a complex array has two parts
     _, shape, at = _element(data, at, body.stop, order)
     size = 1
     for length in struct.unpack_from(f"{order}{len(shape) // 4}i", data, shape.start):
@@ -163,16 +174,48 @@ def _check_claims(data: bytes, body: range, order: str, depth: int) -> None:
         # A negative length, or so many elements that the array's own bytes cannot hold them.
         if length < 0 or size > len(body):
             raise FormatError(f"an array of {size} elements in {len(body)} bytes")
-    if len(flags) < 4:
-        raise FormatError("an array without flags")
     _, _, at = _element(data, at, body.stop, order)
-    word = struct.unpack_from(order + "I", data, flags.start)[0]
-    if word & 0xFF not in _HOLDERS:
-        return
+    inside = list[tuple[int, range]]()
     while at < body.stop:
-        kind, inner, at = _element(data, at, body.stop, order)
-        if kind == _MATRIX:
-            _check_claims(data, inner, order, depth + 1)
+        kind, part, at = _element(data, at, body.stop, order)
+        inside.append((kind, part))
+    if of_class in _NUMERIC:
+        of_type = [
+            _BYTES.get(kind, 0) * size == len(part) and kind in _BYTES for kind, part in inside
+        ]
+        if of_type != [True] * parts:
+            raise FormatError(f"numbers that are not {size} of a known type")
+    elif of_class == _TEXT:
+        if [kind in _TEXT_TYPES for kind, _ in inside] != [True]:
+            raise FormatError("a text of no known type")
+    elif of_class not in (_CELL, _STRUCT, _OBJECT):
+        return struct.pack(order + "II", _MATRIX, 0)
+    else:
+        return _readable_holder(data, body, order, depth, (of_class, size), inside)
+    return struct.pack(order + "II", _MATRIX, len(body)) + data[body.start : body.stop]
+
+
+def _readable_holder(
+    data: bytes,
+    body: range,
+    order: str,
+    depth: int,
+    claim: tuple[int, int],
+    inside: list[tuple[int, range]],
+) -> bytes:
+    """Return a cell array or struct of readable arrays; see `_readable`."""
+    of_class, size = claim
+    first = {_CELL: 0, _STRUCT: 2, _OBJECT: 3}[of_class]
+    if first and len(inside) >= first:
+        (_, width), (_, names) = inside[first - 2 : first]
+        length = struct.unpack_from(order + "I", data, width.start)[0] if len(width) == 4 else 0
+        size *= len(names) // length if 0 < length <= _MAX_NAME else -1
+    if [kind for kind, _ in inside[first:]] != [_MATRIX] * size:
+        raise FormatError(f"a cell array or struct of {len(inside) - first} arrays, not {size}")
+    head = data[body.start : inside[first][1].start - 8] if size else data[body.start : body.stop]
+    arrays = [_readable(data, part, order, depth + 1) for _, part in inside[first:]]
+    content = b"".join([head, *arrays])
+    return struct.pack(order + "II", _MATRIX, len(content)) + content
 
 
 def _hdf5_variables(path: Path) -> Variables:

@@ -10,7 +10,6 @@ Tabs, spaces, commas or semicolons stand between the cells.
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +23,8 @@ from tree_sway_ros.files.trees.cylinders.treeqsm_columns import (
     treeqsm_cylinders,
 )
 
-_SEPARATORS = re.compile("[,;]")
+_MANY = 15
+"""Rows from the beginning of a file that are judged."""
 
 
 def looks_like_treeqsm_text(head: str) -> bool:
@@ -33,17 +33,17 @@ def looks_like_treeqsm_text(head: str) -> bool:
     if lines and lines[0].lower().startswith("radius") and "axis_direction" in lines[0]:
         return True
     rows = [[finite(cell) for cell in _cells(line)] for line in lines]
-    # The first line may be a header of some kind, the last one cut in the middle.
-    whole = [row for row in rows[: max(1, len(rows) - 1)] if None not in row]
+    # The first line may be a header of some kind, the last one of many cut in the middle.
+    whole = [row for row in rows[:_MANY] if None not in row]
     width = max((len(row) for row in whole), default=0)
     table = np.array([row for row in whole if len(row) == width], dtype=np.float64)
-    return 10 * len(table) >= 8 * (len(rows) - 2) and bool(width) and looks_like_cylinders(table)
+    return 10 * len(table) >= 7 * (min(len(rows), _MANY) - 1) and bool(width) and looks_like_cylinders(table)
 
 
 def _cells(line: str) -> list[str]:
-    """Cells of a row; commas and semicolons separate only where white space does not."""
-    cells = line.split()
-    return cells if len(cells) >= USED_COLUMNS else _SEPARATORS.sub(" ", line).split()
+    """Cells of a row; commas separate only where neither semicolons nor white space do."""
+    cells = line.replace(";", " ").split()
+    return cells if len(cells) >= USED_COLUMNS else line.replace(",", " ").split()
 
 
 def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
