@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
-from tree_sway_ros.core.motion.drag import fill_branch_loads
 from tree_sway_ros.core.motion.fill_records import (
-    fill_branch_geometry,
+    branch_records,
+    copy_twigs,
     head_records,
     segment_records,
 )
@@ -199,8 +199,7 @@ class CalibratedTree:
             frequencies = modes.frequencies
         else:
             refuse_buckling(self.tree, layer.reduction)
-            branches["source"] = twig_sources(self.tree, self.settings.twig_tolerance)
-            _share_frames(branches)
+            copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
             bank = self._uncoupled(layer, branches, carries=model == "subtree")
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
@@ -249,13 +248,10 @@ class CalibratedTree:
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
         layout = branch_layout() if enriched else branch_layout(2, 1)
-        branches = np.zeros(tree.n_branches, dtype=layout)
-        fill_branch_geometry(tree, models, branches)
-        fill_branch_loads(tree, models, reduction, speed, branches)
         return Layer(
             models,
             reduction,
-            branches,
+            branch_records(tree, models, reduction, speed, layout),
             segment_records(tree, models),
             float(sum(model.beam.integral(model.mass) for model in models)),
         )
@@ -289,9 +285,3 @@ class CalibratedTree:
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
         return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
-
-
-def _share_frames(branches: Any) -> None:
-    """Let a twig that copies turn about the axes of its source, so that it moves the same way."""
-    for b in np.flatnonzero(branches["source"] != np.arange(len(branches))):
-        branches["frame"][b] = branches["frame"][branches["source"][b]]
