@@ -11,19 +11,20 @@ from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.source import open_tree
 
 DATA = Path(__file__).parents[1] / "data"
-HEADER = "x0,y0,z0,x1,y1,z1,d0,d1"
+HEADER = "segment,parent,x0,y0,z0,x1,y1,z1,d0,d1"
 
 
 def table(tmp_path: Path, length: float, diameter: float, up: str = "z") -> Path:
-    """A stem of 2 m and a twig, as a file in these units has them."""
+    """A stem of 6 m and a twig, as a file in these units has them."""
     rows = [HEADER]
-    for start, end, d in (
-        ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.04),
-        ((0.0, 0.0, 1.0), (0.0, 0.1, 2.0), 0.03),
-        ((0.0, 0.0, 1.0), (0.5, 0.0, 1.5), 0.01),
+    for start, end, d, parent in (
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 3.0), 0.12, -1),
+        ((0.0, 0.0, 3.0), (0.0, 0.1, 6.0), 0.09, 0),
+        ((0.0, 0.0, 3.0), (0.5, 0.0, 3.5), 0.01, 0),
     ):
         nodes = [(x, z, -y) if up == "y" else (x, y, z) for x, y, z in (start, end)]
-        cells = [length * c for node in nodes for c in node] + [diameter * d, diameter * d]
+        cells = [len(rows) - 1.0, parent, *(length * c for node in nodes for c in node)]
+        cells += [diameter * d, diameter * d]
         rows.append(",".join(f"{cell:g}" for cell in cells))
     path = tmp_path / "tree.csv"
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
@@ -55,7 +56,7 @@ def test_the_option_that_the_error_names_mends_it(tmp_path, length, diameter, up
 
 
 def test_units_that_cannot_be_are_refused(tmp_path):
-    with pytest.raises(ParameterError, match="length_unit is 0 m; give 0.01 for cm"):
+    with pytest.raises(ParameterError, match=r"length_unit is 0 m; give 0\.01 for cm"):
         open_tree(table(tmp_path, 1.0, 1.0), length_unit=0.0)
     with pytest.raises(ParameterError, match="up is 'x'"):
         open_tree(table(tmp_path, 1.0, 1.0), up="x")
@@ -70,5 +71,5 @@ def test_cylinders_are_scaled_before_anything_is_done_to_them():
 
 
 def test_a_twig_of_three_metres_is_refused():
-    with pytest.raises(ParameterError, match="twig_diameter is 3 m; give 0 to 0.1 m, 0.003 for 3"):
+    with pytest.raises(ParameterError, match=r"twig_diameter is 3 m; give 0 to 0\.1 m"):
         open_tree(DATA / "forest.treefile.txt", tree=1, twig_diameter=3.0)

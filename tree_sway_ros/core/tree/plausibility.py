@@ -100,7 +100,7 @@ def doubt_of_sway(tree: Tree, frequency: float) -> str:
         return ""
     return (
         f"its slowest sway has {frequency:.3g} Hz, where trees of its size have some "
-        f"{usual:.2g} Hz: check modulus, density and diameters (--modulus, --density, --option twig_diameter)"
+        f"{usual:.2g} Hz: check --modulus, --density and the diameters (--option twig_diameter)"
     )
 
 
