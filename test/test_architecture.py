@@ -22,7 +22,8 @@ TEST_FILES = sorted((ROOT / "test").rglob("*.py"))
 
 #: Layer of each top room; a room imports only from lower layers and from itself.
 LAYERS = {
-    "errors": 0, "kernel_cache": 0, "core": 1, "files": 2, "ros": 3, "page": 3, "view": 3, "nodes": 4, "tools": 4, "study": 5,
+    "errors": 0, "kernel_cache": 0, "core": 1, "files": 2, "ros": 3, "page": 3, "view": 3,
+    "nodes": 4, "tools": 4, "study": 5,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
@@ -30,7 +31,7 @@ STOREYS = {
     "rotation": 2, "wind": 2, "branch": 2, "oscillators": 2, "growth": 2,
     "leaves": 3, "reduction": 3,
     "motion": 4,
-    "reference": 5,
+    "reference": 5, "state": 5,
     "simulator": 6,
     "fidelity": 7, "identification": 7,
     "scene": 8,
