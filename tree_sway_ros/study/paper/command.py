@@ -1,4 +1,4 @@
-"""``tree-sway paper``: the experiment of Kanda & Ohya as it is written, and what ours does instead."""
+"""``tree-sway paper``: the experiment of Kanda & Ohya as written, and what ours does instead."""
 
 from __future__ import annotations
 
@@ -103,8 +103,8 @@ def report(experiment: Experiment, k1: float, k2: float) -> str:
     bent, solved = counts > 1, keys.solved
     reduced = experiment.solutions["reduced"]
     lines = [
-        f"  {tree.n_segments} segments in {tree.n_branches} branches; {int(bent.sum())} branches of "
-        f"{counts[bent].mean():.1f} segments on average, {int((~bent).sum())} twigs of one",
+        f"  {tree.n_segments} segments in {tree.n_branches} branches; {int(bent.sum())} branches "
+        f"of {counts[bent].mean():.1f} segments on average, {int((~bent).sum())} twigs of one",
         f"  solved: {len(solved)} key segments, 1 in {tree.n_segments / len(solved):.1f}; of the "
         f"branches of several segments 1 in {counts[bent].mean():.1f} (the paper: about 6); time "
         f"to solve all their segments over the time for the key ones, measured: "
@@ -120,15 +120,17 @@ def report(experiment: Experiment, k1: float, k2: float) -> str:
         angle = float(np.abs(solution.angle - reduced.angle).max())
         force = float(np.abs(solution.reaction - reduced.reaction).max()) / scale
         lines.append(
-            f"  {name:13} {solution.operations:8d} ({solution.operations / reduced.operations:4.1f} "
-            f"of reduced)          {np.degrees(np.abs(solution.angle).max()):6.1f} deg       "
+            f"  {name:13} {solution.operations:8d} "
+            f"({solution.operations / reduced.operations:4.1f} of reduced)          "
+            f"{np.degrees(np.abs(solution.angle).max()):6.1f} deg       "
             f"{angle:.1e} rad, {force:.1e} of the largest"
         )
     paper, ours = tip_path(experiment, reduced.angle, every=6), experiment.ours[::6]
     spread = float(np.linalg.norm(np.std(paper, axis=0)))
     lines.append(
-        f"  highest tip: mean {np.linalg.norm(paper.mean(axis=0)):.3f} m and {spread:.3f} m rms about "
-        f"it; in the model modes, with the plant's own wood, {np.linalg.norm(ours.mean(axis=0)):.3f} "
-        f"and {float(np.linalg.norm(np.std(ours, axis=0))):.3f} m"
+        f"  highest tip: mean {np.linalg.norm(paper.mean(axis=0)):.3f} m and {spread:.3f} m rms "
+        f"about it; in the model modes, with the plant's own wood, "
+        f"{np.linalg.norm(ours.mean(axis=0)):.3f} and "
+        f"{float(np.linalg.norm(np.std(ours, axis=0))):.3f} m"
     )
     return "\n".join(lines)

@@ -99,7 +99,7 @@ class Experiment:
 
 
 def wind_from_the_right(mean: float, seconds: float, seed: int = 0) -> Floats:
-    """Speed of a gusty wind of one direction in [m/s] at the frames, (frames + 1,); never below 0."""
+    """Speed of a gusty wind of one direction at the frames, 0 or more, in [m/s], (frames + 1,)."""
     frames = round(seconds * RATE) + 1
     record = simulate_turbulence(
         mean, rate=RATE, duration=seconds + 1.0, rng=np.random.default_rng(seed), bearing_to=0.0

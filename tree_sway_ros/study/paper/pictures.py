@@ -67,7 +67,7 @@ def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path
 
 
 def draw_tips(experiment: Experiment, path: str | Path) -> Path:
-    """Draw the highest tip over time: the paper's model in its three forms, and the model `modes`."""
+    """Draw the highest tip over time: the paper's model in three forms, and the model `modes`."""
     figure = new_figure(9.0, 5.0)
     wind, tip = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
     seconds = np.arange(len(experiment.speed)) / RATE
