@@ -181,8 +181,9 @@ def measured_share(tree: Tree, keys: KeySegments, speed: Floats) -> float:
 
 def _alone(keys: KeySegments, rows: Ints) -> KeySegments:
     """Return the key segments of some branches, repeated ones as often, each solved."""
-    parts = (keys.table, keys.along, keys.across, keys.load)
-    return KeySegments(*(part[rows] for part in parts), np.arange(len(rows)))
+    return KeySegments(
+        keys.table[rows], keys.along[rows], keys.across[rows], keys.load[rows], np.arange(len(rows))
+    )
 
 
 def _reaction(form: str, chain: PlanarChain, state: Floats, load: Floats) -> Floats:
