@@ -114,9 +114,7 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
 
 
 @pytest.mark.parametrize("name", ["~nosuchuser/tree.yaml", "x" * 300 + ".yaml", "a\0b.yaml"])
-def test_a_name_that_is_no_path_is_one_line(
-    name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_name_that_is_no_path_is_one_line(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     for arguments in (
         ("info", name),
         ("convert", "benjamina", "-o", name),
@@ -130,7 +128,15 @@ def test_a_name_that_is_no_path_is_one_line(
 
 def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
     result = subprocess.run(
-        [sys.executable, "-m", "tree_sway_ros.tools.cli", "convert", "benjamina", "-o", "Bäume.obj"],
+        [
+            sys.executable,
+            "-m",
+            "tree_sway_ros.tools.cli",
+            "convert",
+            "benjamina",
+            "-o",
+            "Bäume.obj",
+        ],
         cwd=tmp_path,
         env={**os.environ, "PYTHONIOENCODING": "ascii"},
         capture_output=True,

@@ -139,7 +139,7 @@ def parse_table(lines: Sequence[str], source: str, comment: str = "#") -> TextTa
 def _refuse_shifted(
     columns: tuple[str, ...], rows: tuple[tuple[int, tuple[str, ...]], ...], source: str
 ) -> None:
-    """Refuse a table most rows of which have more cells than the header: its columns are shifted."""
+    """Refuse a table most rows of which have more cells than the header."""
     long = [number for number, cells in rows if any(cells[len(columns) :])]
     if 2 * len(long) > len(rows):
         raise FormatError(

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.identification.calibration import Calibration, calibrate
 from tree_sway_ros.core.identification.sway_record import KINDS, SwayEstimate, estimate_sway
+from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.plausibility import doubt_of_sway
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.wind.sway_table import read_csv_sway
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaf_settings
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
 from tree_sway_ros.tools.tree_output import write_tree_file
 
@@ -63,9 +66,13 @@ def run(arguments: argparse.Namespace) -> int:
         found = _measured(arguments)
         frequency, error = found.frequency, found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
-    settings = Settings(model="modes", **leaf_settings(tree_file.tree, arguments))
+    settings = Settings(model="modes", in_leaf=told_leaves(arguments))
     fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
-    for line in _summary(tree_file.species, fitted, error, in_leaf=settings.in_leaf):
+    in_leaf = is_in_leaf(tree_file.species, settings.in_leaf)
+    doubt = doubt_of_sway(tree_file.tree, fitted.frequency)
+    for each in (*tree_file.of_species(fitted.species).warnings, *([doubt] if doubt else [])):
+        print(f"warning: {each}", file=sys.stderr)
+    for line in _summary(tree_file.species, fitted, error, in_leaf=in_leaf):
         print(line)
     write_tree_file(arguments.output, tree_file.tree, fitted.species)
     return 0

@@ -30,11 +30,12 @@ COMMANDS: dict[str, str] = {
     "battery": "the cases where methods of integration fail, and what ours does there",
     "chart": "speed against accuracy: of methods, of models, against size",
     "compare": "our simulator against MuJoCo, in one run",
+    "paper": "the experiment of Kanda & Ohya as it is written, and what ours does instead",
     "docs": "write the tables of topics and parameters into the README",
 }
 
 #: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
-_STUDIES = ("bench", "battery", "chart", "compare")
+_STUDIES = ("bench", "battery", "chart", "compare", "paper")
 _FAILURE = 2
 _INTERRUPTED = 130
 

@@ -8,13 +8,14 @@ What it prints is what a subscriber receives, not what the solver believes to ha
 from __future__ import annotations
 
 import argparse
+import sys
 
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary
 from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
@@ -59,7 +60,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
-    tree = open_scene(arguments.tree).tree
+    scene = open_scene(arguments.tree)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
+    tree = scene.tree
     print(
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
@@ -98,7 +102,7 @@ def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
         "rate": arguments.rate,
         "fidelity": arguments.fidelity,
     }
-    solver["leaf_on"] = leaves_are_on(arguments)
+    solver["leaves"] = arguments.leaves
     if arguments.gravity == "off":
         solver["gravity"] = 0.0
     if arguments.wind is None:

@@ -13,7 +13,6 @@ import argparse
 import re
 from pathlib import Path
 
-from tree_sway_ros.core.leaves.traits import leaf_traits
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.whole_file import write_text_whole
@@ -107,7 +106,7 @@ def species_table() -> str:
         "|---|---|---|---|---|---|---|---|",
     ]
     for key in species_keys():
-        wood, leaf = species_named(key), leaf_traits(key)
+        wood, leaf = species_named(key), species_named(key).leaves
         mark = " (an estimate)" if wood.is_estimate else ""
         lines.append(
             f"| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} "

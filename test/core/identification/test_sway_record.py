@@ -193,5 +193,5 @@ def test_a_time_that_counts_from_another_zero_is_a_gap():
     time = 0.05 * np.arange(1000.0)
     motion = np.exp(-0.1 * time) * np.cos(3.0 * time)
     time[-1] = 1.7e9
-    with pytest.raises(FormatError, match="gaps of up to 1.7e"):
+    with pytest.raises(FormatError, match=r"gaps of up to 1\.7e"):
         estimate_sway(time, motion)

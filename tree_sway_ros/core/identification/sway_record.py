@@ -148,7 +148,11 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
     if len(t) < _MIN_SAMPLES:
         raise FormatError(f"{len(t)} samples", cure=f"record {_MIN_SAMPLES} at the very least")
     for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
-        raise FormatError("not a finite number, or one that nothing measures", where=f"sample {bad}", cure="remove that sample")
+        raise FormatError(
+            "not a finite number, or one that nothing measures",
+            where=f"sample {bad}",
+            cure="remove that sample",
+        )
     for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
         raise FormatError(
             f"time {t[bad + 1]:g} s after {t[bad]:g} s",

@@ -10,15 +10,21 @@ It is there to compare with, and for a scene that has the time: its steps are ma
 from __future__ import annotations
 
 import math
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -27,7 +33,7 @@ LONGEST_STEP = 1.0 / 60.0
 """Longest step of the implicit springs in [s]; longer ones are cut."""
 
 
-class SegmentsSimulator:
+class SegmentsSimulator(KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 
@@ -39,30 +45,28 @@ class SegmentsSimulator:
     Raises
     ------
     ParameterError
-        Leaves or the volume rule, which this model does not know.
+        The volume rule, which this model does not know.
 
     """
 
-    model = "segments"
+    @property
+    def model(self) -> str:
+        """``segments``."""
+        return "segments"
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
-        if settings.leaf_mass is not None or settings.leaf_area is not None:
-            raise ParameterError(
-                "leaves on model 'segments'",
-                where="fidelity",
-                cure="leave them out or use 'coupled'",
-            )
         if settings.stiffness != "beam":
             raise ParameterError(
                 f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
+        settings = in_season(tree, species, settings)
         self.tree, self.species, self.settings = tree, species, settings
         self.counts = Counts()
         damping = settings.damping_ratio
         if damping is None:
-            damping = species.damping_in_leaf if settings.in_leaf else species.damping_bare
-        coefficient, exponent = species.drag_law(settings.in_leaf)
+            damping = species.damping(bool(settings.in_leaf))
+        coefficient, exponent = species.drag_law(bool(settings.in_leaf))
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
             tree,
@@ -74,6 +78,8 @@ class SegmentsSimulator:
             gravity=settings.gravity,
             twist_ratio=2.0 * species.shear_ratio,
             wind_factor=settings.profile.over_anemometer(middle),
+            leaf_mass=settings.leaf_mass,
+            leaf_area=settings.leaf_area,
         )
         self.wind = np.zeros(3)
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0
@@ -99,6 +105,40 @@ class SegmentsSimulator:
             self._model.step(self.wind, dt / pieces)
         self.counts.steps += 1
         return status
+
+    @cached_property
+    def _joined(self) -> tuple[Bank, RotationFit]:
+        """What places key rotations, and what fits them."""
+        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest("coupled")
+        return bank, RotationFit(self.tree, bank.branches, bank.segments)
+
+    @property
+    def bank(self) -> Bank:
+        """What places key rotations: branches and segments of the coupled tree."""
+        return self._joined[0]
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        return self.bank.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next, the wind of the last step first."""
+        return self.wind, self._model.state.turn, self._model.state.rate
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad] that fit the segments best, (N,); the same array each time."""
+        return self._joined[1].of(self._model.place())
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        poses = np.empty_like(self._poses) if out is None else out
+        self._joined[0].place(rotations, self.tree.start[0], poses)
+        return poses
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""

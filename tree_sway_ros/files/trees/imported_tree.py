@@ -9,10 +9,12 @@ import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
-from tree_sway_ros.core.simulator.season import in_season
+from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.plausibility import doubts, refuse_nonsense
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import TreeSwayError
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +44,32 @@ class TreeFile:
     notes: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about the tree, one sentence each, as of `doubts`."""
+        return doubts(self.tree, self.species)
+
     def of_species(self, species: Species) -> TreeFile:
         """Return the same tree of another wood, with that species' leaves."""
         return replace(self, tree=replace(self.tree, species=species.key), species=species)
+
+    def checked(self) -> TreeFile:
+        """
+        Return the same tree if its numbers can be those of one.
+
+        Raises
+        ------
+        TreeSwayError
+            As `refuse_nonsense`; names the source.
+
+        """
+        try:
+            refuse_nonsense(self.tree, self.species)
+        except TreeSwayError as error:
+            raise type(error)(
+                error.what, where=f"{self.source}: {error.where}", cure=error.cure
+            ) from None
+        return self
 
     def simulator(
         self,
@@ -52,7 +77,6 @@ class TreeFile:
         *,
         fidelity: str = "auto",
         tolerance: float = 0.005,
-        leaf_on: bool = False,
         **changes: Any,
     ) -> Simulator:
         """
@@ -62,8 +86,6 @@ class TreeFile:
         ----------
         settings, fidelity, tolerance, **changes
             As for `make_simulator`.
-        leaf_on
-            Whether the tree bears leaves.
 
         Raises
         ------
@@ -72,14 +94,24 @@ class TreeFile:
 
         """
         model = replace(settings or Settings(), **changes)
-        if leaf_on:
-            model = in_season(self.tree, model, leaf_on=True)
         return make_simulator(
             self.tree, self.species, model, fidelity=fidelity, tolerance=tolerance
         )
 
-    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
-        """Place clusters of leaves on it, always the same ones; None without leaves."""
-        if not leaf_on or count < 1:
+    def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
+        """
+        Place clusters of leaves on it, always the same ones; None without leaves.
+
+        Parameters
+        ----------
+        told
+            Whether the tree bears leaves; None leaves it to the species.
+        count
+            How many clusters.
+
+        """
+        if not is_in_leaf(self.species, told) or count < 1:
             return None
-        return leaf_clusters(self.tree, np.random.default_rng(0), count=count)
+        return leaf_clusters(
+            self.tree, np.random.default_rng(0), count=count, traits=self.species.leaves
+        )

@@ -59,7 +59,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
         raise FormatError(
             "a forest, where one tree is asked for", where=text, cure="name one of its trees"
         )
-    return read_tree(path, **options)
+    return read_tree(path, **options).checked()
 
 
 def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile | ForestFile:
@@ -93,5 +93,5 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
         return read_forest(path, open_tree)
     if str(name_or_path) in BUILTIN_TREES or not path.exists():
         return open_tree(name_or_path, seed, **options)
-    files = read_trees(path, **options)
+    files = [each.checked() for each in read_trees(path, **options)]
     return files[0] if len(files) == 1 else forest_of_files(files, path.stem)

@@ -136,7 +136,9 @@ def compare_with_mujoco(
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
     quick = MujocoTree(tree, wood, damping_ratio, even=False)
-    settings = Settings(damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0)
+    settings = Settings(
+        damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0, in_leaf=False
+    )
     rest = tree.end[tree.branch_first[1:] - 1]
     ours: SwaySimulator | AdaptiveSimulator
     if model == "auto":

@@ -240,7 +240,7 @@ def _members(h5py: Any, group: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _hdf5_value(h5py: Any, each: Any, left: list[int], depth: int) -> Any:
-    """Return a dataset, group or references to groups; `left` bytes may still be read of the file."""
+    """Return a dataset, group or references to groups; `left` bytes may still be read."""
     if depth > _MAX_DEPTH:
         raise FormatError(f"nested deeper than {_MAX_DEPTH}")
     if isinstance(each, h5py.Group):

@@ -37,7 +37,11 @@ def looks_like_treeqsm_text(head: str) -> bool:
     whole = [row for row in rows[:_MANY] if None not in row]
     width = max((len(row) for row in whole), default=0)
     table = np.array([row for row in whole if len(row) == width], dtype=np.float64)
-    return 10 * len(table) >= 7 * (min(len(rows), _MANY) - 1) and bool(width) and looks_like_cylinders(table)
+    return (
+        10 * len(table) >= 7 * (min(len(rows), _MANY) - 1)
+        and bool(width)
+        and looks_like_cylinders(table)
+    )
 
 
 def _cells(line: str) -> list[str]:

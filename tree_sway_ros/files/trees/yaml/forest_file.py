@@ -19,7 +19,8 @@ from tree_sway_ros.core.leaves.foliage import (
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.plausibility import doubts
+from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
@@ -62,6 +63,22 @@ class ForestFile:
         """
         return joined([each.placed() for each in self.trees], self.name)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about each tree, as `TreeFile.warnings`."""
+        return tuple(
+            f"{each.name}: {doubt}"
+            for each in self.trees
+            for doubt in doubts(each.tree, each.species or species_named(each.tree.species))
+        )
+
+    def checked(self) -> ForestFile:
+        """Return the same forest if every tree's numbers can be those of one."""
+        for each in self.trees:
+            species = each.species or species_named(each.tree.species)
+            TreeFile(each.tree, species, f"{self.source}: {each.name}").checked()
+        return self
+
     def of_species(self, species: Species) -> ForestFile:
         """Return the same forest, all of one wood."""
         trees = [
@@ -76,7 +93,6 @@ class ForestFile:
         *,
         fidelity: str = "auto",
         tolerance: float = 0.005,
-        leaf_on: bool = False,
         **changes: Any,
     ) -> Forest:
         """
@@ -86,8 +102,6 @@ class ForestFile:
         ----------
         settings, fidelity, tolerance, **changes
             As for `make_simulator`, for every tree.
-        leaf_on
-            Whether those trees bear leaves of which the file does not say.
 
         Raises
         ------
@@ -100,20 +114,26 @@ class ForestFile:
             settings,
             fidelity=fidelity,
             tolerance=tolerance,
-            leaf_on=leaf_on,
             anemometer=self.anemometer,
             convection_ratio=self.convection_ratio,
             **changes,
         )
 
-    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
+    def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """
         Place clusters of leaves, as many on a tree as its leaf area is of all; None without leaves.
+
+        Parameters
+        ----------
+        told
+            Whether trees bear leaves of which the file does not say; None leaves it to the species.
+        count
+            How many clusters on all trees.
 
         """
         area = np.array(
             [
-                foliage_of(each.tree).area.sum() if each.bears_leaves(leaf_on) else 0.0
+                foliage_of(each.tree).area.sum() if each.bears_leaves(told) else 0.0
                 for each in self.trees
             ]
         )
