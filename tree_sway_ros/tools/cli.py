@@ -59,11 +59,14 @@ COMMANDS: dict[str, Command] = {
         "speed against accuracy: of methods, of models, against size", "chart methods -o charts"
     ),
     "compare": Command("our simulator against MuJoCo, in one run", "compare goldcrest --seconds 1"),
+    "paper": Command(
+        "the experiment of Kanda & Ohya as it is written, and what ours does instead", "paper"
+    ),
     "docs": Command("write the tables of topics and parameters into the pages", "docs --check"),
 }
 
 #: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
-_STUDIES = ("bench", "battery", "chart", "compare")
+_STUDIES = ("bench", "battery", "chart", "compare", "paper")
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")

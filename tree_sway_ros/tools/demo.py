@@ -8,6 +8,7 @@ What it prints is what a subscriber receives, not what the solver believes to ha
 from __future__ import annotations
 
 import argparse
+import sys
 import tempfile
 from pathlib import Path
 
@@ -66,6 +67,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
     scene = opened_scene(arguments)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
     tree = scene.tree
     print(
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",

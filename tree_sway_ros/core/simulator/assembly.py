@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
-from tree_sway_ros.core.motion.drag import fill_branch_loads
 from tree_sway_ros.core.motion.fill_records import (
-    fill_branch_geometry,
+    branch_records,
+    copy_twigs,
     head_records,
     segment_records,
 )
 from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.motion.response import Responding
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
@@ -46,6 +47,9 @@ class Oscillators(Responding, Protocol):
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step under a mean wind [m/s]; returns how many loads were held."""
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -81,6 +85,10 @@ class Frozen:
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Zeros, (N, k, f)."""
         return np.zeros((*moments.shape, len(circular)), dtype=np.complex128)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Nothing."""
+        return ()
 
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
@@ -121,6 +129,13 @@ class Bank:
     mass: float
     frozen: RigidParts | None = None
     n_frozen: int = 0
+
+    def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
+        """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+        work = self.oscillators.work
+        place(self.branches, self.segments, self.heads, work, rotations, origin, out)
+        if self.frozen is not None:
+            self.frozen.place(self.branches, work, rotations, out)
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
@@ -199,8 +214,7 @@ class CalibratedTree:
             frequencies = modes.frequencies
         else:
             refuse_buckling(self.tree, layer.reduction)
-            branches["source"] = twig_sources(self.tree, self.settings.twig_tolerance)
-            _share_frames(branches)
+            copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
             bank = self._uncoupled(layer, branches, carries=model == "subtree")
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
@@ -208,6 +222,14 @@ class CalibratedTree:
         segments = layer.segments.copy()
         heads = head_records(branches, segments)
         return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
+
+    def at_rest(self, model: str) -> Bank:
+        """Return what places the key rotations of a model, and steps nothing."""
+        layer = self.layer(model)
+        branches, segments = layer.branches.copy(), layer.segments.copy()
+        still = Frozen(branches, layer.reduction.n_coordinates)
+        heads = head_records(branches, segments)
+        return Bank(still, branches, segments, heads, np.zeros(0), 0, layer.mass)
 
     def layer(self, model: str) -> Layer:
         """Reduction that a model starts from."""
@@ -249,13 +271,10 @@ class CalibratedTree:
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
         layout = branch_layout() if enriched else branch_layout(2, 1)
-        branches = np.zeros(tree.n_branches, dtype=layout)
-        fill_branch_geometry(tree, models, branches)
-        fill_branch_loads(tree, models, reduction, speed, branches)
         return Layer(
             models,
             reduction,
-            branches,
+            branch_records(tree, models, reduction, speed, layout),
             segment_records(tree, models),
             float(sum(model.beam.integral(model.mass) for model in models)),
         )
@@ -289,9 +308,3 @@ class CalibratedTree:
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
         return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
-
-
-def _share_frames(branches: Any) -> None:
-    """Let a twig that copies turn about the axes of its source, so that it moves the same way."""
-    for b in np.flatnonzero(branches["source"] != np.arange(len(branches))):
-        branches["frame"][b] = branches["frame"][branches["source"][b]]
