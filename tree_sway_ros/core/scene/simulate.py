@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,6 +35,14 @@ class GrownTree(Protocol):
         """The wood."""
 
 
+class TreeSimulator(Simulator, Protocol):
+    """A simulator of one tree, whose key rotations are one array."""
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+
+
+@runtime_checkable
 class WindSamples(Protocol):
     """Wind over time, as `read_wind` gives."""
 
@@ -99,7 +107,7 @@ def simulate(
     means = _step_means(wind, rate, seconds)
     chosen = _chosen(body, branches)
     model = replace(settings or Settings(), **changes)
-    simulator = make_simulator(body, species, model, fidelity=fidelity)
+    simulator = cast(TreeSimulator, make_simulator(body, species, model, fidelity=fidelity))
     base = BaseMoment(body, species, model, fidelity)
     rest = tips_of_poses(body, simulator.place())[chosen]
     tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
@@ -107,7 +115,7 @@ def simulate(
     for step, mean in enumerate(means):
         simulator.step(mean, 1.0 / rate)
         tips[step] = tips_of_poses(body, simulator.place(poses))[chosen] - rest
-        moment[step] = base.of(simulator)
+        moment[step] = base.of(simulator.rotations())
         if progress is not None and step % every == 0:
             progress(step / len(means))
     return SwayRecord(
@@ -152,9 +160,8 @@ class BaseMoment:
         radius = 0.5 * float(tree.base_diameter[0])
         self._strain_per_moment = radius / (species.modulus * np.pi / 4.0 * radius**4)
 
-    def of(self, simulator: Simulator) -> Floats:
-        """Moment in [N m], (3,), of a simulator as it is."""
-        rotations = simulator.rotations()
+    def of(self, rotations: Floats) -> Floats:
+        """Moment in [N m], (3,), under the key rotations of a simulator in [rad], (N,)."""
         return np.asarray(rotations[: len(self._per_unit)] @ self._per_unit)
 
     def strain(self, moment: Floats) -> Floats:
@@ -166,7 +173,7 @@ def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | Non
     """Mean wind of each step in [m/s], (t, 3)."""
     if not (np.isfinite(rate) and 1.0 <= rate <= 10_000.0):
         raise ParameterError(f"rate {rate:g} Hz", where="rate", cure="give 1 to 10000")
-    if hasattr(wind, "velocity"):
+    if isinstance(wind, WindSamples):
         means = frame_means(wind.time, wind.velocity, 1.0 / rate)
     else:
         means = np.asarray(wind, dtype=np.float64)
