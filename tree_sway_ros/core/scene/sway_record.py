@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
-from typing import TextIO
 
 import numpy as np
 
@@ -51,22 +49,13 @@ class SwayRecord:
     base_moment: Floats
     base_strain: Floats
 
-    def to_csv(self, out: TextIO | None = None) -> str | None:
-        """
-        Write the record as comma-separated values with one header line.
-
-        Parameters
-        ----------
-        out
-            Text stream to write to; None returns the text.
-
-        """
+    def to_csv(self) -> str:
+        """Return the record as comma-separated values under one line of names."""
         columns = [self.time[:, None], self.wind, self.base_moment, self.base_strain]
         columns.append(self.tips.reshape(len(self.time), -1))
         names = ["time", "wind_x", "wind_y", "wind_z", "moment_x", "moment_y", "moment_z"]
         names += ["strain_east", "strain_north"]
         names += [f"{name}_{axis}" for name in self.branch_names for axis in "xyz"]
-        target = out if out is not None else io.StringIO()
-        target.write(",".join(f'"{name}"' if "," in name else name for name in names) + "\n")
-        np.savetxt(target, np.hstack(columns), fmt="%.9g", delimiter=",")
-        return target.getvalue() if isinstance(target, io.StringIO) and out is None else None
+        head = ",".join(f'"{name}"' if "," in name else name for name in names)
+        rows = (",".join(f"{value:.9g}" for value in row) for row in np.hstack(columns))
+        return "\n".join((head, *rows, ""))
