@@ -51,6 +51,7 @@ class ModalBank:
     """
 
     carries = True
+    is_tabled = False
 
     def __init__(
         self,
@@ -69,25 +70,25 @@ class ModalBank:
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
-        self._flexibility = 1.0 / diagonal if m < n else np.zeros(n)
-        held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
-        self._held = np.ascontiguousarray(held.T)
-        self._limit = LOAD_MAX * diagonal
+        self.flexibility = 1.0 / diagonal if m < n else np.zeros(n)
+        held = reduction.stiffness @ modes.shapes * self.flexibility[:, None] / self.stiffness
+        self.held = np.ascontiguousarray(held.T)
+        self.limit = LOAD_MAX * diagonal
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
         self._loads = load_records(branches)
         self.modal = np.zeros((6, m))
         self.state = np.zeros((4, n))
         self._pull = np.zeros(len(branches))
-        self._whole, self._half = np.zeros((2, m, 8))
+        self.whole, self.half = np.zeros((2, m, 8))
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         one = np.ones(len(self.stiffness))
-        fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self._whole)
-        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
+        fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self.whole)
+        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
-        velocity = self._half[:, 6] + self._half[:, 7]
+        velocity = self.half[:, 6] + self.half[:, 7]
         self._loads["compliance"][block, lane] = self._participation @ velocity
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -110,8 +111,8 @@ class ModalBank:
         return int(
             _advance(
                 self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
-                self._held,
-                self._flexibility, self._limit, self._whole, self._half, self._pull,
+                self.held,
+                self.flexibility, self.limit, self.whole, self.half, self._pull,
                 wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
@@ -124,8 +125,8 @@ class ModalBank:
         """
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
-        eta = dynamic - (self._held @ moments)[:, :, None]
-        rest = self._flexibility[:, None, None] * moments[:, :, None]
+        eta = dynamic - (self.held @ moments)[:, :, None]
+        rest = self.flexibility[:, None, None] * moments[:, :, None]
         swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
         return np.asarray(swinging, dtype=np.complex128)
 
@@ -133,9 +134,21 @@ class ModalBank:
         """Views of what is carried from one step to the next."""
         return self.modal[:4], self.state[0], self._loads["slip"]
 
+    def take(self, eta: Floats, rate: Floats, force: Floats, rotations: Floats) -> None:
+        """
+        Go on from modes, their rates and forces (m,) and from key rotations (N,) with the static
+        rest in them.
+
+        """
+        self.modal[0], self.modal[1], self.modal[2], self.modal[3] = eta, rate, 0.0, force
+        rest = rotations - self.shapes @ eta
+        bends = self.flexibility > 0.0
+        self.state[0] = np.where(bends, rest, 0.0) / np.where(bends, self.flexibility, 1.0)
+        self._loads["slip"] = 0.0
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _expand(self._shapes, self._flexibility, self.modal, self.state)
+        _expand(self._shapes, self.flexibility, self.modal, self.state)
         rotations: Floats = self.state[3]
         return rotations
 

@@ -45,6 +45,8 @@ class UncoupledBank:
 
     """
 
+    is_tabled = False
+
     def __init__(
         self,
         branches: Any,

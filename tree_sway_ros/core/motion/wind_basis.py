@@ -20,14 +20,8 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway_ros.core.motion.modal import ModalBank
-from tree_sway_ros.core.motion.wind_basis_table import (
-    N_AZIMUTHS,
-    N_LEVELS,
-    N_REST,
-    STEEPEST,
-    WindBasisTable,
-    table_layout,
-)
+from tree_sway_ros.core.motion.wind_basis_force import N_REST, table_layout, wind_force, wind_rest
+from tree_sway_ros.core.motion.wind_basis_table import STEEPEST, WindBasisTable
 
 
 def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
@@ -52,6 +46,10 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     )
 
 
+CARRIED = ("eta", "rate", "force", "rest", "middle", "middle_rate", "wind", "pressure", "outside")
+"""Fields of an instance that a state holds."""
+
+
 class WindBasisBank:
     """
     Oscillators of natural modes in even winds.
@@ -66,13 +64,14 @@ class WindBasisBank:
     """
 
     carries = True
+    is_tabled = True
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
         """Stand at rest."""
         self.modal, self.table = modal, table
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
         n, m = modal.shapes.shape
-        self._record = table.record
+        self.record = table.record.copy()
         layout = instance_layout(m, COUNT[int(table.record["degree"][0])])
         self.instance = np.zeros(1, dtype=layout)
         self._shapes = np.vstack([modal.shapes.T, table.rest_shapes])
@@ -83,14 +82,14 @@ class WindBasisBank:
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         self.modal.set_step(dt)
-        set_table_step(self._record[0], self.modal)
+        set_table_step(self.record[0], self.modal)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
-        if not _advance(self._record, self.instance, wx, wy, wz, per_speed_squared):
+        if not _advance(self.record, self.instance, wx, wy, wz, per_speed_squared):
             return 0
         self.n_outside += 1
-        return step_outside(self.instance[0], self.modal, self.rotations())
+        return step_outside(self.instance[0], self.modal, self._shapes, self._x)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """As `ModalBank.response`."""
@@ -98,11 +97,11 @@ class WindBasisBank:
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next."""
-        return tuple(self.instance[name] for name in ("eta", "rate", "force", "rest"))
+        return tuple(self.instance[name] for name in CARRIED)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        expand(self._shapes, self.modal.shapes.shape[1], self.instance[0], self._x)
+        _rotations(self.record, self.instance, self._shapes, self._x)
         return self._x
 
     def reset(self) -> None:
@@ -124,9 +123,18 @@ def set_table_step(table: Any, modal: ModalBank) -> None:
     )  # fmt: skip
 
 
-def step_outside(instance: Any, modal: ModalBank, rotations: Floats) -> int:
+def step_outside(instance: Any, modal: ModalBank, shapes: Floats, rotations: Floats) -> int:
     """
     Step a tree that is outside of its table on the loads of its branches.
+
+    Parameters
+    ----------
+    instance
+        Record of `instance_layout`.
+    modal
+        The modes of the tree.
+    shapes, rotations
+        As of `expand`; the rotations are written.
 
     Returns
     -------
@@ -135,6 +143,7 @@ def step_outside(instance: Any, modal: ModalBank, rotations: Floats) -> int:
 
     """
     m = modal.shapes.shape[1]
+    rotations[:] = instance["eta"][:m] @ shapes[:m] + instance["rest"] @ shapes[m:]
     wx, wy, wz = instance["wind"].tolist()
     load = float(instance["pressure"])
     modal.take(instance["eta"][:m], instance["rate"][:m], instance["force"][:m], rotations)
@@ -142,127 +151,47 @@ def step_outside(instance: Any, modal: ModalBank, rotations: Floats) -> int:
     for row, name in enumerate(("eta", "rate")):
         instance[name][:m] = modal.modal[row]
     instance["force"][:m] = modal.modal[3]
+    rest = modal.rotations() - instance["eta"][:m] @ shapes[:m]
+    instance["rest"] = np.linalg.lstsq(shapes[m:].T, rest, rcond=1e-10)[0]
     return held
 
 
 @fused
-def expand(shapes: Floats, n_modes: int, instance: Any, x: Floats) -> None:
+def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
     """
     Key rotations of an instance: by its modes and by its static rest.
 
     Parameters
     ----------
+    table, instance
+        Records of `table_layout` and `instance_layout`; the rest of the latter is written.
     shapes
         Of the modes, then of the rest, (m + r, N).
-    n_modes
-        m.
-    instance
-        Record of `instance_layout`.
     x
         Written, (N,).
 
     """
+    if not instance.outside:
+        wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        drag = instance.pressure * speed
+        if speed > 0.0:
+            fill_harmonics(wx / speed, wy / speed, wz / speed, table.degree, instance.values)
+        wind_rest(
+            table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
+            instance.values, instance.rest,
+        )  # fmt: skip
     x[:] = 0.0
-    for k in range(n_modes):
-        amount = instance.eta[k]
+    for k in range(len(shapes)):
+        n = table.n_modes
+        amount = instance.eta[k] if k < n else instance.rest[k - n]
         for i in range(len(x)):
             x[i] += shapes[k, i] * amount
-    for k in range(N_REST):
-        amount = instance.rest[k]
-        for i in range(len(x)):
-            x[i] += shapes[n_modes + k, i] * amount
 
 
 @fused
-def table_force(
-    tables: Any, x: float, y: float, z: float, push: float, drag: float,
-    eta: Floats, rate: Floats, values: Floats, room: Floats, force: Floats, rest: Floats,
-) -> None:  # fmt: skip
-    """As `_force`, of the first table, for those who try it."""
-    _force(tables[0], x, y, z, push, drag, eta, rate, values, room, force, rest)
-
-
-@fused
-def _force(
-    table: Any, x: float, y: float, z: float, push: float, drag: float,
-    eta: Floats, rate: Floats, values: Floats, room: Floats, force: Floats, rest: Floats,
-) -> None:  # fmt: skip
-    """
-    Find the modal forces of an even wind.
-
-    Parameters
-    ----------
-    table
-        Record of `table_layout`.
-    x, y, z
-        Where the wind goes, a unit vector.
-    push, drag
-        Dynamic pressure ``p U^2`` in [kg/m/s^2] and ``p U`` in [kg/m^2/s].
-    eta, rate
-        Modes and their rates, (m,).
-    values, room
-        To work in, (h,) and (3, m); the last of these gets the diagonal of the damping.
-    force, rest
-        Modal forces (m,) and amounts of the shapes of the static rest, (r,), written.
-
-    """
-    m = len(eta)
-    fill_harmonics(x, y, z, table.degree, values)
-    turn = math.atan2(y, x) * (0.5 / math.pi) * N_AZIMUTHS
-    whole = math.floor(turn)
-    share = turn - whole
-    first = int(whole) % N_AZIMUTHS
-    second = (first + 1) % N_AZIMUTHS
-    lean = 0.0
-    for i in range(m):
-        weight = (1.0 - share) * table.amount[first, i] + share * table.amount[second, i]
-        lean += weight * eta[i]
-    j = 0
-    while j < N_LEVELS - 2 and lean > table.levels[j + 1]:
-        j += 1
-    up = (lean - table.levels[j]) / (table.levels[j + 1] - table.levels[j])
-    a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up
-    off, damp, diagonal = room[0], room[1], room[2]
-    for i in range(m):
-        static = (1.0 - share) * table.static[first, i] + share * table.static[second, i]
-        off[i] = eta[i] - lean * static
-        excess = (1.0 - share) * table.excess[first, i] + share * table.excess[second, i]
-        force[i] = (
-            a * table.load[first, j, i] + b * table.load[first, j + 1, i]
-            + c * table.load[second, j, i] + d * table.load[second, j + 1, i]
-            + (push - lean) * excess
-        )  # fmt: skip
-        damp[i] = 0.0
-    for k in range(len(values)):
-        for i in range(m):
-            force[i] += values[k] * table.harmonics[k, i]
-    for k in range(m):
-        moved, slant, pace = off[k], z * eta[k], rate[k]
-        for i in range(m):
-            force[i] += moved * (
-                a * table.turning[first, j, k, i] + b * table.turning[first, j + 1, k, i]
-                + c * table.turning[second, j, k, i] + d * table.turning[second, j + 1, k, i]
-            ) + slant * (
-                (1.0 - share) * table.lean[first, k, i] + share * table.lean[second, k, i]
-            )  # fmt: skip
-            damp[i] += pace * (
-                a * table.damping[first, j, k, i] + b * table.damping[first, j + 1, k, i]
-                + c * table.damping[second, j, k, i] + d * table.damping[second, j + 1, k, i]
-            )  # fmt: skip
-    for i in range(m):
-        force[i] = push * force[i] + drag * damp[i]
-        diagonal[i] = drag * (
-            a * table.damping[first, j, i, i] + b * table.damping[first, j + 1, i, i]
-            + c * table.damping[second, j, i, i] + d * table.damping[second, j + 1, i, i]
-        )  # fmt: skip
-    for r in range(N_REST):
-        amount = (
-            a * table.rest[first, j, r] + b * table.rest[first, j + 1, r]
-            + c * table.rest[second, j, r] + d * table.rest[second, j + 1, r]
-        )  # fmt: skip
-        for k in range(len(values)):
-            amount += values[k] * table.rest_harmonics[k, r]
-        rest[r] = push * amount
+def _rotations(tables: Any, instances: Any, shapes: Floats, x: Floats) -> None:
+    expand(tables[0], instances[0], shapes, x)
 
 
 @fused
@@ -284,7 +213,7 @@ def step_instance(
     Returns
     -------
     int
-        1 where wind or lean is outside of the table: then only wind and rest are written.
+        1 where wind or lean is outside of the table: then the modes stay as they are.
 
     """
     speed = math.sqrt(wx * wx + wy * wy + wz * wz)
@@ -302,10 +231,9 @@ def step_instance(
         middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
         energy += table.stiffness[i] * middle[i] * middle[i]
-    _force(
-        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.room,
-        wanted, instance.rest,
-    )  # fmt: skip
+    wind_force(
+        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.room, wanted
+    )
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
     inside = push <= table.most_pressure and energy <= table.most_energy

@@ -1,10 +1,11 @@
 """
 The table of the model `wind_basis`: what every even wind does to the modes of a tree.
 
-In one even wind U = |U| d all branches feel one direction d, and the load is ``Q = s L(d)`` with the
-dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is each projection
-of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis for real-time
-animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of harmonics Y.
+In one even wind U = |U| d all branches feel one direction d, and the load is ``Q = s L(d)`` with
+the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is each
+projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis for
+real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
+harmonics Y.
 
 To it comes what the tree's own motion changes. A tree leans away from the wind, along the static
 deflection e(d) for the most part, by an amount a (the dynamic pressure that would hold it there).
@@ -13,7 +14,7 @@ load turns and leans with the tree) and by their rates (aerodynamic damping):
 
     F = s [Y C + load(a) + turning(a) (eta - a e) + d_z lean eta + (s - a) excess]
         + p |U| damping(a) eta'
-    x = Phi eta + V s [Y R + rest(a)]
+    x = Phi eta + V {s [Y R + rest(a) + turning_r (eta - a e)] + p |U| damping_r eta'}
 
 with V the few shapes that the static rest of the modes left out takes.
 
@@ -21,7 +22,6 @@ with V the few shapes that the static rest of the modes left out takes.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -33,12 +33,22 @@ from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway_ros.core.motion.modal import ModalBank, wind_moments
 from tree_sway_ros.core.motion.records import WORK
-
-N_AZIMUTHS, N_LEVELS, N_REST = 24, 5, 12
-"""Azimuths of the wind and levels of the lean in the table, and shapes of the static rest."""
+from tree_sway_ros.core.motion.response import tip_motion
+from tree_sway_ros.core.motion.wind_basis_force import (
+    N_AZIMUTHS,
+    N_LEVELS,
+    N_REST,
+    table_layout,
+    wind_force,
+    wind_rest,
+)
 
 SPEEDS = np.array([0.0, 7.0, 11.0, 16.0, 22.0])
-"""Winds in [m/s] whose static deflections are the levels, for a tree that bears them."""
+"""
+Winds in [m/s] whose static deflections are the levels; a share of them for a tree that bends so far
+that the table would be wrong.
+
+"""
 
 STEEPEST = np.sin(np.deg2rad(45.0))
 """Sine of the elevation up to which a wind is in the table."""
@@ -46,47 +56,14 @@ STEEPEST = np.sin(np.deg2rad(45.0))
 BEYOND = 1.6
 """Dynamic pressure up to which the table goes on, over that of the last level."""
 
-_MODES_TOGETHER = 4
-_LEAST_MODES = 12
 _ELEVATIONS = np.deg2rad([-45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0])
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
+_REST_LEVEL = 1
+_SWING = 0.3
 _DIFFERENCE = 1e-3
-_MOST_HELD = 0.01
-
-
-@cache
-def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
-    """
-    Table of one tree; modes are filled up to a multiple of four, at least twelve.
-
-    One layout serves most trees, so that the kernel is compiled once.
-
-    """
-    m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
-    a, n = N_AZIMUTHS, N_LEVELS
-    return np.dtype(
-        [
-            ("n_modes", "i8"),
-            ("degree", "i8"),
-            ("levels", "f8", (n,)),  # dynamic pressures [kg/m/s^2]
-            ("most_pressure", "f8"),  # up to which the table holds [kg/m/s^2]
-            ("most_energy", "f8"),  # twice the strain energy up to which it holds [J]
-            ("stiffness", "f8", (m,)),
-            ("harmonics", "f8", (n_harmonics, m)),
-            ("rest_harmonics", "f8", (n_harmonics, N_REST)),
-            ("static", "f8", (a, m)),  # deflection per dynamic pressure
-            ("amount", "f8", (a, m)),  # weights of the modes in the lean along it
-            ("excess", "f8", (a, m)),
-            ("lean", "f8", (a, m, m)),  # as the next ones: by the mode that moves, then the mode
-            ("load", "f8", (a, n, m)),
-            ("rest", "f8", (a, n, N_REST)),
-            ("turning", "f8", (a, n, m, m)),
-            ("damping", "f8", (a, n, m, m)),
-            ("whole", "f8", (8, m)),  # columns of the propagator of a step
-            ("half", "f8", (6, m)),  # of half a step under a constant load
-        ]
-    )
+_SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.17, 0.1)
+_MOST_WRONG = 0.02
 
 
 class WindBasisTable:
@@ -125,11 +102,13 @@ class WindBasisTable:
         table["n_modes"], table["degree"] = m, degree
         table["stiffness"] = 1.0
         table["stiffness"][:m] = bank.stiffness
-        loads, rests = self._fit_harmonics(table, degree)
-        self._set_levels(table, drag_law)
-        rest = self._fill_azimuths(table, degree, rests)
-        self._fill_rest(table, rests, rest)
-        self.error = self._tried(table, degree)
+        rests = self._fit_harmonics(table, degree)
+        for share in _SHARES:
+            self._set_levels(table, drag_law, share)
+            self._fill_azimuths(table, degree, rests)
+            self.error = self._tried(table, degree)
+            if self.error <= _MOST_WRONG:
+                break
 
     def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         """Moments of a wind of 1 kg/m^3 on a tree at x that moves at v, (N,)."""
@@ -141,8 +120,8 @@ class WindBasisTable:
         return moments
 
     def _slopes(self, at: Floats, wind: Floats, ways: Floats, *, rates: bool = False) -> Floats:
-        """Slope of the modal forces by each way (k, N) that the tree can bend or move, (k, m)."""
-        slopes = np.zeros((len(ways), self._shapes.shape[1]))
+        """Slope of the moments by each way (k, N) that the tree can bend or move, (k, N)."""
+        slopes = np.zeros_like(ways)
         for row, way in zip(slopes, ways, strict=True):
             size = _DIFFERENCE / max(float(np.abs(way).max()), 1e-12)
             step = size * way
@@ -151,7 +130,7 @@ class WindBasisTable:
             else:
                 gap = self._moments(at + step, self._still, wind)
                 gap -= self._moments(at - step, self._still, wind)
-            row[:] = gap @ self._shapes / (2.0 * size)
+            row[:] = gap / (2.0 * size)
         return slopes
 
     def _rest_of(self, moments: Floats) -> Floats:
@@ -160,7 +139,7 @@ class WindBasisTable:
         rest: Floats = bank.flexibility * moments - (moments @ bank.held.T) @ self._shapes.T
         return rest
 
-    def _fit_harmonics(self, table: Any, degree: int) -> tuple[Floats, Floats]:
+    def _fit_harmonics(self, table: Any, degree: int) -> Floats:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing="ij"
@@ -171,26 +150,20 @@ class WindBasisTable:
         values = harmonics_at(directions, degree) * weight[:, None]
         fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
         table["harmonics"][:, : table["n_modes"]] = fitted @ self._shapes
-        return fitted, self._rest_of(fitted)
+        return self._rest_of(fitted)
 
-    def _set_levels(self, table: Any, drag_law: tuple[float, float]) -> None:
-        """Set the levels no higher than what the branches bear (`ModalBank.limit`)."""
-        limit, share = self._bank.limit, 1.0
-        at_rest = np.abs([self._moments(self._still, self._still, d) for d in _SIDES])
-        while share > 0.05:
-            top = share * SPEEDS[-1]
-            moments = pressure(top, *drag_law) * top**2 * at_rest
-            if np.maximum(moments - limit, 0.0).sum() <= _MOST_HELD * moments.sum():
-                break
-            share *= 0.8
+    def _set_levels(self, table: Any, drag_law: tuple[float, float], share: float) -> None:
+        """Set the levels for a share of the usual winds, and how far the table goes on."""
         table["levels"] = [pressure(u, *drag_law) * u**2 for u in share * SPEEDS]
         table["most_pressure"] = BEYOND * table["levels"][-1]
+        table["lean"], table["most_energy"] = 0.0, 0.0
 
-    def _fill_azimuths(self, table: Any, degree: int, rests: Floats) -> Floats:
-        """Fill loads and slopes by azimuth and level; return what they add to the rest."""
+    def _fill_azimuths(self, table: Any, degree: int, rests: Floats) -> None:
+        """Fill loads and slopes by azimuth and level, then the rest."""
         m, shapes = int(table["n_modes"]), self._shapes
         stiffness = table["stiffness"][:m]
         rest = np.zeros((N_AZIMUTHS, N_LEVELS, len(shapes)))
+        by_mode = np.zeros((2, N_AZIMUTHS, m, len(shapes)))
         energy = 0.0
         for k, azimuth in enumerate(2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS):
             ahead = direction(azimuth, 0.0)
@@ -201,40 +174,58 @@ class WindBasisTable:
             table["amount"][k, :m] = static * stiffness / twice if twice > 0.0 else 0.0
             energy = max(energy, twice * table["levels"][-1] ** 2)
             way = values @ rests
-            table["excess"][k, :m] = self._slopes(self._still, ahead, way[None])[0]
+            table["excess"][k, :m] = self._slopes(self._still, ahead, way[None])[0] @ shapes
             for sign in (1.0, -1.0):
                 slant = direction(azimuth, sign * _SLOPE_AT)
                 slopes = self._slopes(self._still, slant, shapes.T)
-                table["lean"][k, :m, :m] += sign * slopes / (2.0 * np.sin(_SLOPE_AT))
+                table["lean"][k, :m, :m] += sign * slopes @ shapes / (2.0 * np.sin(_SLOPE_AT))
             upright = self._moments(self._still, self._still, ahead)
             for j, level in enumerate(table["levels"]):
                 at = level * (shapes @ static + way)
                 further = self._moments(at, self._still, ahead) - upright
                 table["load"][k, j, :m] = further @ shapes
                 rest[k, j] = self._rest_of(further[None])[0]
-                table["turning"][k, j, :m, :m] = self._slopes(at, ahead, shapes.T)
-                table["damping"][k, j, :m, :m] = self._slopes(at, ahead, shapes.T, rates=True)
+                for kind, name in enumerate(("turning", "damping")):
+                    slopes = self._slopes(at, ahead, shapes.T, rates=name == "damping")
+                    table[name][k, j, :m, :m] = slopes @ shapes
+                    if j == _REST_LEVEL:
+                        by_mode[kind, k] = self._rest_of(slopes)
         table["most_energy"] = 2.0 * energy
-        return rest
+        self._fill_rest(table, rests, rest, by_mode)
 
-    def _fill_rest(self, table: Any, rests: Floats, rest: Floats) -> None:
-        """Lay the rest out on few shapes."""
-        levels = table["levels"]
-        whole = np.vstack([levels[-1] * rests, (levels[:, None] * rest).reshape(-1, rests.shape[1])])
-        shapes = np.linalg.svd(whole, full_matrices=False)[2][:N_REST]
-        self.rest_shapes = np.zeros((N_REST, rests.shape[1]))
-        self.rest_shapes[: len(shapes)] = shapes
-        table["rest_harmonics"] = rests @ self.rest_shapes.T
-        table["rest"] = rest @ self.rest_shapes.T
+    def _fill_rest(self, table: Any, rests: Floats, rest: Floats, by_mode: Floats) -> None:
+        """Lay the rest out on the few shapes that move the tips most in winds."""
+        m, n, levels = int(table["n_modes"]), rests.shape[1], table["levels"]
+        top = levels[_REST_LEVEL]
+        moved = _SWING * top * np.abs(table["static"][:, :m]).max(axis=0)[:, None]
+        pace = moved * np.sqrt(table["stiffness"][:m] / top)[:, None]
+        parts = {
+            "rest_harmonics": (rests, top),
+            "rest": (rest, np.maximum(levels, levels[1])[:, None]),
+            "rest_turning": (by_mode[0], top * moved),
+            "rest_damping": (by_mode[1], top * pace),
+        }
+        told = np.concatenate([(part * size).reshape(-1, n) for part, size in parts.values()])
+        tips = tip_motion(self._bank.branches, told.T).reshape(-1, len(told))
+        squares, mixes = np.linalg.eigh(tips.T @ tips)
+        kept = [i for i in np.argsort(-squares)[:N_REST] if squares[i] > 1e-12 * squares[-1]]
+        share = np.zeros((len(told), N_REST))
+        share[:, : len(kept)] = mixes[:, kept] * np.sqrt(squares[kept])
+        self.rest_shapes = np.zeros((N_REST, n))
+        self.rest_shapes[: len(kept)] = mixes[:, kept].T @ told / np.sqrt(squares[kept])[:, None]
+        first = 0
+        for name, (part, size) in parts.items():
+            rows = part.size // n
+            amounts = share[first : first + rows].reshape(*part.shape[:-1], N_REST) / size
+            table[name][tuple(map(slice, amounts.shape))] = amounts
+            first += rows
 
     def _tried(self, table: Any, degree: int) -> float:
         """Try the table at leans and winds between those that it is made of."""
-        from tree_sway_ros.core.motion.wind_basis import table_force
-
         rng = np.random.default_rng(7)
         m, stiffness = int(table["n_modes"]), table["stiffness"]
         forces, room = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
-        values, rest = np.zeros(COUNT[degree]), np.zeros(N_REST)
+        values, rest, still = np.zeros(COUNT[degree]), np.zeros(N_REST), np.zeros(len(stiffness))
         wrong = right = 0.0
         for _ in range(_TRIALS):
             azimuth, elevation = rng.uniform(0.0, 2.0 * np.pi), rng.normal(0.0, 0.15)
@@ -244,10 +235,9 @@ class WindBasisTable:
             at = harmonics_at(side[None], degree)[0]
             eta = np.zeros(len(stiffness))
             eta[:m] = lean * (at @ table["harmonics"][:, :m]) / stiffness[:m]
-            table_force(
-                self.record, wind[0], wind[1], wind[2], push, 0.0, eta, room[0],
-                values, room, forces, rest,
-            )  # fmt: skip
+            _force(
+                self.record, wind[0], wind[1], wind[2], push, eta, still, values, room, forces, rest
+            )
             x = self._shapes @ eta[:m] + rest @ self.rest_shapes
             true = push * self._moments(x, self._still, wind) @ self._shapes
             wrong += float((np.square(forces[:m] - true) / stiffness[:m]).sum())
@@ -268,9 +258,6 @@ def direction(azimuth: Any, elevation: Any) -> Floats:
     return out
 
 
-_SIDES = direction(0.25 * np.pi * np.arange(8), np.zeros(8))
-
-
 def harmonics_at(directions: Floats, degree: int) -> Floats:
     """Harmonics of unit vectors (k, 3), (k, h)."""
     out = np.zeros((len(directions), COUNT[degree]))
@@ -282,3 +269,12 @@ def harmonics_at(directions: Floats, degree: int) -> Floats:
 def _fill(directions: Floats, degree: int, out: Floats) -> None:
     for i in range(len(directions)):
         fill_harmonics(directions[i, 0], directions[i, 1], directions[i, 2], degree, out[i])
+
+
+@fused
+def _force(
+    tables: Any, x: float, y: float, z: float, push: float, eta: Floats, rate: Floats,
+    values: Floats, room: Floats, force: Floats, rest: Floats,
+) -> None:  # fmt: skip
+    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, room, force)
+    wind_rest(tables[0], x, y, push, 0.0, eta, rate, values, rest)
