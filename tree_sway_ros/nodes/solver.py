@@ -56,9 +56,7 @@ class SolverNode(TreeSwayNode):
                 self.values["roughness"],
             ),
         )
-        self.simulator: Any = source.simulator(
-            settings, **self.values("fidelity", "tolerance")
-        )
+        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)

@@ -13,14 +13,19 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
-from tree_sway_ros.tools.tree_output import OUTPUT_HELP, what_was_written
+from tree_sway_ros.tools.tree_output import (
+    OUTPUT_HELP,
+    add_output_arguments,
+    output_path,
+    what_was_written,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
+    add_output_arguments(parser, OUTPUT_HELP)
     parser.add_argument(
         "--sway",
         nargs="?",
@@ -33,21 +38,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read a tree and write it."""
-    is_gltf = Path(arguments.output).suffix.lower() in GLTF_SUFFIXES
+    output = output_path(arguments)
+    is_gltf = Path(output).suffix.lower() in GLTF_SUFFIXES
     if arguments.sway is not None and not is_gltf:
         raise ParameterError(
-            f"'{arguments.output}' cannot sway", where="--sway", cure="write a .glb or .gltf file"
+            f"'{output}' cannot sway", where="--sway", cure="write a .glb or .gltf file"
         )
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f"note: {note}", file=sys.stderr)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
     if arguments.sway == "morph":
         _write_morphing(scene, arguments)
     else:
         species = scene.species if isinstance(scene, TreeFile) else None
         leaves = drawn_leaves(scene, arguments) if is_gltf else None
-        write_tree(arguments.output, scene.tree, species, leaves)
-    print(what_was_written(arguments.output, scene.tree))
+        write_tree(output, scene.tree, species, leaves)
+    print(what_was_written(output, scene.tree))
     return 0
 
 
