@@ -6,6 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.export.gltf_tree import morphing_tree
 from tree_sway_ros.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
@@ -65,7 +67,8 @@ def _write_morphing(scene: TreeFile | ForestFile, arguments: argparse.Namespace)
         raise ParameterError(
             "a forest by morph targets", where="--sway", cure="convert its trees one by one"
         )
-    simulator = scene.simulator(fidelity="modes", in_leaf=told_leaves(arguments))
+    settings = Settings(model="modes", in_leaf=told_leaves(arguments))
+    simulator = SwaySimulator(scene.tree, scene.species, settings)
     document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
     write_gltf(arguments.output, document)
     print(
