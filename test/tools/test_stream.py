@@ -3,52 +3,98 @@
 from __future__ import annotations
 
 import math
+import re
+import tracemalloc
+from collections import deque
 
 import numpy as np
 import pytest
 
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.tools.stream_monitor import StreamRecord, rate_of
+from tree_sway_ros.tools.stream_monitor import WINDOW, StreamRecord, rate_of
 from tree_sway_ros.tools.stream_text import status_line, summary
+from tree_sway_ros.tools.stream_totals import Spread, StreamTotals
 from tree_sway_ros.tools.stream_watch import checked_seconds
+
+
+STAMPS = [k / 60 for k in range(121) if k != 50]
+WINDS = [0.05 * k for k in range(41)]
+TIP, WIND = np.array([0.003, 0.0, 0.004]), np.array([3.0, 4.0, 0.0])
 
 
 @pytest.fixture
 def record() -> StreamRecord:
     """Two seconds at 60 Hz, each pose 1 ms late and one never come; wind at 20 Hz that veers."""
-    stamps = [k / 60 for k in range(121) if k != 50]
-    winds = [0.05 * k for k in range(41)]
     return StreamRecord(
-        arrival=[stamp + 0.001 for stamp in stamps],
-        stamp=stamps,
-        tip=[np.array([0.003, 0.0, 0.004])] * len(stamps),
-        wind_stamp=winds,
-        wind=[np.array([3.0, 4.0, 0.0])] * len(winds),
+        arrival=deque(stamp + 0.001 for stamp in STAMPS),
+        stamp=deque(STAMPS),
+        tip=deque([TIP] * len(STAMPS)),
+        wind_arrival=deque(WINDS),
+        wind=deque([WIND] * len(WINDS)),
     )
 
 
-def test_rates_latency_and_what_is_missing(record: StreamRecord) -> None:
-    assert record.pose_rate == pytest.approx(59.5)
-    assert record.wind_rate == pytest.approx(20.0)
+@pytest.fixture
+def totals() -> StreamTotals:
+    """The same stream, counted as it came."""
+    made = StreamTotals()
+    for stamp in STAMPS:
+        made.add_poses(stamp + 0.001, stamp, TIP)
+    for stamp in WINDS:
+        made.add_wind(stamp, WIND)
+    return made
+
+
+def test_rates_latency_and_what_is_missing(record: StreamRecord, totals: StreamTotals) -> None:
+    assert record.pose_rate == totals.arrivals.rate == pytest.approx(59.5)
+    assert record.wind_rate == totals.wind_stamps.rate == pytest.approx(20.0)
     assert record.latency(0.5) == pytest.approx(0.001)
-    assert record.missing(60.0) == 1
-    assert record.missing(30.0) < 0  # more came than should have: the rate asked for is another
+    assert totals.missing(60.0) == 1
+    assert totals.missing(30.0) < 0  # more came than should have: the rate asked for is another
 
 
 def test_nothing_has_no_rate_and_no_latency() -> None:
-    empty = StreamRecord()
-    assert (empty.pose_rate, empty.wind_rate, empty.missing(60.0)) == (0.0, 0.0, 0)
+    empty, totals = StreamRecord(), StreamTotals()
+    assert (empty.pose_rate, empty.wind_rate, totals.missing(60.0)) == (0.0, 0.0, 0)
     assert math.isnan(empty.latency(0.5))
+    assert math.isnan(totals.latency.quantile(0.5))
     assert rate_of([1.0, 1.0]) == 0.0
-    assert summary(empty, 60.0) == "no poses"
+    assert summary(totals, 60.0) == "no poses"
 
 
-def test_since_keeps_what_came_then(record: StreamRecord) -> None:
-    latest = record.since(1.0)
-    assert len(latest.arrival) == len(latest.stamp) == len(latest.tip) == 61
-    assert len(latest.wind) == 21
-    assert latest.missing(60.0) == 0
-    assert record.since(math.inf).arrival == []
+def test_a_record_forgets_what_is_old(record: StreamRecord) -> None:
+    record.forget(1.0)
+    assert len(record.arrival) == len(record.stamp) == len(record.tip) == 61
+    assert len(record.wind) == 21
+    record.forget(math.inf)
+    assert not record.arrival
+    assert not record.wind
+
+
+def test_quantiles_of_a_spread_are_those_of_the_times() -> None:
+    times = np.random.default_rng(5).lognormal(math.log(3e-4), 1.0, 20_000)
+    spread = Spread()
+    for time in times:
+        spread.add(float(time))
+    for share in (0.05, 0.5, 0.95, 0.999):
+        assert spread.quantile(share) == pytest.approx(np.quantile(times, share), rel=0.012)
+    assert spread.quantile(1.0) == times.max()
+
+
+def test_a_day_of_a_stream_takes_no_more_memory_than_a_second() -> None:
+    def size_after(seconds: int) -> int:
+        tracemalloc.start()
+        monitor_record, totals = StreamRecord(), StreamTotals()
+        for frame in range(60 * seconds):
+            monitor_record.arrival.append(frame / 60)
+            monitor_record.stamp.append(frame / 60)
+            monitor_record.forget(frame / 60 - WINDOW)
+            totals.add_poses(frame / 60, frame / 60, TIP)
+        size = tracemalloc.get_traced_memory()[0]
+        tracemalloc.stop()
+        return size
+
+    assert size_after(300) < size_after(10) + 2_000
 
 
 def test_a_line_about_now(record: StreamRecord) -> None:
@@ -80,12 +126,15 @@ def test_winds_are_named_by_where_they_come_from(
     assert (f"from {name} at" if name else "calm at") in " ".join(status_line(record, 0.0).split())
 
 
-def test_a_summary_says_it_all(record: StreamRecord) -> None:
-    text = summary(record, 60.0)
+def test_a_summary_says_it_all(totals: StreamTotals) -> None:
+    text = summary(totals, 60.0)
     assert "poses    120 at 59.50 Hz (wanted 60), 1 missing" in text
+    assert re.search(r"latency  p50 (0.99|1.0\d), p95 (0.99|1.0\d), max 1.00 ms", text)
     assert "mean 5.00, max 5.00 m/s, from SW" in text
     assert "mean +3.0 east, +0.0 north, +4.0 up" in text
-    whole = StreamRecord(record.stamp[:50], record.stamp[:50])
+    whole = StreamTotals()
+    for stamp in STAMPS[:50]:
+        whole.add_poses(stamp, stamp)
     assert "none missing" in summary(whole, 60.0)
 
 

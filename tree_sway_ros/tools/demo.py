@@ -14,10 +14,12 @@ from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
+from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument
+from tree_sway_ros.tools.only_demo import only_demo
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
+from tree_sway_ros.tools.stream_watch import checked_seconds, watch
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -64,24 +66,22 @@ def run(arguments: argparse.Namespace) -> int:
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    try:
-        with interrupted_once(), Composition({}) as nodes:
-            monitor = StreamMonitor(nodes.context, tree)
+    with Ending() as ending, only_demo(), Composition({}) as nodes:
+        monitor = StreamMonitor(nodes.context, tree)
 
-            def goes_on() -> bool:
-                nodes.check()
-                return not nodes.is_done
+        def goes_on() -> bool:
+            nodes.check()
+            return not nodes.is_done
 
-            try:
-                monitor.expect_silence()
-                for name, values in _nodes(arguments).items():
-                    nodes.add(name, values)
-                begin = watch(monitor, seconds, goes_on)
-            finally:
-                monitor.close()
-    except KeyboardInterrupt:
-        return 0
-    print(summary(monitor.record.since(begin), arguments.rate))
+        try:
+            monitor.expect_silence()
+            for name, values in _nodes(arguments).items():
+                nodes.add(name, values)
+            ending.limit = LONGEST
+            watch(monitor, seconds, goes_on)
+            print(summary(monitor.totals, arguments.rate), flush=True)
+        finally:
+            monitor.close()
     return 0
 
 
