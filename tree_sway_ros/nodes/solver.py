@@ -50,6 +50,8 @@ class SolverNode(TreeSwayNode):
                 "(where none are kept they are compiled, up to a minute)"
             )
             self._make(source)
+        for doubt in source.warnings:
+            self.get_logger().warning(doubt)
         for note in source.notes:
             self.get_logger().info(note)
         self.pacer.start()
@@ -61,7 +63,7 @@ class SolverNode(TreeSwayNode):
     def _open(self) -> Any:
         source = open_scene(self.values["tree"])
         if self.values["species"]:
-            source = source.of_species(open_species(self.values["species"]))
+            source = source.of_species(open_species(self.values["species"])).checked()
         return source
 
     def _make(self, source: Any) -> None:
