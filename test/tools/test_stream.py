@@ -16,7 +16,6 @@ from tree_sway_ros.tools.stream_text import status_line, summary
 from tree_sway_ros.tools.stream_totals import Spread, StreamTotals
 from tree_sway_ros.tools.stream_watch import checked_seconds
 
-
 STAMPS = [k / 60 for k in range(121) if k != 50]
 WINDS = [0.05 * k for k in range(41)]
 TIP, WIND = np.array([0.003, 0.0, 0.004]), np.array([3.0, 4.0, 0.0])
