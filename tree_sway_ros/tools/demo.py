@@ -21,10 +21,10 @@ from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument
-from tree_sway_ros.tools.only_demo import only_demo
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, watch
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.only_demo import only_demo
+from tree_sway_ros.tools.stream.text import summary
+from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 

@@ -11,9 +11,9 @@ import argparse
 
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.ros.process.spin import init, require_rclpy
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, watch
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.text import summary
+from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

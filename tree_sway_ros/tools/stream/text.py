@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.tools.stream_monitor import StreamRecord
-from tree_sway_ros.tools.stream_totals import StreamTotals
+from tree_sway_ros.tools.stream.monitor import StreamRecord
+from tree_sway_ros.tools.stream.totals import StreamTotals
 
 _COMPASS = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
 

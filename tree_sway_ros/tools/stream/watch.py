@@ -10,8 +10,8 @@ import time
 from collections.abc import Callable
 
 from tree_sway_ros.errors import ParameterError, TransportError
-from tree_sway_ros.tools.stream_monitor import WINDOW, StreamMonitor
-from tree_sway_ros.tools.stream_text import status_line
+from tree_sway_ros.tools.stream.monitor import WINDOW, StreamMonitor
+from tree_sway_ros.tools.stream.text import status_line
 
 _SETTLING = 0.5
 _LIVE_PERIOD, _LOG_PERIOD = 0.2, 2.0

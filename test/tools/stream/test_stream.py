@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.tools.stream_monitor import WINDOW, StreamRecord, rate_of
-from tree_sway_ros.tools.stream_text import status_line, summary
-from tree_sway_ros.tools.stream_totals import Spread, StreamTotals
-from tree_sway_ros.tools.stream_watch import checked_seconds
+from tree_sway_ros.tools.stream.monitor import WINDOW, StreamRecord, rate_of
+from tree_sway_ros.tools.stream.text import status_line, summary
+from tree_sway_ros.tools.stream.totals import Spread, StreamTotals
+from tree_sway_ros.tools.stream.watch import checked_seconds
 
 STAMPS = [k / 60 for k in range(121) if k != 50]
 WINDS = [0.05 * k for k in range(41)]

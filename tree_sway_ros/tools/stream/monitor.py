@@ -26,7 +26,7 @@ from tree_sway_ros.ros.process.topics import (
     message_class,
     qos_profile,
 )
-from tree_sway_ros.tools.stream_totals import StreamTotals
+from tree_sway_ros.tools.stream.totals import StreamTotals
 from tree_sway_ros.view.projection import ends_of_poses
 
 WINDOW = 2.0
