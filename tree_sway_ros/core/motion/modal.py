@@ -88,7 +88,8 @@ class ModalBank:
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self._half[:, 6] + self._half[:, 7]
-        self._loads["compliance"][block, lane] = self._participation @ velocity
+        compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads
+        self._loads["compliance"][block, lane] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """

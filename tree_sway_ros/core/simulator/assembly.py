@@ -29,6 +29,7 @@ from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
@@ -167,6 +168,7 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping(bool(settings.in_leaf))
 
+    @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
         Build the oscillators of a model.
@@ -231,6 +233,7 @@ class CalibratedTree:
             carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
         )
 
+    @one_thread()
     def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
         tree, species, settings = self.tree, self.species, self.settings
         speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
