@@ -17,12 +17,15 @@ from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import Status
+from tree_sway_ros.ros.reports.diagnostics import WARN, Status
 from tree_sway_ros.ros.reports.sway_report import SwayReport
 from tree_sway_ros.ros.timing.pacer import Pacer, Tick
 from tree_sway_ros.ros.timing.stepping import Stepper
 from tree_sway_ros.ros.wire.pose_stream import PoseStream
 from tree_sway_ros.ros.wire.wind_messages import wind_from_message
+
+_FARTHEST_CAMERA = 1e6
+"""Along each axis [m]."""
 
 
 class SolverNode(TreeSwayNode):
@@ -40,7 +43,7 @@ class SolverNode(TreeSwayNode):
         super().__init__("solver", **options)
         source = open_scene(self.values["tree"])
         if self.values["species"]:
-            source = source.of_species(open_species(self.values["species"]))
+            source = source.of_species(open_species(self.values["species"])).checked()
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
@@ -57,7 +60,8 @@ class SolverNode(TreeSwayNode):
             settings, **self.values("fidelity", "tolerance")
         )
         self._camera: Any = None
-        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
+        self._refused_cameras = 0
+        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
         tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
         self._tell_demand()
@@ -74,6 +78,8 @@ class SolverNode(TreeSwayNode):
         self.report_with(source.tree.name, self._statuses)
         self.on_close(self.pacer.stop)
         self.pacer.start()
+        for doubt in source.warnings:
+            self.get_logger().warning(doubt)
         for note in source.notes:
             self.get_logger().info(note)
 
@@ -90,7 +96,13 @@ class SolverNode(TreeSwayNode):
 
     def _see(self, message: Any) -> None:
         at = message.pose.position
-        self._camera = (at.x, at.y, at.z)
+        camera = (at.x, at.y, at.z)
+        if not all(
+            abs(component) <= _FARTHEST_CAMERA for component in camera
+        ):  # NaN is refused, too
+            self._refused_cameras += 1
+            return
+        self._camera = camera
         self.on_change({})
 
     def on_change(self, values: dict[str, Any]) -> None:
@@ -101,6 +113,11 @@ class SolverNode(TreeSwayNode):
     def _tell_demand(self) -> None:
         wanted = self.values("tolerance", "tolerance_pixels", "focal_length", "budget")
         tell_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
+
+    def slip(self, error: Exception) -> None:
+        """Go on from rest: what was amid a step is not to be trusted."""
+        super().slip(error)
+        self._stepper.request(self.simulator.reset)
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
@@ -120,4 +137,10 @@ class SolverNode(TreeSwayNode):
         return response
 
     def _statuses(self) -> list[Status]:
-        return self._sway_report.statuses(self._stepper, self.pacer, self.stream.frames)
+        statuses = self._sway_report.statuses(self._stepper, self.pacer, self.stream.frames)
+        if self._refused_cameras:
+            text = (
+                f"{self._refused_cameras} poses of the camera refused: not finite or too far away"
+            )
+            statuses.append(Status("camera", WARN, text, {"refused": self._refused_cameras}))
+        return statuses

@@ -21,6 +21,8 @@ def run(arguments: argparse.Namespace) -> int:
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f"note: {note}", file=sys.stderr)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
     species = scene.species if isinstance(scene, TreeFile) else None
     write_tree_file(arguments.output, scene.tree, species)
     return 0

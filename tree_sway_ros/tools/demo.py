@@ -8,6 +8,7 @@ What it prints is what a subscriber receives, not what the solver believes to ha
 from __future__ import annotations
 
 import argparse
+import sys
 
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.trees.source import open_scene
@@ -59,7 +60,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
-    tree = open_scene(arguments.tree).tree
+    scene = open_scene(arguments.tree)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
+    tree = scene.tree
     print(
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 import numpy as np
 
 from tree_sway_ros.core.growth.grow import HABITS, grow
 from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
 
@@ -44,5 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.habit,
         rng=np.random.default_rng(arguments.seed),
     )
+    grown = TreeFile(tree, species, tree.name).checked()
+    for doubt in grown.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
     write_tree_file(arguments.output, tree, species)
     return 0

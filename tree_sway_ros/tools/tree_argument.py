@@ -80,12 +80,14 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
             where=scene.source,
             cure="say --species, or give trees files with wood of their own",
         )
-    return scene.of_species(open_species(arguments.species)) if arguments.species else scene
+    if not arguments.species:
+        return scene
+    return scene.of_species(open_species(arguments.species)).checked()
 
 
 def _of_wood(tree_file: TreeFile, arguments: argparse.Namespace) -> TreeFile:
     species = open_species(arguments.species) if arguments.species else tree_file.species
-    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments)))
+    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
 
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
