@@ -51,6 +51,16 @@ def why_no_compiler() -> str:
     """Why kernels cannot be compiled here, in a few words; empty where they can."""
     if os.environ.get(PLAIN_VARIABLE, "0") not in ("", "0"):
         return f"{PLAIN_VARIABLE} is set"
+    reason = _what_is_wrong_with_numba()
+    if reason:
+        _complain(
+            f"{reason}: trees are solved in numpy, some 100 times slower (3 ms for a frame of 1,000 "
+            "segments), and the model 'segments' not at all; install numba 0.59 or later"
+        )
+    return reason
+
+
+def _what_is_wrong_with_numba() -> str:
     try:
         found = version("numba")
     except PackageNotFoundError:
