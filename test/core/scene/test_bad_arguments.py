@@ -26,7 +26,7 @@ def simulator(tree, kind, **changes):
     if kind == "auto":
         return AdaptiveSimulator(tree, wood, Settings(**changes))
     if kind == "forest":
-        return Forest([PlacedTree("one", tree), PlacedTree("two", tree, (3.0, 0.0, 0.0))])
+        return Forest([PlacedTree("one", tree), PlacedTree("two", tree, 3.0)])
     return SwaySimulator(tree, wood, Settings(model=kind, n_modes=4, **changes))
 
 
@@ -80,7 +80,7 @@ def test_the_tip_is_told_without_placing(sim):
     told = np.array(sim.tip_displacement)
     sim.place()
     assert (told == sim.tip_displacement).all()
-    assert told.any() == (sim.model != "frozen")
+    assert (np.abs(told).max() > 1e-6) == (sim.model != "frozen")
 
 
 @pytest.mark.parametrize("dt", [0.0, -DT, np.nan, np.inf])

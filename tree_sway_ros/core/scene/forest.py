@@ -22,7 +22,7 @@ from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
@@ -181,6 +181,7 @@ class Forest:
             A step that is not above 0 or not finite.
 
         """
+        refuse_time_step(dt)
         status = OK
         x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         # The history must not remember what no tree would take.
