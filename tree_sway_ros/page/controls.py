@@ -6,7 +6,7 @@ What a viewer may change: each control with its range, and how a change is appli
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -110,6 +110,12 @@ class ControlPanel:
     def values(self) -> dict[str, Any]:
         """Values by name, actions left out."""
         return {c.name: c.value for c in self._controls.values() if not c.is_action}
+
+    def update(self, values: Mapping[str, Any]) -> None:
+        """Note values that were changed from elsewhere; names that are no control are left out."""
+        for name, value in values.items():
+            if name in self._controls:
+                self._controls[name] = replace(self._controls[name], value=value)
 
     def set(self, name: Any, value: Any) -> str | None:
         """Change something; returns why not, None if it was done."""

@@ -56,11 +56,18 @@ def describe_scene(
     parts = [_branches(each) for each in simulators]
     arrays: dict[str, Any] = _joined(parts)
     trees: list[dict[str, Any]] = []
-    coordinates, key, segment = 0, 0, 0
-    blocks = []
+    coordinates = key = 0
+    blocks: list[list[int]] = []
+    # Trees of one shape share a matrix, which is sent once.
+    place_of: dict[int, int] = {}
+    matrices: list[Any] = []
     for each, basis in zip(simulators, bases, strict=True):
         rows, columns = basis.matrix.shape
-        blocks.append([key, key + rows, coordinates, coordinates + columns])
+        if id(basis) not in place_of:
+            place_of[id(basis)] = sum(len(matrix) for matrix in matrices)
+            matrices.append(_float32(basis.matrix.ravel()))
+        at = place_of[id(basis)]
+        blocks.append([key, key + rows, coordinates, coordinates + columns, at])
         tree = each.tree
         trees.append(
             {
@@ -74,9 +81,9 @@ def describe_scene(
                 "basis_error": float(basis.error.greatest),
             }
         )
-        coordinates, key, segment = coordinates + columns, key + rows, segment + tree.n_segments
+        coordinates, key = coordinates + columns, key + rows
     arrays["basis_block"] = np.array(blocks, dtype=np.int32)
-    arrays["basis_matrix"] = _float32(np.concatenate([basis.matrix.ravel() for basis in bases]))
+    arrays["basis_matrix"] = np.concatenate(matrices)
     arrays["basis_scale"] = _float32(np.concatenate([basis.scale for basis in bases]))
     header: dict[str, Any] = {
         "format": "tree_sway description",
@@ -93,13 +100,17 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
+def placing_of(simulator: Any) -> Any:
+    """What a simulator of one tree places its segments by, a `Bank`."""
+    return getattr(simulator, "shown", simulator).bank
+
+
 def _branches(simulator: Any) -> dict[str, Any]:
     """
     Arrays of one tree: how each branch of the whole tree is placed.
 
     """
-    shown = getattr(simulator, "shown", simulator)
-    bank, tree = shown._bank, simulator.tree
+    bank, tree = placing_of(simulator), simulator.tree
     n_columns = bank.segments["slope"].shape[1]
     arrays = _at_rest(tree, n_columns)
     record_at = {int(first): i for i, first in enumerate(bank.branches["first"])}

@@ -88,13 +88,11 @@ class Placer:
         parent = arrays["branch_parent"].astype(np.int64)
         self._n = int(first[-1])
         self._scale = arrays["basis_scale"].astype(np.float64)
-        blocks, at = [], 0
-        for block in arrays["basis_block"].tolist():
-            rows, columns = block[1] - block[0], block[3] - block[2]
-            part = arrays["basis_matrix"][at : at + rows * columns].astype(np.float64)
-            blocks.append((tuple(block), part.reshape(rows, columns)))
-            at += rows * columns
-        self._blocks = blocks
+        self._blocks = []
+        for key, key_end, begin, end, at in arrays["basis_block"].tolist():
+            shape = key_end - key, end - begin
+            part = arrays["basis_matrix"][at : at + shape[0] * shape[1]].astype(np.float64)
+            self._blocks.append(((key, key_end, begin, end), part.reshape(shape)))
         self._n_keys = int(arrays["basis_block"][:, 1].max())
         roots = np.flatnonzero(parent < 0)
         ends = np.append(roots[1:], len(parent))

@@ -199,6 +199,23 @@ class PageServer:
             self._is_woken = True
             self._call(self._wake_all)
 
+    def tell(self, content: dict[str, Any], values: dict[str, Any] | None = None) -> None:
+        """
+        Tell all pages something, from any thread.
+
+        Parameters
+        ----------
+        content
+            What JSON can hold.
+        values
+            Controls that have other values now.
+
+        """
+        if values is not None:
+            self._panel.update(values)
+            content = {**content, "values": self._panel.values()}
+        self._call(lambda: self._tell_all(content))
+
     def _call(self, action: Callable[[], None]) -> None:
         try:
             self._loop.call_soon_threadsafe(action)

@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 from tree_sway_ros.errors import TreeSwayError
 
 COMMANDS: dict[str, str] = {
+    "show": "a tree in wind on a page of the browser, without ROS",
     "demo": "a tree sways in wind, all nodes in one process over real DDS",
     "listen": "count the poses that a solver in another process streams",
     "info": "what a tree is: size, masses, natural frequencies",

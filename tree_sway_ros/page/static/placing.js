@@ -38,8 +38,8 @@ export class Placer {
   _expand(coordinates) {
     const { basis_block: blocks, basis_matrix: matrix } = this.description.arrays;
     const out = this.rotations;
-    let at = 0;
-    for (let b = 0; b < blocks.length; b += 4) {
+    for (let b = 0; b < blocks.length; b += 5) {
+      let at = blocks[b + 4];
       const first = blocks[b + 2];
       const end = blocks[b + 3];
       for (let row = blocks[b]; row < blocks[b + 1]; row++) {

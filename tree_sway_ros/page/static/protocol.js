@@ -88,7 +88,7 @@ export function decodeDescription(data) {
   }
   const blocks = arrays.basis_block;
   let nKeys = 0;
-  for (let i = 1; i < blocks.length; i += 4) nKeys = Math.max(nKeys, blocks[i]);
+  for (let i = 1; i < blocks.length; i += 5) nKeys = Math.max(nKeys, blocks[i]);
   const nBranches = arrays.branch_parent.length;
   return {
     name: header.name,
