@@ -125,15 +125,15 @@ def _branches(simulator: Any) -> dict[str, Any]:
         arrays["branch_twists"][branch] = record["n_coordinates"] - 2 * record["n_pairs"]
         arrays["branch_frame"][branch] = record["frame"]
         arrays["branch_skew"][branch] = record["skew"], record["tip_skew"]
-        arrays["branch_seat_slope"][branch] = record["seat_slope"]
+        arrays["branch_base_slope"][branch] = record["base_slope"]
         arrays["segment_slope"][here] = bank.segments["slope"][rows, :, record["lane"]]
         arrays["segment_tip_slope"][here] = bank.segments["tip_slope"][rows, record["lane"]]
     if bank.frozen is not None:
         top_at = {int(first): t for t, first in enumerate(bank.frozen.rows[:, 1])}
         for branch, first in enumerate(tree.branch_first[:-1].tolist()):
             if first in top_at:
-                slopes = bank.frozen.seat_slope[top_at[first]]
-                arrays["branch_seat_slope"][branch] = slopes[:n_columns]
+                slopes = bank.frozen.base_slope[top_at[first]]
+                arrays["branch_base_slope"][branch] = slopes[:n_columns]
     return arrays
 
 
@@ -148,22 +148,22 @@ def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
     chord[:-1] = tree.start[1:] - tree.start[:-1]
     last = tree.branch_first[1:] - 1
     chord[last] = tree.end[last] - tree.start[last]
-    seat = tree.segment_parent[tree.branch_first[:-1]]
+    under = tree.segment_parent[tree.branch_first[:-1]]
     offset = tree.start[tree.branch_first[:-1]].copy()
-    for branch in np.flatnonzero(seat >= 0):
-        w, x, y, z = rest[seat[branch]]
-        away = offset[branch] - tree.start[seat[branch]]
+    for branch in np.flatnonzero(under >= 0):
+        w, x, y, z = rest[under[branch]]
+        away = offset[branch] - tree.start[under[branch]]
         offset[branch] = rotated.py_func(w, -x, -y, -z, *away)  # type: ignore[attr-defined]
     return {
         "branch_parent": tree.branch_parent.astype(np.int32),
-        "branch_seat": seat.astype(np.int32),
+        "branch_base_segment": under.astype(np.int32),
         "branch_first": tree.branch_first[:-1].astype(np.int32),
         "branch_coordinate": np.full(b, RIGID, dtype=np.int32),
         "branch_pairs": np.zeros(b, dtype=np.uint8),
         "branch_twists": np.zeros(b, dtype=np.uint8),
         "branch_frame": np.zeros((b, 3, 3), dtype=np.float32),
         "branch_skew": np.zeros((b, 2), dtype=np.float32),
-        "branch_seat_slope": np.zeros((b, n_columns), dtype=np.float32),
+        "branch_base_slope": np.zeros((b, n_columns), dtype=np.float32),
         "branch_offset": _float32(offset),
         "segment_slope": np.zeros((n, n_columns), dtype=np.float32),
         "segment_tip_slope": np.zeros(n, dtype=np.float32),
@@ -184,13 +184,13 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     columns = max(part["segment_slope"].shape[1] for part in parts)
     branch = segment = coordinate = 0
     for part in parts:
-        for name in ("branch_seat_slope", "segment_slope"):
+        for name in ("branch_base_slope", "segment_slope"):
             missing = columns - part[name].shape[1]
             part[name] = np.pad(part[name], ((0, 0), (0, missing)))
         counts = 2 * part["branch_pairs"].astype(int) + part["branch_twists"]
         for name, shift in (
             ("branch_parent", branch),
-            ("branch_seat", segment),
+            ("branch_base_segment", segment),
             ("branch_coordinate", coordinate),
         ):
             part[name] = np.where(part[name] >= 0, part[name] + shift, part[name]).astype(np.int32)

@@ -116,7 +116,7 @@ class Placer:
         branches = np.zeros(n_branches, dtype=BRANCH)
         branches["block"], branches["lane"], n_records = lanes(shape, [])  # type: ignore[arg-type]
         branches["parent"] = shape.branch_parent
-        branches["seat"] = np.where(parent[own] < 0, -1, arrays["branch_seat"][own] - start)
+        branches["base_segment"] = np.where(parent[own] < 0, -1, arrays["branch_base_segment"][own] - start)
         branches["first"], branches["end"] = shape.branch_first[:-1], shape.branch_first[1:]
         is_rigid = arrays["branch_coordinate"][own] < 0
         branches["coordinate"] = np.where(
@@ -127,7 +127,7 @@ class Placer:
         columns = arrays["segment_slope"].shape[1]
         branches["frame"] = arrays["branch_frame"][own]
         branches["skew"], branches["tip_skew"] = arrays["branch_skew"][own].T
-        branches["seat_slope"][:, :columns] = arrays["branch_seat_slope"][own]
+        branches["base_slope"][:, :columns] = arrays["branch_base_slope"][own]
         branches["offset"] = arrays["branch_offset"][own]
         segments = np.zeros(n_records, dtype=SEGMENT)
         segments["rest"][:, 0] = 1.0

@@ -66,7 +66,7 @@ export class Placer {
     if (parent >= 0) {
       const p = 4 * parent;
       [bw, bx, by, bz] = [bases[p], bases[p + 1], bases[p + 2], bases[p + 3]];
-      if (this._seatTurn(branch, parent)) {
+      if (this._baseTurn(branch, parent)) {
         const { w, i, j, k } = turnOf;
         const qw = bw * w - bx * i - by * j - bz * k;
         const qx = bw * i + bx * w + by * k - bz * j;
@@ -74,17 +74,17 @@ export class Placer {
         bz = bw * k + bx * j - by * i + bz * w;
         [bw, bx, by] = [qw, qx, qy];
       }
-      const seat = 7 * arrays.branch_seat[branch];
-      const sx = poses[seat + 3];
-      const sy = poses[seat + 4];
-      const sz = poses[seat + 5];
-      const sw = poses[seat + 6];
+      const under = 7 * arrays.branch_base_segment[branch];
+      const sx = poses[under + 3];
+      const sy = poses[under + 4];
+      const sz = poses[under + 5];
+      const sw = poses[under + 6];
       const tx = 2 * (sy * pz - sz * py);
       const ty = 2 * (sz * px - sx * pz);
       const tz = 2 * (sx * py - sy * px);
-      px += poses[seat] + sw * tx + sy * tz - sz * ty;
-      py += poses[seat + 1] + sw * ty + sz * tx - sx * tz;
-      pz += poses[seat + 2] + sw * tz + sx * ty - sy * tx;
+      px += poses[under] + sw * tx + sy * tz - sz * ty;
+      py += poses[under + 1] + sw * ty + sz * tx - sx * tz;
+      pz += poses[under + 2] + sw * tz + sx * ty - sy * tx;
     }
     const own = 4 * branch;
     bases[own] = bw;
@@ -185,14 +185,14 @@ export class Placer {
    * @param {number} branch
    * @param {number} parent
    */
-  _seatTurn(branch, parent) {
+  _baseTurn(branch, parent) {
     const { arrays, nSlopes } = this.description;
     const x = this.rotations;
     const first = arrays.branch_coordinate[parent];
     if (first < 0) return false;
     const pairs = arrays.branch_pairs[parent];
     const twists = arrays.branch_twists[parent];
-    const slope = arrays.branch_seat_slope;
+    const slope = arrays.branch_base_slope;
     const at = branch * nSlopes;
     const t = Math.min(x[first] ** 2 + x[first + 1] ** 2, STRETCH_TO);
     const main = slope[at] * (1 + t * arrays.branch_skew[2 * parent]);
