@@ -31,7 +31,7 @@ STOREYS = {
     "rotation": 2, "wind": 2, "branch": 2, "oscillators": 2, "growth": 2,
     "leaves": 3, "reduction": 3,
     "motion": 4,
-    "reference": 5,
+    "reference": 5, "state": 5,
     "simulator": 6,
     "fidelity": 7, "identification": 7,
     "scene": 8,

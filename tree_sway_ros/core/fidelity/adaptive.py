@@ -15,6 +15,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,12 +25,16 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.rotation_fit import coordinates_within
+from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
+from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
+from tree_sway_ros.errors import StateError
 
 RUN_IN = 10.0
 """How long a new model sways unseen in [s]."""
@@ -42,7 +48,7 @@ REVIEW = 2.0
 _SPARE = 2.0 / 3.0
 
 
-class AdaptiveSimulator:
+class AdaptiveSimulator(KeepsState):
     """
     A tree on the least model that its scene needs; otherwise as `SwaySimulator`.
 
@@ -80,6 +86,7 @@ class AdaptiveSimulator:
         self._expected = expected or WindClimate.steady(8.0, 0.2)
         self._tracker = ClimateTracker()
         self._built: dict[str, SwaySimulator] = {}
+        self._among_whole: dict[str, Any] = {}
         self.choice = self._choose(self._expected)
         for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
             self._simulator(estimate)  # now, for a change must not hold up the stream
@@ -149,6 +156,65 @@ class AdaptiveSimulator:
             self.review()
         return status
 
+    @cached_property
+    def _joined(self) -> Bank:
+        """What places the key rotations of the whole tree, whatever the model in use."""
+        return self.ladder.whole.at_rest("coupled")
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,), whatever the model."""
+        return self._joined.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def rotations(self) -> Floats:
+        """Key rotations of the whole tree in [rad], (N,), on the way from one model to the next."""
+        shown = self._whole_rotations(self._shown)
+        share = self._faded
+        if self._next is not None and share > 0.0:
+            shown += share * (self._whole_rotations(self._next) - shown)
+        return shown
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations of the whole tree, (n, 7)."""
+        poses = np.empty_like(self._poses) if out is None else out
+        self._joined.place(rotations, self.tree.start[0], poses)
+        return poses
+
+    def state(self) -> TreeState:
+        """Return all that the model in use carries from one step to the next."""
+        name = self._name_of(self._shown)
+        return replace(self._shown.state(), model=name, digest=self.digest())
+
+    def set_state(self, state: TreeState) -> None:
+        """Go on from a state, at once on the model that it is of; see `KeepsState.set_state`."""
+        simulator = self._built.get(state.model)
+        if simulator is None or state.digest != self.digest():
+            raise StateError(
+                f"a state of tree '{state.tree}', model '{state.model}', settings {state.digest}",
+                where=self.tree.name,
+                cure=f"this is tree '{self.tree.name}' with settings {self.digest()} and models: "
+                + ", ".join(self._built),
+            )
+        simulator.set_state(replace(state, model=simulator.model, digest=simulator.digest()))
+        self._shown, self._next = simulator, None
+        estimates = self.ladder.estimates(self._tracker.climate)
+        self.choice = next(each for each in estimates if each.name == state.model)
+
+    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
+        """Poses of a state, (n, 7); the simulator stays as it is."""
+        kept = self._shown, self._next, self.choice
+        theirs = self._built.get(state.model, self._shown)
+        before = theirs.state()
+        self.set_state(state)
+        rotations = self._whole_rotations(self._shown)
+        theirs.set_state(before)
+        self._shown, self._next, self.choice = kept
+        return self.place_rotations(rotations, out)
+
     def review(self) -> Estimate:
         """
         Look at the choice again: call it when the tolerance has changed. Returns what is chosen.
@@ -166,9 +232,8 @@ class AdaptiveSimulator:
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""
         poses = self._shown.place(self._poses if out is None else out)
-        share = (self._next_age - RUN_IN) / CROSS_FADE
-        if self._next is not None and share > 0.0:
-            _mix(poses, self._next.place(self._mixed), share * share * (3.0 - 2.0 * share))
+        if self._next is not None and self._faded > 0.0:
+            _mix(poses, self._next.place(self._mixed), self._faded)
         return poses
 
     def reset(self) -> None:
@@ -195,6 +260,25 @@ class AdaptiveSimulator:
             careful = _least(affordable, _SPARE * self.tolerance)
             return careful if careful is not None and careful.cost < same.cost else same
         return wanted
+
+    @property
+    def _faded(self) -> float:
+        """How far the picture has gone over to the next model."""
+        share = max((self._next_age - RUN_IN) / CROSS_FADE, 0.0)
+        return share * share * (3.0 - 2.0 * share)
+
+    def _whole_rotations(self, simulator: SwaySimulator) -> Floats:
+        """Key rotations of a model among those of the whole tree, (N,), a new array."""
+        name = self._name_of(simulator)
+        if name not in self._among_whole:
+            self._among_whole[name] = coordinates_within(
+                simulator.joints, self.ladder.moving(name), self.joints
+            )
+        rotations: Floats = self._among_whole[name] @ simulator.rotations()
+        return rotations
+
+    def _name_of(self, simulator: SwaySimulator) -> str:
+        return next(name for name, each in self._built.items() if each is simulator)
 
     def _simulator(self, wanted: Estimate) -> SwaySimulator:
         if wanted.name not in self._built:

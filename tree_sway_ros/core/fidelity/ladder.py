@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.fidelity.estimate import Estimate, model_name
 from tree_sway_ros.core.fidelity.frame_cost import frame_cost
 from tree_sway_ros.core.fidelity.quiet_branches import quiet_sets
@@ -102,6 +102,18 @@ class FidelityLadder:
     def calibrated(self, estimate: Estimate) -> CalibratedTree:
         """Return the tree, calibrated and frozen as an estimate has it."""
         return self._trees[self._models[estimate.name].share]
+
+    @property
+    def whole(self) -> CalibratedTree:
+        """The tree, calibrated, nothing frozen."""
+        return self._trees[0.0]
+
+    def moving(self, name: str) -> Ints:
+        """Branches that the model of this name moves, (m,)."""
+        calibrated = self._trees[self._models[name].share]
+        if isinstance(calibrated, PartlyFrozenTree):
+            return calibrated.pruning.moving
+        return np.arange(self.tree.n_branches)
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """

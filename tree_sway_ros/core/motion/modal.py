@@ -129,6 +129,10 @@ class ModalBank:
         swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
         return np.asarray(swinging, dtype=np.complex128)
 
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
+        return self.modal[:4], self.state[0], self._air["slip"]
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
         _expand(self._shapes, self._flexibility, self.modal, self.state)

@@ -118,6 +118,10 @@ class UncoupledBank:
         flexibility: NDArray[np.complex128] = np.repeat(1.0 / impedance, 2, axis=0)
         return moments[:, :, None] * flexibility[:, None, :]
 
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
+        return self.x, self.v, self._sway["slip"], self._sway["load"]
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
         return self.x

@@ -21,6 +21,7 @@ from tree_sway_ros.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.motion.response import Responding
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
@@ -46,6 +47,9 @@ class Oscillators(Responding, Protocol):
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step under a mean wind [m/s]; returns how many loads were held."""
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -81,6 +85,10 @@ class Frozen:
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Zeros, (N, k, f)."""
         return np.zeros((*moments.shape, len(circular)), dtype=np.complex128)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Nothing."""
+        return ()
 
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
@@ -121,6 +129,13 @@ class Bank:
     mass: float
     frozen: RigidParts | None = None
     n_frozen: int = 0
+
+    def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
+        """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+        work = self.oscillators.work
+        place(self.branches, self.segments, self.heads, work, rotations, origin, out)
+        if self.frozen is not None:
+            self.frozen.place(self.branches, work, rotations, out)
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
@@ -207,6 +222,14 @@ class CalibratedTree:
         segments = layer.segments.copy()
         heads = head_records(branches, segments)
         return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
+
+    def at_rest(self, model: str) -> Bank:
+        """Return what places the key rotations of a model, and steps nothing."""
+        layer = self.layer(model)
+        branches, segments = layer.branches.copy(), layer.segments.copy()
+        still = Frozen(branches, layer.reduction.n_coordinates)
+        heads = head_records(branches, segments)
+        return Bank(still, branches, segments, heads, np.zeros(0), 0, layer.mass)
 
     def layer(self, model: str) -> Layer:
         """Reduction that a model starts from."""

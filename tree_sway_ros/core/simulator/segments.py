@@ -10,16 +10,21 @@ It is there to compare with, and for a scene that has the time: its steps are ma
 from __future__ import annotations
 
 import math
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -28,7 +33,7 @@ LONGEST_STEP = 1.0 / 60.0
 """Longest step of the implicit springs in [s]; longer ones are cut."""
 
 
-class SegmentsSimulator:
+class SegmentsSimulator(KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 
@@ -44,7 +49,10 @@ class SegmentsSimulator:
 
     """
 
-    model = "segments"
+    @property
+    def model(self) -> str:
+        """``segments``."""
+        return "segments"
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
@@ -97,6 +105,35 @@ class SegmentsSimulator:
             self._model.step(self.wind, dt / pieces)
         self.counts.steps += 1
         return status
+
+    @cached_property
+    def _joined(self) -> tuple[Bank, RotationFit]:
+        """What places key rotations, and what fits them."""
+        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest("coupled")
+        return bank, RotationFit(self.tree, bank.branches, bank.segments)
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        return self._joined[0].branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next, the wind of the last step first."""
+        return self.wind, self._model.state.turn, self._model.state.rate
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad] that fit the segments best, (N,); the same array each time."""
+        return self._joined[1].of(self._model.place())
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        poses = np.empty_like(self._poses) if out is None else out
+        self._joined[0].place(rotations, self.tree.start[0], poses)
+        return poses
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""

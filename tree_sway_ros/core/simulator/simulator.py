@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.drag import pressure
-from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -47,7 +47,7 @@ class Counts:
     held: int = 0
 
 
-class SwaySimulator:
+class SwaySimulator(KeepsState):
     """
     A tree that sways.
 
@@ -103,7 +103,7 @@ class SwaySimulator:
         self._advance = self._bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt = 0.0
-        self._wind = (0.0, 0.0, 0.0)
+        self._wind = np.zeros(3)
         self._poses = np.zeros((tree.n_segments, 7))
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
@@ -133,7 +133,7 @@ class SwaySimulator:
     @property
     def wind(self) -> Floats:
         """Wind of the last step in [m/s], (3,)."""
-        return np.array(self._wind)
+        return self._wind.copy()
 
     @property
     def mass(self) -> float:
@@ -146,6 +146,29 @@ class SwaySimulator:
 
         """
         return self._bank.frequencies[:count]
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        return self._bank.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next, the wind of the last step first."""
+        return self._wind, *self._bank.oscillators.memory()
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
+        return self._bank.oscillators.rotations()
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        poses = np.empty_like(self._poses) if out is None else out
+        self._bank.place(rotations, self._origin, poses)
+        return poses
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -175,11 +198,12 @@ class SwaySimulator:
         status = OK
         speed = math.hypot(wx, wy, wz)
         if speed <= self._max_wind:
-            self._wind = wx, wy, wz
+            wind = self._wind
+            wind[0], wind[1], wind[2] = wx, wy, wz
         else:
             status = WIND_REFUSED
             self.counts.refused += 1
-            wx, wy, wz = self._wind
+            wx, wy, wz = self._wind.tolist()
             speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
@@ -209,11 +233,7 @@ class SwaySimulator:
 
         """
         poses = self._poses if out is None else out
-        bank, work = self._bank, self._bank.oscillators.work
-        rotations = bank.oscillators.rotations()
-        place(bank.branches, bank.segments, bank.heads, work, rotations, self._origin, poses)
-        if bank.frozen is not None:
-            bank.frozen.place(bank.branches, work, rotations, poses)
+        self._bank.place(self._bank.oscillators.rotations(), self._origin, poses)
         if out is not None:
             self._poses[self._highest] = out[self._highest]
         return poses
@@ -243,7 +263,7 @@ class SwaySimulator:
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self._bank.oscillators.reset()
-        self._wind = (0.0, 0.0, 0.0)
+        self._wind[:] = 0.0
         self.place()
 
     def _set_step(self, dt: float) -> None:
