@@ -36,10 +36,10 @@ for (const [number, frame] of expected.frames.entries()) {
     const poses = new Placer(description).place(decoded.coordinates);
     frame.poses.forEach((pose, row) => {
       for (let c = 0; c < 3; c++) {
-        assert.ok(Math.abs(poses[7 * row + c] - pose[c]) < 2e-6, `segment ${row}`);
+        assert.ok(Math.abs(poses[8 * row + c] - pose[c]) < 2e-6, `segment ${row}`);
       }
       let dot = 0;
-      for (let c = 3; c < 7; c++) dot += poses[7 * row + c] * pose[c];
+      for (let c = 3; c < 7; c++) dot += poses[8 * row + 1 + c] * pose[c];
       assert.ok(Math.abs(Math.abs(dot) - 1) < 1e-6, `segment ${row} is turned otherwise`);
     });
   });

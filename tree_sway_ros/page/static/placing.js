@@ -8,45 +8,47 @@ const BLEND_FROM = (Math.PI / 6) ** 2;
 const BLEND_TO = (Math.PI / 4) ** 2;
 const N_SHAPES = 3;
 
+/** Numbers per pose: x y z [m] of the root-side node, 0, then the quaternion x y z w. */
+export const STRIDE = 8;
+
 /** Places the segments of a described scene. */
 export class Placer {
-  /** @param {import("./protocol.js").Description} description */
-  constructor(description) {
+  /**
+   * @param {import("./protocol.js").Description} description
+   * @param {Int32Array | null} [branches] those to place, parents before their children; all if null
+   */
+  constructor(description, branches = null) {
     this.description = description;
+    this.branches = branches ?? Int32Array.from({ length: description.nBranches }, (_, i) => i);
     /** Key rotations [rad]. */
     this.rotations = new Float32Array(description.nKeys);
-    /** x y z of each segment's root-side node [m], then its quaternion x y z w. */
-    this.poses = new Float32Array(7 * description.nSegments);
+    this.poses = new Float32Array(STRIDE * description.nSegments);
     this._base = new Float32Array(4 * description.nBranches); // w x y z
     this._way = new Float32Array(3 * description.nSlopes);
+    this._rows = rowsOf(description, this.branches);
   }
 
   /**
-   * Rebuild every pose.
+   * Rebuild the poses.
    *
    * @param {ArrayLike<number>} coordinates
    * @returns {Float32Array} the poses, the same array each time
    */
   place(coordinates) {
     this._expand(coordinates);
-    const n = this.description.nBranches;
-    for (let branch = 0; branch < n; branch++) this._placeBranch(branch);
+    for (const branch of this.branches) this._placeBranch(branch);
     return this.poses;
   }
 
   /** @param {ArrayLike<number>} coordinates */
   _expand(coordinates) {
-    const { basis_block: blocks, basis_matrix: matrix } = this.description.arrays;
-    const out = this.rotations;
-    for (let b = 0; b < blocks.length; b += 5) {
-      let at = blocks[b + 4];
-      const first = blocks[b + 2];
-      const end = blocks[b + 3];
-      for (let row = blocks[b]; row < blocks[b + 1]; row++) {
-        let sum = 0;
-        for (let c = first; c < end; c++) sum += matrix[at++] * coordinates[c];
-        out[row] = sum;
-      }
+    const matrix = this.description.arrays.basis_matrix;
+    const { _rows: rows, rotations: out } = this;
+    for (let r = 0; r < rows.length; r += 4) {
+      let at = rows[r + 1];
+      let sum = 0;
+      for (let c = rows[r + 2]; c < rows[r + 3]; c++) sum += matrix[at++] * coordinates[c];
+      out[rows[r]] = sum;
     }
   }
 
@@ -74,11 +76,11 @@ export class Placer {
         bz = bw * k + bx * j - by * i + bz * w;
         [bw, bx, by] = [qw, qx, qy];
       }
-      const under = 7 * arrays.branch_base_segment[branch];
-      const sx = poses[under + 3];
-      const sy = poses[under + 4];
-      const sz = poses[under + 5];
-      const sw = poses[under + 6];
+      const under = STRIDE * arrays.branch_base_segment[branch];
+      const sx = poses[under + 4];
+      const sy = poses[under + 5];
+      const sz = poses[under + 6];
+      const sw = poses[under + 7];
       const tx = 2 * (sy * pz - sz * py);
       const ty = 2 * (sz * px - sx * pz);
       const tz = 2 * (sx * py - sy * px);
@@ -159,14 +161,14 @@ export class Placer {
       const rx = rest[r + 1];
       const ry = rest[r + 2];
       const rz = rest[r + 3];
-      const o = 7 * s;
+      const o = STRIDE * s;
       poses[o] = px;
       poses[o + 1] = py;
       poses[o + 2] = pz;
-      poses[o + 3] = qw * rx + qx * rw + qy * rz - qz * ry;
-      poses[o + 4] = qw * ry - qx * rz + qy * rw + qz * rx;
-      poses[o + 5] = qw * rz + qx * ry - qy * rx + qz * rw;
-      poses[o + 6] = qw * rw - qx * rx - qy * ry - qz * rz;
+      poses[o + 4] = qw * rx + qx * rw + qy * rz - qz * ry;
+      poses[o + 5] = qw * ry - qx * rz + qy * rw + qz * rx;
+      poses[o + 6] = qw * rz + qx * ry - qy * rx + qz * rw;
+      poses[o + 7] = qw * rw - qx * rx - qy * ry - qz * rz;
       const cx = chord[3 * s];
       const cy = chord[3 * s + 1];
       const cz = chord[3 * s + 2];
@@ -238,4 +240,32 @@ function halfTurn(hx, hy, hz) {
   turnOf.i = sinc * hx;
   turnOf.j = sinc * hy;
   turnOf.k = sinc * hz;
+}
+
+/**
+ * The rows of the basis that some branches need: key rotation, where its row begins in the matrix,
+ * first coordinate, one past the last.
+ *
+ * @param {import("./protocol.js").Description} description
+ * @param {Int32Array} branches
+ */
+function rowsOf(description, branches) {
+  const { arrays } = description;
+  const blocks = arrays.basis_block;
+  /** @type {number[]} */
+  const rows = [];
+  let block = 0;
+  for (const branch of branches) {
+    const first = arrays.branch_coordinate[branch];
+    if (first < 0) continue;
+    while (first >= blocks[block + 1]) block += 5;
+    while (first < blocks[block]) block -= 5;
+    const width = blocks[block + 3] - blocks[block + 2];
+    const count = 2 * arrays.branch_pairs[branch] + arrays.branch_twists[branch];
+    for (let key = first; key < first + count; key++) {
+      const at = blocks[block + 4] + (key - blocks[block]) * width;
+      rows.push(key, at, blocks[block + 2], blocks[block + 3]);
+    }
+  }
+  return Int32Array.from(rows);
 }
