@@ -68,7 +68,7 @@ def test_placing_agrees_for_every_way_to_move(tree, enrich):
     for k in range(20):
         sim.step([9.0, 4.0 * np.sin(k), 1.0], 1 / 30)
         poses = sim.place()
-        rotations = sim._bank.oscillators.rotations()
+        rotations = sim.bank.oscillators.rotations()
         assert np.abs(poses - twin.place(rotations=rotations)).max() < 1e-9
     assert np.abs(sim.tip_displacement).max() > 1e-3
 

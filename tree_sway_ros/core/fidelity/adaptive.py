@@ -157,14 +157,14 @@ class AdaptiveSimulator(KeepsState):
         return status
 
     @cached_property
-    def _joined(self) -> Bank:
+    def bank(self) -> Bank:
         """What places the key rotations of the whole tree, whatever the model in use."""
         return self.ladder.whole.at_rest("coupled")
 
     @property
     def joints(self) -> Any:
         """Records of `BRANCH` that the key rotations are told by, (b,), whatever the model."""
-        return self._joined.branches
+        return self.bank.branches
 
     def digest(self) -> str:
         """Digest of tree, species and settings."""
@@ -181,7 +181,7 @@ class AdaptiveSimulator(KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations of the whole tree, (n, 7)."""
         poses = np.empty_like(self._poses) if out is None else out
-        self._joined.place(rotations, self.tree.start[0], poses)
+        self.bank.place(rotations, self.tree.start[0], poses)
         return poses
 
     def state(self) -> TreeState:

@@ -131,7 +131,7 @@ class ModalBank:
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next."""
-        return self.modal[:4], self.state[0], self._air["slip"]
+        return self.modal[:4], self.state[0], self._loads["slip"]
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""

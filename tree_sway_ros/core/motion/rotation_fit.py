@@ -17,7 +17,7 @@ from scipy import sparse
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.placing import seat_turn
+from tree_sway_ros.core.motion.placing import turn_at
 from tree_sway_ros.core.rotation import product, quaternions_from_x
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -75,7 +75,7 @@ def _fit(
         twists = branch.n_coordinates - 2 * pairs
         base[0], base[1], base[2], base[3] = 1.0, 0.0, 0.0, 0.0
         if branch.parent >= 0:
-            w, a, c, d = seat_turn(branches[branch.parent], branch.seat_slope, x)
+            w, a, c, d = turn_at(branches[branch.parent], branch.base_slope, x)
             p = bases[branch.parent]
             base[0], base[1], base[2], base[3] = product(p[0], p[1], p[2], p[3], w, a, c, d)
         for s in range(branch.first, branch.end):

@@ -120,7 +120,7 @@ class UncoupledBank:
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next."""
-        return self.x, self.v, self._sway["slip"], self._sway["load"]
+        return self.x, self.v, self._banks["slip"], self._banks["load"]
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""

@@ -113,9 +113,14 @@ class SegmentsSimulator(KeepsState):
         return bank, RotationFit(self.tree, bank.branches, bank.segments)
 
     @property
+    def bank(self) -> Bank:
+        """What places key rotations: branches and segments of the coupled tree."""
+        return self._joined[0]
+
+    @property
     def joints(self) -> Any:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
-        return self._joined[0].branches
+        return self.bank.branches
 
     def digest(self) -> str:
         """Digest of tree, species and settings."""

@@ -98,9 +98,9 @@ class SwaySimulator(KeepsState):
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
-        self._bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
+        self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
-        self._advance = self._bank.oscillators.advance
+        self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt = 0.0
         self._wind = np.zeros(3)
@@ -118,17 +118,17 @@ class SwaySimulator(KeepsState):
     @property
     def n_solved(self) -> int:
         """Branches that are solved; the others copy."""
-        return self._bank.n_solved
+        return self.bank.n_solved
 
     @property
     def n_copied(self) -> int:
         """Branches that copy the motion of another."""
-        return self.tree.n_branches - self._bank.n_solved - self._bank.n_frozen
+        return self.tree.n_branches - self.bank.n_solved - self.bank.n_frozen
 
     @property
     def n_frozen(self) -> int:
         """Branches that move with their parent as one body."""
-        return self._bank.n_frozen
+        return self.bank.n_frozen
 
     @property
     def wind(self) -> Floats:
@@ -138,19 +138,19 @@ class SwaySimulator(KeepsState):
     @property
     def mass(self) -> float:
         """Mass of wood and leaves in [kg]."""
-        return self._bank.mass
+        return self.bank.mass
 
     def frequencies(self, count: int = 10) -> Floats:
         """
         Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
 
         """
-        return self._bank.frequencies[:count]
+        return self.bank.frequencies[:count]
 
     @property
     def joints(self) -> Any:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
-        return self._bank.branches
+        return self.bank.branches
 
     def digest(self) -> str:
         """Digest of tree, species and settings."""
@@ -158,16 +158,16 @@ class SwaySimulator(KeepsState):
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next, the wind of the last step first."""
-        return self._wind, *self._bank.oscillators.memory()
+        return self._wind, *self.bank.oscillators.memory()
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
-        return self._bank.oscillators.rotations()
+        return self.bank.oscillators.rotations()
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         poses = np.empty_like(self._poses) if out is None else out
-        self._bank.place(rotations, self._origin, poses)
+        self.bank.place(rotations, self._origin, poses)
         return poses
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -233,7 +233,7 @@ class SwaySimulator(KeepsState):
 
         """
         poses = self._poses if out is None else out
-        self._bank.place(self._bank.oscillators.rotations(), self._origin, poses)
+        self.bank.place(self.bank.oscillators.rotations(), self._origin, poses)
         if out is not None:
             self._poses[self._highest] = out[self._highest]
         return poses
@@ -256,13 +256,13 @@ class SwaySimulator(KeepsState):
         rest, in [N m], (3,).
 
         """
-        centre, force = self._bank.branches["centre"], self._bank.oscillators.work["force"]
+        centre, force = self.bank.branches["centre"], self.bank.oscillators.work["force"]
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
 
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
-        self._bank.oscillators.reset()
+        self.bank.oscillators.reset()
         self._wind[:] = 0.0
         self.place()
 
@@ -271,5 +271,5 @@ class SwaySimulator(KeepsState):
             raise ParameterError(
                 f"time step of {dt} s", where="step", cure="give a finite one above 0"
             )
-        self._bank.oscillators.set_step(dt)
+        self.bank.oscillators.set_step(dt)
         self._dt = dt

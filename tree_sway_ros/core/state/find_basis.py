@@ -21,7 +21,7 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
 
-COUNTS = (16, 24, 32, 48)
+COUNTS = (16, 24, 32)
 """Numbers of coordinates that are tried where none is asked for."""
 
 LEFT_OUT = 0.004
