@@ -100,17 +100,12 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def placing_of(simulator: Any) -> Any:
-    """What a simulator of one tree places its segments by, a `Bank`."""
-    return getattr(simulator, "shown", simulator).bank
-
-
 def _branches(simulator: Any) -> dict[str, Any]:
     """
     Arrays of one tree: how each branch of the whole tree is placed.
 
     """
-    bank, tree = placing_of(simulator), simulator.tree
+    bank, tree = simulator.bank, simulator.tree
     n_columns = bank.segments["slope"].shape[1]
     arrays = _at_rest(tree, n_columns)
     record_at = {int(first): i for i, first in enumerate(bank.branches["first"])}

@@ -5,14 +5,16 @@ The state of a running scene as frames: what is described once, what is told of 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.find_basis import state_basis
-from tree_sway_ros.page.description import describe_scene, placing_of
+from tree_sway_ros.page.description import describe_scene
 from tree_sway_ros.page.protocol import (
     BEYOND_SCALE,
     PAUSED,
@@ -113,13 +115,25 @@ def _basis(simulator: Any, found: dict[Any, Any]) -> Any:
     Basis of a tree; trees of one shape and model share one, whichever way they are turned.
 
     """
-    frames = placing_of(simulator).branches["frame"]
+    frames = simulator.joints["frame"]
     # Directions as the stem sees them are the same in a tree that is turned about.
     relative = np.round(frames @ frames[0].T, 6) + 0.0
     key = simulator.model, relative.tobytes(), np.round(simulator.tree.length, 6).tobytes()
     if key not in found:
-        basis = state_basis(simulator)
+        runner = _runner(simulator)
+        basis = state_basis(runner)
         if len(basis.scale) > MOST_COORDINATES:
-            basis = state_basis(simulator, MOST_COORDINATES)
+            basis = state_basis(runner, MOST_COORDINATES)
         found[key] = basis
     return found[key]
+
+
+def _runner(simulator: Any) -> Any:
+    """
+    What the basis is found on: for models whose key rotations are those of ``modes``, that one.
+
+    """
+    if isinstance(simulator, SwaySimulator) and simulator.model != "coupled":
+        return simulator
+    settings = replace(simulator.settings, model="modes", n_modes=None)
+    return SwaySimulator(simulator.tree, simulator.species, settings)

@@ -168,7 +168,7 @@ def build_scene(choices: Choices) -> tuple[Any, Any]:
         scene = stand(scene, count)
     settings = replace(Settings(), damping_ratio=choices.damping_ratio or None)
     simulator = scene.simulator(settings, fidelity=choices.fidelity)
-    return simulator, scene.leaves(_LEAVES * (3 if count > 1 else 1))
+    return simulator, scene.leaves(None, _LEAVES)
 
 
 def stand(scene: TreeFile, count: int) -> ForestFile:

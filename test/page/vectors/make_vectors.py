@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.scene.placed_tree import joined
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
@@ -75,17 +74,12 @@ def scene() -> Any:
 
 def rotations_of(simulator: Any) -> int:
     """How many key rotations a tree has."""
-    return int(simulator._bank.branches["n_coordinates"].sum())
+    return int(simulator.joints["n_coordinates"].sum())
 
 
 def placed(simulator: Any, rotations: Any) -> Any:
     """Poses of one tree by the solver's kernels."""
-    bank, poses = simulator._bank, np.empty((simulator.tree.n_segments, 7))
-    work, origin = bank.oscillators.work, simulator.tree.start[0]
-    place(bank.branches, bank.segments, bank.heads, work, rotations, origin, poses)
-    if bank.frozen is not None:
-        bank.frozen.place(bank.branches, work, rotations, poses)
-    return poses
+    return simulator.place_rotations(rotations)
 
 
 def main() -> None:
