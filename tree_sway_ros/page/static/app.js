@@ -238,6 +238,7 @@ document.addEventListener("keydown", (event) => {
   else if (event.key === " ") element("control-pause")?.click();
 });
 scene?.camera.listen(canvas);
+connection.open();
 requestAnimationFrame(draw);
 
 /** For tests and for the curious at the console. */

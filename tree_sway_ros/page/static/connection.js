@@ -22,7 +22,7 @@ const SILENCE = 6000;
  * @property {(message: Record<string, any>) => void} onMessage
  */
 
-/** One line to a server, for good. */
+/** One line to a server, for good once `open` has been called. */
 export class Connection {
   /**
    * @param {string} url of the stream
@@ -43,7 +43,6 @@ export class Connection {
     this._heard = 0;
     this._retry = 0;
     setInterval(() => this._watch(), PING_EVERY);
-    this.open();
   }
 
   /** Open the line now, whatever the wait. */

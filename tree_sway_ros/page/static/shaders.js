@@ -35,7 +35,7 @@ void main() {
 }`;
 
 export const BARK_FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 in vec3 normal;
 in vec3 shade;
 uniform vec3 light;
@@ -81,7 +81,7 @@ void main() {
 }`;
 
 export const LEAF_FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 in vec3 normal;
 in float shade;
 uniform vec3 light;
@@ -117,7 +117,7 @@ void main() {
 }`;
 
 export const SOLID_FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 in vec3 normal;
 in vec3 base;
 uniform vec3 light;
@@ -142,7 +142,7 @@ void main() {
 }`;
 
 export const GROUND_FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 in vec2 place;
 uniform sampler2D shadow;
 uniform vec3 groundColor;
