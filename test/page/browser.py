@@ -95,7 +95,9 @@ class Browser:
 
     requests: list[str]
 
-    async def open(self, url: str, width: int = 1280, height: int = 800, dark: bool = False) -> None:
+    async def open(
+        self, url: str, width: int = 1280, height: int = 800, dark: bool = False
+    ) -> None:
         """Open a page at a size and a colour scheme."""
         self.requests = []
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}

@@ -198,7 +198,9 @@ def test_a_token_is_asked_for_elsewhere_than_here() -> None:
     assert "token" in str(refusal({"Host": "tree.example"}, "", **asked))
     assert "token" in str(refusal({"Host": "tree.example"}, "lóng", **asked))
     assert refusal({"Host": "tree.example"}, "long enough", **asked) is None
-    assert is_loopback("::1") and is_loopback("localhost") and not is_loopback("10.0.0.1")
+    assert is_loopback("::1")
+    assert is_loopback("localhost")
+    assert not is_loopback("10.0.0.1")
 
 
 def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:

@@ -32,7 +32,7 @@ def test_plot_draws_wind_and_tip(
     assert capsys.readouterr().out == f"{picture}\n"
 
 
-@pytest.mark.parametrize("arguments", [["--tree", "goldcrest"], [SEEDLING, "--tree"]])
+@pytest.mark.parametrize("arguments", [["goldcrest", "--portrait"], ["--portrait", SEEDLING]])
 def test_plot_tree_draws_the_tree(tmp_path: Path, arguments: list[str]) -> None:
     picture = tmp_path / "tree.png"
     assert cli.main(["plot", *arguments, "--leaves", "on", "-o", str(picture)]) == 0

@@ -43,7 +43,7 @@ class SolverNode(TreeSwayNode):
         super().__init__("solver", **options)
         source = open_scene(self.values["tree"])
         if self.values["species"]:
-            source = source.of_species(open_species(self.values["species"]))
+            source = source.of_species(open_species(self.values["species"])).checked()
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
@@ -56,9 +56,7 @@ class SolverNode(TreeSwayNode):
                 self.values["roughness"],
             ),
         )
-        self.simulator: Any = source.simulator(
-            settings, **self.values("fidelity", "tolerance")
-        )
+        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
@@ -78,6 +76,8 @@ class SolverNode(TreeSwayNode):
         self.report_with(source.tree.name, self._statuses)
         self.on_close(self.pacer.stop)
         self.pacer.start()
+        for doubt in source.warnings:
+            self.get_logger().warning(doubt)
         for note in source.notes:
             self.get_logger().info(note)
 

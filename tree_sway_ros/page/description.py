@@ -165,9 +165,7 @@ def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
         "segment_chord": _float32(chord),
         "segment_rest": _float32(rest),
         "segment_length": _float32(tree.length),
-        "segment_radius": _float32(
-            0.5 * np.stack([tree.base_diameter, tree.tip_diameter], axis=1)
-        ),
+        "segment_radius": _float32(0.5 * np.stack([tree.base_diameter, tree.tip_diameter], axis=1)),
     }
 
 

@@ -65,7 +65,7 @@ class Placer:
             raise FormatError(
                 f"a frame of description {frame.identity:08x}",
                 where="tree state",
-                cure=f"this receiver has {self.description.short_identity:08x}: ask for the new one",
+                cure=f"this one has {self.description.short_identity:08x}: ask for the new one",
             )
         if len(frame.coordinates) != len(self._scale):
             raise FormatError(f"{len(frame.coordinates)} coordinates", where="tree state")
@@ -116,12 +116,12 @@ class Placer:
         branches = np.zeros(n_branches, dtype=BRANCH)
         branches["block"], branches["lane"], n_records = lanes(shape, [])  # type: ignore[arg-type]
         branches["parent"] = shape.branch_parent
-        branches["base_segment"] = np.where(parent[own] < 0, -1, arrays["branch_base_segment"][own] - start)
+        branches["base_segment"] = np.where(
+            parent[own] < 0, -1, arrays["branch_base_segment"][own] - start
+        )
         branches["first"], branches["end"] = shape.branch_first[:-1], shape.branch_first[1:]
         is_rigid = arrays["branch_coordinate"][own] < 0
-        branches["coordinate"] = np.where(
-            is_rigid, self._n_keys, arrays["branch_coordinate"][own]
-        )
+        branches["coordinate"] = np.where(is_rigid, self._n_keys, arrays["branch_coordinate"][own])
         branches["n_pairs"] = np.maximum(arrays["branch_pairs"][own], 1)
         branches["n_coordinates"] = 2 * branches["n_pairs"] + arrays["branch_twists"][own]
         columns = arrays["segment_slope"].shape[1]

@@ -32,7 +32,7 @@ WIND_UNIT = 0.005
 """Wind of one unit of its int16 in [m/s]."""
 
 PAUSED, BEYOND_SCALE, RESTARTED = 1, 2, 4
-"""Flags of a frame: time stands still, a coordinate or the wind was cut to its scale, motion jumped."""
+"""Flags of a frame: time stands still, a number was cut to its scale, the motion jumped."""
 
 _TYPES = {"f32": "<f4", "i32": "<i4", "u8": "u1", "i16": "<i2"}
 _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}

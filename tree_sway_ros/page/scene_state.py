@@ -52,16 +52,10 @@ class SceneState:
         self._parts = simulators_of(simulator)
         found: dict[Any, Any] = {}
         self.bases = [_basis(each, found) for each in self._parts]
-        self._models = [each.model for each in self._parts]
         self.description = describe_scene(simulator, self.bases, frame_id=frame_id, leaves=leaves)
         described = decode_description(self.description)
         self.identity, self._short = described.identity, described.short_identity
         self._sequence = 0
-
-    @property
-    def is_current(self) -> bool:
-        """Whether every tree is on the model that is described; ``auto`` may change it."""
-        return all(each.model == model for each, model in zip(self._parts, self._models, strict=True))
 
     @property
     def coordinate_names(self) -> list[str]:

@@ -132,7 +132,9 @@ class Session:
             tell_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
         elif name in ("mean_speed", "intensity", "bearing_to"):
             if not isinstance(self.wind, SimulatedWind):
-                raise ParameterError("the wind is a record", where=name, cure="start without --wind")
+                raise ParameterError(
+                    "the wind is a record", where=name, cure="start without --wind"
+                )
             self.wind.set(name, float(value))
         elif name in Choices.__dataclass_fields__:
             self._want(replace(self._wanted or self.choices, **{name: value}))
@@ -200,8 +202,6 @@ class Session:
         if self._next is not None:
             self._scene, self._next = self._next, None
             self._tell_scene()
-        elif not self._scene.is_current:
-            self._want(self.choices)
         simulator = self._scene.simulator
         if has_restarted:
             simulator.reset()

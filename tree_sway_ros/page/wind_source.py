@@ -1,5 +1,5 @@
 """
-The wind of a live tree without ROS: simulated, with live controls, or a record played over and over.
+The wind of a live tree without ROS: simulated, or a record that is played over and over.
 
 """
 
@@ -52,7 +52,7 @@ class SimulatedWind:
         self._model = self._made()
 
     def set(self, name: str, value: float) -> None:
-        """Change ``mean_speed``, ``intensity`` or ``bearing_to``, in the units of the parameters."""
+        """Change ``mean_speed`` [m/s], ``intensity`` or ``bearing_to`` [rad]."""
         self.values[name] = value
         self._model = self._made()
 

@@ -111,9 +111,7 @@ def main() -> None:
         told = steps * (scale / 32767)
         poses = [
             placed(each, np.asarray(basis.matrix, dtype=np.float64) @ part)
-            for each, basis, part in zip(
-                both.simulators, bases, np.split(told, 2), strict=True
-            )
+            for each, basis, part in zip(both.simulators, bases, np.split(told, 2), strict=True)
         ]
         expected.append(
             {
