@@ -90,7 +90,10 @@ setup(
     package_data={"": ["py.typed", "*.json", "*.yaml", "*.csv", "static/*", "static/*/*"]},
     data_files=data_files,
     python_requires=">=3.10",
-    install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "PyYAML>=6", "jsonschema>=4.10"],
+    install_requires=[
+        *("setuptools", "numpy>=1.26", "scipy>=1.11", "PyYAML>=6", "jsonschema>=4.10"),
+        "aiohttp>=3.8",
+    ],
     extras_require=extras,
     zip_safe=False,
     entry_points={
