@@ -19,10 +19,12 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
+from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.only_demo import only_demo
+from tree_sway_ros.tools.stream.text import summary
+from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 
@@ -74,24 +76,22 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    try:
-        with interrupted_once(), Composition({}) as nodes:
-            monitor = StreamMonitor(nodes.context, tree)
+    with Ending() as ending, only_demo(), Composition({}) as nodes:
+        monitor = StreamMonitor(nodes.context, tree)
 
-            def goes_on() -> bool:
-                nodes.check()
-                return not nodes.is_done
+        def goes_on() -> bool:
+            nodes.check()
+            return not nodes.is_done
 
-            try:
-                monitor.expect_silence()
-                for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
-                    nodes.add(name, values)
-                begin = watch(monitor, seconds, goes_on)
-            finally:
-                monitor.close()
-    except KeyboardInterrupt:
-        return 0
-    print(summary(monitor.record.since(begin), arguments.rate))
+        try:
+            monitor.expect_silence()
+            for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
+                nodes.add(name, values)
+            ending.limit = LONGEST
+            watch(monitor, seconds, goes_on)
+            print(summary(monitor.totals, arguments.rate), flush=True)
+        finally:
+            monitor.close()
     return 0
 
 

@@ -153,6 +153,8 @@ class FidelityLadder:
         """Set a model against the best one, both on the coordinates of the whole tree."""
         calibrated, whole = self._trees.get(share), self._trees[0.0].layer(model)
         n = whole.reduction.n_coordinates
+        if model == "wind_basis" and self.whole.plain:
+            return
         if calibrated is None or n_modes > calibrated.layer(model).reduction.n_coordinates:
             return
         bank = calibrated.bank(model, n_modes)

@@ -89,7 +89,8 @@ class ModalBank:
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self.half[:, 6] + self.half[:, 7]
-        self._loads["compliance"][block, lane] = self._participation @ velocity
+        compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads
+        self._loads["compliance"][block, lane] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -105,7 +106,7 @@ class ModalBank:
         Returns
         -------
         int
-            How many loads were held at their limit.
+            How many loads were held at their limit, -1 if the motion is not finite.
 
         """
         return int(
@@ -254,7 +255,7 @@ def _advance(
     eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
     moment, x, v = state[0], state[1], state[2]
     wind_moments(branches, work, loads, x, v, moment, pull, wx, wy, wz, per_speed_squared)
-    over = 0
+    over, total = 0, 0.0
     for i in range(len(moment)):
         if not abs(moment[i]) <= limit[i]:
             moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
@@ -268,4 +269,5 @@ def _advance(
         c, old = whole[k], eta[k]
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * force[k]
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * force[k]
-    return over
+        total += 0.0 * eta[k] + 0.0 * rate[k] + 0.0 * rest[k]
+    return over if total == 0.0 else -1
