@@ -153,6 +153,11 @@ class ModalBank:
         rotations: Floats = self.state[3]
         return rotations
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
+
     def reset(self) -> None:
         """Go back to rest."""
         self.modal[:] = 0.0

@@ -128,6 +128,11 @@ class UncoupledBank:
         """Key rotations in [rad], (2 b,)."""
         return self.x
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
+
     def reset(self) -> None:
         """Go back to rest."""
         self.state[:] = 0.0

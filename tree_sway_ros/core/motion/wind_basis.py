@@ -104,6 +104,13 @@ class WindBasisBank:
         _rotations(self.record, self.instance, self._shapes, self._x)
         return self._x
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3); a pass over all branches."""
+        m, now = self.modal.shapes.shape[1], self.instance[0]
+        self.modal.take(now["eta"][:m], now["rate"][:m], now["force"][:m], self.rotations())
+        self.modal.advance(*now["wind"].tolist(), float(now["pressure"]))
+        return self.modal.forces()
+
     def reset(self) -> None:
         """Go back to rest."""
         for array in self.memory():

@@ -60,6 +60,9 @@ class Oscillators(Responding, Protocol):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+
     def reset(self) -> None:
         """Go back to rest."""
 
@@ -100,6 +103,11 @@ class Frozen:
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
+
+    def forces(self) -> Floats:
+        """None, (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Stay at rest."""
