@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -109,3 +111,38 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     )
     assert result.stdout == "{\n"
     assert result.stderr == ""
+
+
+@pytest.mark.parametrize("name", ["~nosuchuser/tree.yaml", "x" * 300 + ".yaml", "a\0b.yaml"])
+def test_a_name_that_is_no_path_is_one_line(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (
+        ("info", name),
+        ("convert", "benjamina", "-o", name),
+        ("info", "benjamina", "--species", name),
+        ("calibrate", "benjamina", "--record", name, "-o", "x.yaml"),
+    ):
+        code, _ = run(*arguments)
+        assert code == 2
+        assert one_line(capsys.readouterr().err)
+
+
+def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
+    result = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "tree_sway_ros.tools.cli",
+            "convert",
+            "benjamina",
+            "-o",
+            "Bäume.obj",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (result.returncode, result.stderr) == (0, "")
+    assert r"B\xe4ume.obj: benjamina" in result.stdout
+    assert (tmp_path / "Bäume.obj").is_file()

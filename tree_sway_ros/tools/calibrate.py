@@ -14,6 +14,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.plausibility import doubt_of_sway
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.wind.sway_table import read_csv_sway
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
@@ -97,7 +98,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     """What the record says, also printed."""
-    record = read_csv_sway(Path(arguments.record))
+    record = read_csv_sway(path_of(arguments.record))
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     try:
         found = estimate_sway(record.time, record.motion, arguments.kind, band)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -65,6 +66,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     given = list(sys.argv[1:] if argv is None else argv)
     command = given[0] if given else ""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names that the terminal cannot show are escaped
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         arguments = _parser(command).parse_args(given)
         module = _module(arguments.command)

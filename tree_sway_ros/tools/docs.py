@@ -15,6 +15,7 @@ from pathlib import Path
 
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process import topics
@@ -46,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
             continue
         if arguments.check:
             raise FormatError("not up to date", where=str(path), cure="run tree-sway docs")
-        path.write_text(fresh, encoding="utf-8")
+        write_text_whole(path, fresh)
         print(f"{path}: tables written")
     return 0
 

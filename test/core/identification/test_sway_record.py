@@ -178,3 +178,20 @@ def test_an_empty_band(band):
 def test_an_unknown_kind():
     with pytest.raises(ParameterError, match="use one of: release, ambient"):
         estimate_sway(*release(), kind="free")
+
+
+@pytest.mark.parametrize("bad", [1e308, 1e200, np.inf])
+def test_what_nothing_measures_is_refused(bad):
+    time = 0.05 * np.arange(1000.0)
+    motion = np.exp(-0.1 * time) * np.cos(3.0 * time)
+    motion[9] = bad
+    with pytest.raises(FormatError, match="sample 9: not a finite number, or one that nothing"):
+        estimate_sway(time, motion)
+
+
+def test_a_time_that_counts_from_another_zero_is_a_gap():
+    time = 0.05 * np.arange(1000.0)
+    motion = np.exp(-0.1 * time) * np.cos(3.0 * time)
+    time[-1] = 1.7e9
+    with pytest.raises(FormatError, match=r"gaps of up to 1\.7e"):
+        estimate_sway(time, motion)

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import signal
 
 from tree_sway_ros.core.arrays import Floats
@@ -25,6 +25,7 @@ KINDS = ("release", "ambient")
 """Kinds of record."""
 
 _MIN_SAMPLES = 16
+_LARGEST = 1e100
 _EXPLAINED, _QUIET = 0.6, 0.5
 _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
@@ -146,8 +147,12 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
         )
     if len(t) < _MIN_SAMPLES:
         raise FormatError(f"{len(t)} samples", cure=f"record {_MIN_SAMPLES} at the very least")
-    for bad in np.flatnonzero(~(np.isfinite(t) & np.isfinite(x).all(axis=1)))[:1]:
-        raise FormatError("not a finite number", where=f"sample {bad}", cure="remove that sample")
+    for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
+        raise FormatError(
+            "not a finite number, or one that nothing measures",
+            where=f"sample {bad}",
+            cure="remove that sample",
+        )
     for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
         raise FormatError(
             f"time {t[bad + 1]:g} s after {t[bad]:g} s",
@@ -159,16 +164,21 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
     return t, x
 
 
+def _is_measurable(values: Floats) -> NDArray[np.bool_]:
+    """Whether each value is finite, and so far from overflow that sums of squares are too."""
+    return np.abs(values) < _LARGEST
+
+
 def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
     """Motion at even steps without its mean and drift, the step and the longest gap in [s]."""
     steps = np.diff(time)
     dt = float(np.median(steps))
-    grid = np.arange(time[0], time[-1] + 0.5 * dt, dt)
-    if len(grid) > 4 * len(time):
+    if time[-1] - time[0] > 4.0 * len(time) * dt:
         raise FormatError(
             f"gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart",
             cure="give one record without the gaps",
         )
+    grid = np.arange(time[0], time[-1] + 0.5 * dt, dt)
     even = np.stack([np.interp(grid, time, x) for x in motion.T], axis=1)
     return signal.detrend(even, axis=0), dt, float(steps.max())
 

@@ -22,6 +22,7 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError
 from tree_sway_ros.files.export.segment_mesh import cone_points, cone_triangles, rest_frames
 from tree_sway_ros.files.export.yaml_writing import write_yaml_tree
+from tree_sway_ros.files.whole_file import whole_file
 
 _Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=np.float64)
 _BARK = (0.36, 0.27, 0.2, 1.0)
@@ -49,22 +50,20 @@ def write_tree(path: str | Path, tree: Tree, species: Species | None = None) -> 
 
     """
     path = Path(path)
-    writers: dict[str, Callable[[], None]] = {
-        ".yaml": lambda: write_yaml_tree(path, tree, species),
-        ".yml": lambda: write_yaml_tree(path, tree, species),
-        ".obj": lambda: write_obj(path, tree),
-        ".glb": lambda: write_gltf(path, tree),
-        ".gltf": lambda: write_gltf(path, tree),
+    writers: dict[str, Callable[[Path], None]] = {
+        ".yaml": lambda path: write_yaml_tree(path, tree, species),
+        ".yml": lambda path: write_yaml_tree(path, tree, species),
+        ".obj": lambda path: write_obj(path, tree),
+        ".glb": lambda path: write_gltf(path, tree),
+        ".gltf": lambda path: write_gltf(path, tree),
     }
     writer = writers.get(path.suffix.lower())
     if writer is None:
         raise FormatError(
             f"cannot write '{path.suffix}'", where=str(path), cure=f"use {', '.join(writers)}"
         )
-    try:
-        writer()
-    except OSError as error:
-        raise FormatError(f"cannot be written: {error.strerror}", where=str(path)) from error
+    with whole_file(path) as partial:
+        writer(partial)
 
 
 def write_obj(path: Path, tree: Tree) -> None:

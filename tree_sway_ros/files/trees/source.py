@@ -9,6 +9,7 @@ from typing import Any
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, forest_of_files
@@ -46,7 +47,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
             )
         tree = builtin_tree(text, seed)
         return TreeFile(tree, species_named(tree.species), text)
-    path = Path(text).expanduser()
+    path = path_of(text)
     if not path.exists():
         close = difflib.get_close_matches(text, BUILTIN_TREES, n=1)
         guess = f"did you mean '{close[0]}'? " if close else ""
@@ -81,7 +82,7 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
         As `open_tree` and `read_forest`.
 
     """
-    path = Path(name_or_path).expanduser()
+    path = path_of(name_or_path)
     if str(name_or_path) not in BUILTIN_TREES and is_forest(path):
         if options:
             raise ParameterError(

@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.text_file import read_head
+from tree_sway_ros.files.text_file import path_of, read_head
 from tree_sway_ros.files.trees.cylinders.archi import read_archi_csv
 from tree_sway_ros.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+from tree_sway_ros.files.trees.cylinders.mat_file import looks_like_mat
 from tree_sway_ros.files.trees.cylinders.simpleforest import read_simpleforest_csv
-from tree_sway_ros.files.trees.cylinders.treeqsm_mat import looks_like_mat, read_treeqsm_mat
+from tree_sway_ros.files.trees.cylinders.treeqsm_mat import read_treeqsm_mat
 from tree_sway_ros.files.trees.cylinders.treeqsm_text import (
     looks_like_treeqsm_text,
     read_treeqsm_text,
@@ -128,7 +129,7 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
         An option that this format does not have, or has otherwise.
 
     """
-    path = Path(path)
+    path = path_of(path)
     chosen = _format_of(path) if format is None else _format_named(format)
     for option in options:
         if option not in chosen.options:
@@ -192,6 +193,11 @@ def _format_named(name: str) -> TreeFormat:
 def _format_of(path: Path) -> TreeFormat:
     head = read_head(path).decode("utf-8", errors="replace")
     by_content = [known for known in TREE_FORMATS if known.recognise(head)]
+    with_points = re.sub(r"(?<=\d),(?=\d)", ".", head)
+    if not by_content and any(known.recognise(with_points) for known in TREE_FORMATS):
+        raise FormatError(
+            "numbers with a decimal comma", where=str(path), cure="export it with decimal points"
+        )
     by_suffix = [
         known for known in by_content or TREE_FORMATS if path.suffix.lower() in known.suffixes
     ]

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.text_file import read_head
+from tree_sway_ros.files.text_file import path_of, read_head
 from tree_sway_ros.files.wind.bag import read_bag_wind
 from tree_sway_ros.files.wind.nmea import read_nmea_wind
 from tree_sway_ros.files.wind.record import WindRecord
@@ -83,7 +83,7 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
         An option that the reader of this format does not have, or has otherwise.
 
     """
-    path = Path(path)
+    path = path_of(path)
     chosen = _format_of(path) if format is None else _format_named(format)
     known = chosen.read.__annotations__
     for option in options:
