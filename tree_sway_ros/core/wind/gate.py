@@ -26,7 +26,7 @@ from typing import NamedTuple
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.checks import three_numbers, within
-from tree_sway_ros.core.wind.convention import FASTEST_WIND, is_wind
+from tree_sway_ros.core.wind.limits import FASTEST_WIND, is_wind
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is .01 m/s.
@@ -169,8 +169,9 @@ class WindGate:
         """Open the gate with no sample seen."""
         self._max_speed = within("max_speed", max_speed, 0.0, FASTEST_WIND, "m/s", above=True)
         self._max_rate = within("max_rate", max_rate, 0.0, 1e4, "m/s^2", above=True)
-        self._longest_refusal = within("longest_refusal", longest_refusal, 0.0, 60.0, "s")
-        self._frozen_after = within("frozen_after", frozen_after, 0.0, 1e5, "s", above=True)
+        refusal = within("longest_refusal", longest_refusal, 0.0, 60.0, "s")
+        frozen = within("frozen_after", frozen_after, 0.0, 1e5, "s", above=True)
+        self._longest_refusal, self._frozen_after = round(SECOND * refusal), round(SECOND * frozen)
         self._jump_floor = within("jump_floor", jump_floor, 0.0, 100.0, "m/s")
         self._jump_fraction = within("jump_fraction", jump_fraction, 0.0, 10.0)
         self.counts = GateCounts()
@@ -275,18 +276,19 @@ class WindGate:
 
     def _judge(self, time: int, x: float, y: float, z: float) -> Reason:
         if not is_wind(x, y, z, self._max_speed):
-            if not math.isfinite(x + y + z):
+            if not all(map(math.isfinite, (x, y, z))):
                 return Reason.NOT_FINITE
             is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
             return Reason.SENTINEL if is_code else Reason.TOO_FAST
         jump = math.hypot(x - self._good[0], y - self._good[1], z - self._good[2])
         since = math.inf if self._good_time is None else 1e-9 * (time - self._good_time)
-        allowed = self._max_rate * since + self._jump_floor + self._jump_fraction * math.hypot(*self._good)
+        allowed = self._max_rate * since
+        allowed += self._jump_floor + self._jump_fraction * math.hypot(*self._good)
         if jump <= allowed:
             return Reason.ACCEPTED
         if self._refused_since is None:
             self._refused_since = time
-        if 1e-9 * (time - self._refused_since) < self._longest_refusal - 1e-9:
+        if time - self._refused_since < self._longest_refusal:
             return Reason.SPIKE
         self.counts.forced += 1
         return Reason.ACCEPTED
@@ -296,6 +298,6 @@ class WindGate:
             self._seen = sample
             self._equal_since = time
             self._is_frozen = False
-        elif not self._is_frozen and 1e-9 * (time - self._equal_since) >= self._frozen_after:
+        elif not self._is_frozen and time - self._equal_since >= self._frozen_after:
             self._is_frozen = True
             self.counts.frozen += 1

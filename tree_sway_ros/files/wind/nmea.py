@@ -21,10 +21,11 @@ from math import pi
 from operator import xor
 from pathlib import Path
 
+from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
-from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing, from_bearing
+from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing
 
 SENTENCES = ("MWD", "MWV T", "MWV R")
 """What can be read, in the order of preference: least depends on the motion of the boat first."""
@@ -142,7 +143,7 @@ def _mwv(fields: list[str], heading: float) -> Velocity | str:
     bearing = None if angle is None else degrees_to_bearing(angle)
     if bearing is None or speed is None or unit is None or speed < 0.0:
         return f"angle '{fields[1][:8]}', speed '{fields[3][:8]}', unit '{fields[4][:8]}'"
-    return from_bearing(speed * unit, bearing + heading)
+    return velocity_of_bearing(speed * unit, bearing + heading)
 
 
 def _mwd(fields: list[str], declination: float) -> Velocity | str:
@@ -157,4 +158,4 @@ def _mwd(fields: list[str], declination: float) -> Velocity | str:
         bearing = None if needle is None else needle + declination
     if bearing is None or speed is None or speed < 0.0:
         return f"direction '{fields[1][:8]}', speed '{fields[7][:8]}'"
-    return from_bearing(speed, bearing)
+    return velocity_of_bearing(speed, bearing)

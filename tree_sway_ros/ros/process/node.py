@@ -7,6 +7,7 @@ from typing import Any
 
 from rclpy.node import Node
 
+from tree_sway_ros.core.wind.gate import LARGEST_LEAD
 from tree_sway_ros.ros.parameters.declaration import ParameterValues
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process.guard import CallbackGuard
@@ -82,6 +83,11 @@ class TreeSwayNode(Node):  # type: ignore[misc]
         """Subscription to a topic of the table; `kind` where a parameter chooses the type."""
         kind = kind or message_class(topic)
         return self.create_subscription(kind, topic.name, callback, qos_profile(topic))
+
+    @property
+    def clock_lead(self) -> int:
+        """How far stamps may be ahead of the clock in [ns]: simulated time stands between ticks."""
+        return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
         """Publish what `collect` returns on `/diagnostics`."""
