@@ -8,11 +8,11 @@ root of time, so that a rate alone refuses the good samples of a fast sensor in 
 m/s^2: 39 % at 20 Hz in 12 m/s). What stays away for `longest_refusal` is no spike but a step, and
 is let in.
 
-Samples are taken in their order of arrival, and no sample is given a time after its arrival: a time
-ahead would shut out the good samples that follow it. A stamp that cannot be (zero, ahead of its
-arrival, much older than it, a duplicate, out of order) is counted by its cause; in its place stands
-the time of arrival, less the delay of the sample before, so that the times of a mixed stream go on
-evenly. All times are whole nanoseconds of one clock.
+Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival,
+much older than it, a duplicate, out of order) is counted by its cause; in its place stands the time
+of arrival, less the delay of the sample before, so that the times of a mixed stream go on evenly. A
+stamp ahead is believed only if those before it were nearly as far ahead: a single one would shut
+out the good samples that follow it. All times are whole nanoseconds of one clock.
 
 """
 
@@ -48,6 +48,8 @@ SECOND = 1_000_000_000
 """One second in [ns]."""
 LARGEST_LEAD = SECOND // 2
 """Lead of a stamp over its arrival in [ns] up to which it is of a clock that runs ahead."""
+LEAD_GROWTH = 60 * SECOND // 1000
+"""How much more a stamp may be ahead of its arrival in [ns] than the sample before."""
 LONGEST_TRANSPORT = 2 * SECOND
 """Age in [ns] at which a stamp is of another clock, or of a recording, and no longer believed."""
 CLOCK_RESET = SECOND
@@ -228,7 +230,7 @@ class WindGate:
         """
         x, y, z = three_numbers("wind", vector)
         is_repeated = 0 < stamp == self._last_stamp and (x, y, z) == self._seen
-        time = self._time_of(stamp, stamp if arrival is None else arrival, lead)
+        time = self._time_of(stamp, arrival, lead)
         if is_repeated:
             reason = Reason.REPEATED
         elif self._time is not None and time <= self._time:
@@ -245,8 +247,9 @@ class WindGate:
             self._refused_since = None
         return Verdict(reason is Reason.ACCEPTED, reason, time)
 
-    def _time_of(self, stamp: int, arrival: int, lead: int) -> int:
+    def _time_of(self, stamp: int, given: int | None, lead: int) -> int:
         """Return the stamp if it can be believed, or else the time to stand in for it."""
+        arrival = stamp if given is None else given
         if self._arrival is not None and arrival < self._arrival - CLOCK_RESET:
             self.counts.clock_back += 1
             self.reset()
@@ -255,17 +258,21 @@ class WindGate:
             self._stamp = stamp
             return stamp
         setattr(self.counts, fault, getattr(self.counts, fault) + 1)
-        if self._time is None or self._arrival is None:
+        if given is None or self._time is None or self._arrival is None:
             return arrival
-        usual = self._time + arrival - self._arrival
-        return usual if self._time < usual < arrival else arrival
+        usual = min(arrival, self._time + arrival - self._arrival)
+        # A stamp that was believed may have been ahead of what arrives now.
+        return max(usual, self._time + 1) if self._time < arrival + LARGEST_LEAD else usual
 
     def _fault(self, stamp: int, arrival: int, lead: int) -> str:
         """Say why a stamp is not believed, by the name of its count; empty if it is."""
         if stamp <= 0 < arrival:
             return "zero_stamp"
-        if stamp > arrival + lead:
-            return "ahead_stamp" if stamp <= arrival + LARGEST_LEAD else "future_stamp"
+        if stamp > arrival + LARGEST_LEAD:
+            return "future_stamp"
+        usual = 0 if self._time is None or self._arrival is None else self._time - self._arrival
+        if stamp > arrival + max(lead, max(usual, 0) + LEAD_GROWTH):
+            return "ahead_stamp"
         if stamp < arrival - LONGEST_TRANSPORT:
             return "old_stamp"
         if stamp == self._last_stamp:

@@ -15,7 +15,7 @@ from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
-from tree_sway_ros.core.wind.simulated.turbulence import TURBULENCE_MODELS
+from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
 _MODEL = Settings()
@@ -56,7 +56,7 @@ ANEMOMETER: Table = (
         "turbulence",
         "kaimal",
         "Spectrum of the turbulence.",
-        choices=(*TURBULENCE_MODELS, "none"),
+        choices=(*SPECTRA, "none"),
         live=True,
         source="IEC 61400-1",
     ),
