@@ -16,6 +16,7 @@ from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.progress import Progress
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import WARN, Status
 from tree_sway_ros.ros.reports.sway_report import SwayReport
@@ -41,9 +42,31 @@ class SolverNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("solver", **options)
+        with Progress(self.get_logger().info) as progress:
+            progress.stage(f"opening tree '{self.values['tree']}'")
+            source = self._open()
+            progress.stage(
+                f"reducing {source.tree.n_segments} segments and making the kernels ready "
+                "(where none are kept they are compiled, up to a minute)"
+            )
+            self._make(source)
+        for doubt in source.warnings:
+            self.get_logger().warning(doubt)
+        for note in source.notes:
+            self.get_logger().info(note)
+        self.pacer.start()
+        self.get_logger().info(
+            f"ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, "
+            f"{self.values['rate']:g} Hz"
+        )
+
+    def _open(self) -> Any:
         source = open_scene(self.values["tree"])
         if self.values["species"]:
             source = source.of_species(open_species(self.values["species"])).checked()
+        return source
+
+    def _make(self, source: Any) -> None:
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
@@ -74,11 +97,6 @@ class SolverNode(TreeSwayNode):
         self.create_service(SetBool, "~/pause", self._pause)
         self.report_with(source.tree.name, self._statuses)
         self.on_close(self.pacer.stop)
-        self.pacer.start()
-        for doubt in source.warnings:
-            self.get_logger().warning(doubt)
-        for note in source.notes:
-            self.get_logger().info(note)
 
     def _make_wind(self) -> WindAverage:
         return WindAverage(**self.values("interpolation", "timeout", "decay"))
@@ -94,9 +112,7 @@ class SolverNode(TreeSwayNode):
     def _see(self, message: Any) -> None:
         at = message.pose.position
         camera = (at.x, at.y, at.z)
-        if not all(
-            abs(component) <= _FARTHEST_CAMERA for component in camera
-        ):  # NaN is refused, too
+        if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # NaN is not, either
             self._refused_cameras += 1
             return
         self._camera = camera

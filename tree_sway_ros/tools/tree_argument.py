@@ -19,14 +19,29 @@ from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
 
 
-def add_tree_arguments(parser: argparse.ArgumentParser, *, forests: bool = False) -> None:
-    """Add TREE and what can be said of its wood; `forests` says that TREE may be a forest."""
-    parser.add_argument("tree", metavar="TREE", help=f"{_TREE}{' of a tree or a forest' * forests}")
-    add_wood_arguments(parser)
+def add_tree_arguments(
+    parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
+) -> None:
+    """
+    Add TREE and what can be said of its wood.
 
+    Parameters
+    ----------
+    parser
+        Of the command.
+    forests
+        TREE may be a forest.
+    default
+        TREE where it is left out; it may not be if None.
 
-def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what can be said of the wood of a tree, and of how its file is to be read."""
+    """
+    kind = f"{_TREE}{' of a tree or a forest' * forests}"
+    if default is None:
+        parser.add_argument("tree", metavar="TREE", help=kind)
+    else:
+        parser.add_argument(
+            "tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)"
+        )
     parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
     parser.add_argument(
         "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"

@@ -88,7 +88,7 @@ def animate_poses(
         from PIL import Image
     except ImportError:
         raise MissingDependencyError(
-            "moving pictures need pillow", cure="pip install 'tree_sway_ros[plot]'"
+            "moving pictures need pillow", cure="pip install pillow"
         ) from None
     camera = camera or Camera()
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]

@@ -32,7 +32,7 @@ def new_figure(width: float, height: float) -> Figure:
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingDependencyError(
-            "pictures need matplotlib", cure="pip install 'tree_sway_ros[plot]'"
+            "pictures need matplotlib", cure="pip install matplotlib"
         ) from None
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)

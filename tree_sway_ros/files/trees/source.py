@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -51,6 +51,8 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     if not path.exists():
         close = difflib.get_close_matches(text, BUILTIN_TREES, n=1)
         guess = f"did you mean '{close[0]}'? " if close else ""
+        if text in species_keys():
+            guess = f"it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml; "
         raise FormatError(
             f"no tree '{text}'",
             cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",

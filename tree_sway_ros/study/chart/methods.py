@@ -44,7 +44,7 @@ def chart_methods(out_dir: str | Path, points: list[Point] | None = None) -> lis
         import matplotlib
     except ImportError as error:
         raise MissingDependencyError(
-            "matplotlib is not installed", where="chart", cure="pip install tree_sway_ros[plot]"
+            "matplotlib is not installed", where="chart", cure="pip install matplotlib"
         ) from error
     matplotlib.use("Agg")
     folder = Path(out_dir)

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.tools.stream_monitor import StreamRecord
+from tree_sway_ros.tools.stream.monitor import StreamRecord
+from tree_sway_ros.tools.stream.totals import StreamTotals
 
 _COMPASS = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
 
@@ -23,30 +24,27 @@ def status_line(latest: StreamRecord, elapsed: float) -> str:
     return f"{elapsed:6.1f} s | {wind} |{tip} poses {latest.pose_rate:5.1f} Hz, latency {late}"
 
 
-def summary(record: StreamRecord, rate: float) -> str:
+def summary(totals: StreamTotals, rate: float) -> str:
     """Several lines about a whole stream; `rate` is the one it was meant to have in [Hz]."""
-    if not record.arrival:
+    if not totals.arrivals.count:
         return "no poses"
-    missing = record.missing(rate)
-    late = [1e3 * record.latency(share) for share in (0.5, 0.95, 1.0)]
+    late = [1e3 * totals.latency.quantile(share) for share in (0.5, 0.95, 1.0)]
     lines = [
-        f"poses    {len(record.arrival)} at {record.pose_rate:.2f} Hz (wanted {rate:g}), "
-        f"{missing or 'none'} missing",
+        f"poses    {totals.arrivals.count} at {totals.arrivals.rate:.2f} Hz (wanted {rate:g}), "
+        f"{totals.missing(rate) or 'none'} missing",
         f"latency  p50 {late[0]:.2f}, p95 {late[1]:.2f}, max {late[2]:.2f} ms",
     ]
-    if record.wind:
-        speed = [_speed(vector) for vector in record.wind]
+    wind, tip = totals.wind, totals.tip
+    if wind.count:
         lines.append(
-            f"wind     {len(speed)} at {record.wind_rate:.2f} Hz, mean {np.mean(speed):.2f}, "
-            f"max {np.max(speed):.2f} m/s, {_from(np.mean(record.wind, axis=0))}"
+            f"wind     {wind.count} at {totals.wind_stamps.rate:.2f} Hz, mean {wind.length:.2f}, "
+            f"max {wind.largest:.2f} m/s, {_from(wind.vector)}"
         )
-    if record.tip:
-        tip = np.array(record.tip)
-        way = 1e3 * np.linalg.norm(tip, axis=1)
-        east, north, up = 1e3 * tip.mean(axis=0)
+    if tip.count:
+        east, north, up = 1e3 * tip.vector
         lines.append(
-            f"tip      {way.mean():.1f} mm from rest on average, {way.max():.1f} at most; "
-            f"mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up"
+            f"tip      {1e3 * tip.length:.1f} mm from rest on average, {1e3 * tip.largest:.1f} at "
+            f"most; mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up"
         )
     return "\n".join(lines)
 

@@ -5,42 +5,16 @@ Watching a stream: until its time is over or somebody ends it, with a line that 
 
 from __future__ import annotations
 
-import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 from tree_sway_ros.errors import ParameterError, TransportError
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import status_line
+from tree_sway_ros.tools.stream.monitor import WINDOW, StreamMonitor
+from tree_sway_ros.tools.stream.text import status_line
 
 _SETTLING = 0.5
 _LIVE_PERIOD, _LOG_PERIOD = 0.2, 2.0
-_WINDOW = 2.0
-
-
-@contextmanager
-def interrupted_once() -> Iterator[None]:
-    """
-    Turn the first Ctrl-C or SIGTERM into KeyboardInterrupt and be deaf to others.
-
-    A second one, while threads and middleware close, would end the process halfway; so it stays
-    deaf until the process ends.
-
-    """
-    numbers = (signal.SIGINT, signal.SIGTERM)
-
-    def interrupt(_number: int, _frame: object) -> None:
-        for number in numbers:
-            signal.signal(number, signal.SIG_IGN)
-        raise KeyboardInterrupt
-
-    before = [signal.signal(number, interrupt) for number in numbers]
-    yield
-    for number, handler in zip(numbers, before, strict=True):
-        if signal.getsignal(number) is interrupt:
-            signal.signal(number, handler)
 
 
 def checked_seconds(seconds: float | None) -> float:
@@ -60,25 +34,20 @@ def watch(
     check: Callable[[], bool],
     *,
     patience: float = 30.0,
-) -> float:
+) -> None:
     """
     Receive for a time, and print how it goes.
 
     Parameters
     ----------
     monitor
-        Who receives; its record grows.
+        Who receives; its totals begin when the time begins to count.
     seconds
         From when poses come and what had queued up at the start is through; may be infinite.
     check
         Called now and then; raises if something failed, returns True to go on.
     patience
         How long to wait for the first poses in [s].
-
-    Returns
-    -------
-    float
-        When the time began to count, in [s].
 
     Raises
     ------
@@ -96,16 +65,17 @@ def watch(
                 "set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS",
             )
     monitor.wait(_SETTLING)
+    monitor.count_anew()
     begin = time.time()
     is_live = sys.stdout.isatty()
     try:
         while check() and (left := begin + seconds - time.time()) > 0.0:
             monitor.wait(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
             now = time.time()
-            line = status_line(monitor.record.since(now - _WINDOW), now - begin)
+            monitor.record.forget(now - WINDOW)
+            line = status_line(monitor.record, now - begin)
             print(f"\r\033[K{line}" if is_live else line, end="" if is_live else "\n", flush=True)
     except KeyboardInterrupt:
         pass
     if is_live:
         print()
-    return begin

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.identification.sway_record import estimate_sway
+from tree_sway_ros.core.identification.measured_sway import estimate_sway
 from tree_sway_ros.errors import FormatError, ParameterError
 
 RATE = 20.0
