@@ -130,7 +130,7 @@ WIND: Table = (
         1.0,
         source="the paper, 3.2",
     ),
-    Parameter("fixed_frame", "map", "Frame of what is published; no transform is applied."),
+    _FRAME,
     Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, 200.0),
     Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
     Parameter("longest_refusal", 0.5, "After so long a change is taken as true.", "s", 0.05, 10.0),
