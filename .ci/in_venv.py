@@ -39,13 +39,13 @@ NEEDS = {
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
-    **dict.fromkeys(("pytest", "py.test"), ("ros", "bag", "plot", "gltf", "h5", "mujoco", "test")),
+    **dict.fromkeys(("pytest", "py.test"), ("ros", "bag", "plot", "h5", "mujoco", "test")),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
     "sphinx-build": ("docs",),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {".db3": "bag", ".mcap": "bag", ".glb": "gltf", ".gltf": "gltf", ".mat": "h5"}
+NEEDS_OF_FILES = {".db3": "bag", ".mcap": "bag", ".mat": "h5"}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     "AMENT_PREFIX_PATH",

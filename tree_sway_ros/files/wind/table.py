@@ -117,9 +117,7 @@ def read_csv_wind(
     return rows.record(epoch=epoch)
 
 
-def _values(
-    table: TextTable, cells: tuple[str, ...], columns: list[_Column]
-) -> list[float] | str:
+def _values(table: TextTable, cells: tuple[str, ...], columns: list[_Column]) -> list[float] | str:
     """Values in SI of some cells, or why not."""
     values = []
     for column in columns:
