@@ -113,7 +113,7 @@ class ParameterValues:
         return {name: self._values[name] for name in names}
 
     def _convert(self, changes: list[Any]) -> list[Any]:
-        """Give each value its parameter's own kind: a double stays one after ``set tolerance 1``."""
+        """Give each value its parameter's own kind: a double stays one when set to 1."""
         return [self._converted(change) for change in changes]
 
     def _converted(self, change: Any) -> Any:

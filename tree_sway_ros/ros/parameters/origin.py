@@ -22,8 +22,8 @@ def own_names(arguments: Sequence[str], node: str) -> frozenset[str]:
     """
     Names of parameters that a command line tells a node by the node's own name.
 
-    ``-p name:=value`` counts where it was typed for this one process; a launch file, which names the
-    node it starts by ``__node:=``, may have put it there for every node.
+    ``-p name:=value`` counts where it was typed for this one process; a launch file, which names
+    the node it starts by ``__node:=``, may have put it there for every node.
 
     Parameters
     ----------
