@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TypeVar
 
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
-Scene = TypeVar("Scene", TreeFile, ForestFile)
+Scene = TreeFile | ForestFile
 
 
 def placed_scene(
@@ -39,8 +38,8 @@ def placed_scene(
     if isinstance(source, ForestFile):
         trees = []
         for each in source.trees:
-            at = dict(zip("xyz", moved(each.x, each.y, each.z), strict=True))
-            trees.append(replace(each, **at, yaw=each.yaw + yaw))
+            px, py, pz = moved(each.x, each.y, each.z)
+            trees.append(replace(each, x=px, y=py, z=pz, yaw=each.yaw + yaw))
         anemometer = None if source.anemometer is None else moved(*source.anemometer)
         return replace(source, trees=tuple(trees), anemometer=anemometer)
     root = moved(*source.tree.start[0].tolist())
