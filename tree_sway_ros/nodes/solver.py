@@ -17,6 +17,7 @@ from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.progress import Progress
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
@@ -33,7 +34,8 @@ _FARTHEST_CAMERA = 1e6
 
 class SolverNode(TreeSwayNode):
     """
-    Subscribes `wind/filtered`, publishes `segment_poses`, `markers` and `tree_description`.
+    Subscribes `wind/filtered`; publishes `segment_poses`, `markers`, `tree_state` and
+    `tree_description`.
 
     Parameters
     ----------
@@ -95,6 +97,7 @@ class SolverNode(TreeSwayNode):
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
+        self._state = StatePublisher(self, self.simulator, leaves)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
@@ -142,6 +145,7 @@ class SolverNode(TreeSwayNode):
         self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
         index = tick.time // self.pacer.period
         self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
+        self._state.publish(index, tick.time)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._stepper.request(self.simulator.reset)

@@ -285,6 +285,9 @@ SOLVER: Table = (
     ),
     Parameter("marker_rate", 20.0, "Markers a second; 0 for none.", "Hz", 0.0, 20.0),
     Parameter("marker_classes", 6, "Line widths of the markers.", "", 1, 32),
+    Parameter(
+        "state_rate", 30.0, "States per second on `tree_state`; 0 for none.", "Hz", 0.0, 1000.0
+    ),
     Parameter("publish_tf", False, "Publish a frame a segment as well; needs tf2_msgs."),
 )
 
@@ -301,9 +304,20 @@ PLAYER: Table = (
     Parameter("wait_for_subscriber", True, "Start when somebody listens."),
 )
 
+VIEWER: Table = (
+    Parameter("address", "127.0.0.1", "To bind to; any but this machine's own needs a token."),
+    Parameter("port", 8765, "Of the page; 0 for a free one.", "", 0, 65535),
+    Parameter("token", "", "What pages must know, as `?token=`."),
+    Parameter("certificate", "", "PEM file, to serve the page over TLS."),
+    Parameter("private_key", "", "PEM file of the certificate's key."),
+    Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
+    Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
+)
+
 NODE_PARAMETERS: dict[str, Table] = {
     "anemometer": ANEMOMETER,
     "wind": WIND,
     "solver": SOLVER,
     "player": PLAYER,
+    "viewer": VIEWER,
 }

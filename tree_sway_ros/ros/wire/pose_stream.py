@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import json
 import math
 from typing import Any
 
@@ -56,6 +57,12 @@ class PoseStream:
         self._timer = node.create_timer(
             REPEAT_PERIOD, self.publish_description, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
+        self.publish_description()
+
+    def tell_more(self, content: dict[str, Any]) -> None:
+        """Add to the description, from any thread, and publish it."""
+        whole = {**json.loads(self._description.data), **content}
+        self._description = String(data=json.dumps(whole, separators=(",", ":")))
         self.publish_description()
 
     def publish_description(self) -> None:

@@ -57,6 +57,11 @@ SCHEMA: dict[str, Any] = {
             "required": ["names", "parents", "first_segments"],
             "properties": {"names": _NAMES, "parents": _INDICES, "first_segments": _INDICES},
         },
+        "state": {
+            "type": "object",
+            "description": "how to read `tree_state`; absent until somebody listens to it",
+            "required": ["format", "base64"],
+        },
         "leaves": {
             "type": "object",
             "description": "one item a leaf cluster, carried by its segment; absent without leaves",
