@@ -13,7 +13,9 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.intake import WindIntake
+from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.ros.process.node import TreeSwayNode
@@ -66,7 +68,7 @@ class SolverNode(TreeSwayNode):
         source = open_scene(self.values["tree"])
         if self.values["species"]:
             source = source.of_species(open_species(self.values["species"])).checked()
-        return source
+        return placed_scene(source, **self.values("x", "y", "z", "yaw"))
 
     def _make(self, source: Any) -> None:
         settings = Settings(
@@ -79,6 +81,7 @@ class SolverNode(TreeSwayNode):
                 self.values["anemometer_height"],
                 self.values["profile_exponent"],
                 self.values["roughness"],
+                ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
             ),
         )
         self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))

@@ -19,6 +19,7 @@ from functools import partial
 from math import hypot, pi, sqrt
 from pathlib import Path
 
+from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.files.text_file import finite
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.sensor_line import (

@@ -131,7 +131,7 @@ WIND: Table = (
         1.0,
         source="the paper, 3.2",
     ),
-    Parameter("fixed_frame", "map", "Frame of what is published; no transform is applied."),
+    _FRAME,
     Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, FASTEST_WIND),
     Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
     Parameter("longest_refusal", 0.5, "After so long a change is taken as true.", "s", 0.05, 10.0),
@@ -275,6 +275,15 @@ SOLVER: Table = (
         "decay", 6.0, "Time constant of the wind after that; the force halves it.", "s", 0.1, 60.0
     ),
     _FRAME,
+    Parameter("x", 0.0, "Where the tree's own origin lies in the frame.", "m", -1e6, 1e6),
+    Parameter("y", 0.0, "The same to the north.", "m", -1e6, 1e6),
+    Parameter("z", 0.0, "The same upwards; the ground of the wind profile.", "m", -1e4, 1e4),
+    Parameter("yaw", 0.0, "Turn of the tree, counterclockwise from above.", "rad", -6.3, 6.3),
+    Parameter(
+        "hash_in_frame",
+        False,
+        "Poses say `frame_id#hash`, with the hash of `tree_description`: whose they are is seen.",
+    ),
     Parameter("marker_rate", 20.0, "Markers a second; 0 for none.", "Hz", 0.0, 20.0),
     Parameter("marker_classes", 6, "Line widths of the markers.", "", 1, 32),
     Parameter(
