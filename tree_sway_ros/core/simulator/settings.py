@@ -9,8 +9,10 @@ import math
 from dataclasses import dataclass, field
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import ParameterError
 
 MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
@@ -82,7 +84,7 @@ class Settings:
     enrich: str = "limbs"
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
-    max_wind: float = 150.0
+    max_wind: float = FASTEST_WIND
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
@@ -107,7 +109,8 @@ class Settings:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
         if self.degree not in (1, 3, 5):
             raise ParameterError(f"degree {self.degree}", where="degree", cure="use 1, 3 or 5")
-        for name in ("volume_stiffness", "volume_damping", "max_wind"):
+        within("max_wind", self.max_wind, 0.0, FASTEST_WIND, "m/s", above=True)
+        for name in ("volume_stiffness", "volume_damping"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
