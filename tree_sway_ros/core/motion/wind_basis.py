@@ -108,7 +108,8 @@ class WindBasisBank:
         """Force of the last step's wind on each branch in [N], (b, 3); a pass over all branches."""
         m, now = self.modal.shapes.shape[1], self.instance[0]
         self.modal.take(now["eta"][:m], now["rate"][:m], now["force"][:m], self.rotations())
-        self.modal.advance(*now["wind"].tolist(), float(now["pressure"]))
+        wx, wy, wz = now["wind"].tolist()
+        self.modal.advance(wx, wy, wz, float(now["pressure"]))
         return self.modal.forces()
 
     def reset(self) -> None:
