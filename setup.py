@@ -72,6 +72,8 @@ extras = {
         *("pytest>=7,<9", "pytest-xdist>=3", "pytest-cov>=4", "hypothesis>=6.60", "mpmath>=1.2"),
     ],
     "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML", "types-jsonschema"],
+    # Studies on a cluster, and their tables as Parquet.
+    "cluster": ["distributed>=2023.1", "pyarrow>=12"],
     "docs": ["sphinx>=7", "myst-parser>=2"],
 }
 

@@ -10,9 +10,9 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.reference.measure import frame_means
-from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.simulate import GrownTree, simulate
 from tree_sway_ros.core.scene.sway_record import SwayRecord
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
@@ -50,7 +50,7 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     record = simulate(
         tree, _wind(case), rate=case.rate, seconds=case.seconds, fidelity=fidelity, **settings
     )
-    modes = make_simulator(tree.tree, tree.species, Settings(**settings), fidelity="modes")
+    layer = CalibratedTree(tree.tree, tree.species, Settings(**settings))
     row: Plain = {**_told("tree", case.tree), **_told("wind", case.wind), **case.settings}
     row |= {
         "seconds": case.seconds,
@@ -58,7 +58,7 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
         "segments": tree.tree.n_segments,
         "height": tree.tree.height,
         "model": record.model,
-        "frequency": float(modes.frequencies(1)[0]),
+        "frequency": float(layer.bank("modes").frequencies[0]),
         "wind_mean": float(np.linalg.norm(record.wind.mean(axis=0))),
         "wind_largest": float(np.linalg.norm(record.wind, axis=1).max()),
     }

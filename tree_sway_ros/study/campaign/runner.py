@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
+from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.study.campaign.plan import Case, Plain
 
 ATTEMPTS = 4
@@ -67,9 +67,13 @@ def run_study(
     done = sum(result_path(folder, case).is_file() for case in cases)
     missing = [case for case in cases if not result_path(folder, case).is_file()]
     progress(done, len(cases))
-    finished = _on_cluster if scheduler else _on_cores
+    outcomes = (
+        _on_cluster(missing, folder, scheduler)
+        if scheduler
+        else _on_cores(missing, folder, workers)
+    )
     failed: TreeSwayError | None = None
-    for outcome in finished(missing, folder, scheduler or workers):  # type: ignore[operator]
+    for outcome in outcomes:
         if isinstance(outcome, TreeSwayError):
             failed = failed or outcome
         else:
@@ -91,17 +95,13 @@ def compute_to_file(case: Case, folder: Path) -> None:
 
     row, record = compute(case)
     if case.series:
-        _write(folder / f"{case.name}.csv", record.to_csv())
-    _write(result_path(folder, case), json.dumps(row))
+        write_text_whole(folder / f"{case.name}.csv", record.to_csv())
+    write_text_whole(result_path(folder, case), json.dumps(row))
 
 
-def _write(path: Path, text: str) -> None:
-    partial = path.with_suffix(f".{os.getpid()}.part")
-    partial.write_text(text, encoding="utf-8")
-    partial.replace(path)
-
-
-def _on_cores(cases: list[Case], folder: Path, workers: int | None) -> Iterator[Any]:
+def _on_cores(
+    cases: list[Case], folder: Path, workers: int | None
+) -> Iterator[TreeSwayError | None]:
     """Outcome of each case as it is finished: None, or what is wrong with it."""
     attempts = 0
     while cases:
@@ -137,7 +137,7 @@ def _outcome(future: Future[None], case: Case) -> TreeSwayError | None:
     return None
 
 
-def _on_cluster(cases: list[Case], folder: Path, scheduler: str) -> Iterator[Any]:
+def _on_cluster(cases: list[Case], folder: Path, scheduler: str) -> Iterator[TreeSwayError | None]:
     """As `_on_cores`, on the workers of a dask scheduler, which starts a lost case again."""
     try:
         import distributed

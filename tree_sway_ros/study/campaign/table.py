@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 from pathlib import Path
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError
+from tree_sway_ros.files.whole_file import whole_file, write_text_whole
 from tree_sway_ros.study.campaign.plan import Plain
 
 
@@ -24,13 +24,12 @@ def write_table(rows: list[Plain], path: Path) -> None:
 
     """
     names = list(dict.fromkeys(name for row in rows for name in row))
-    partial = path.with_suffix(f".{os.getpid()}.part")
     if path.suffix == ".csv":
         text = io.StringIO()
         writer = csv.DictWriter(text, names, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-        partial.write_text(text.getvalue(), encoding="utf-8")
+        write_text_whole(path, text.getvalue())
     elif path.suffix == ".parquet":
         try:
             import pyarrow
@@ -40,9 +39,9 @@ def write_table(rows: list[Plain], path: Path) -> None:
                 "Parquet needs pyarrow", cure="pip install pyarrow, or end the name with .csv"
             ) from None
         columns = {name: [row.get(name) for row in rows] for name in names}
-        parquet.write_table(pyarrow.table(columns), partial)
+        with whole_file(path) as partial:
+            parquet.write_table(pyarrow.table(columns), partial)
     else:
         raise FormatError(
             f"'{path.suffix}' is no table", where=str(path), cure="end it with .csv or .parquet"
         )
-    partial.replace(path)
