@@ -109,13 +109,10 @@ def test_ctrl_c_ends_it_with_a_summary(
     process = start(environment, "demo", "goldcrest")
     assert any("| poses " in line for line in lines_until(process, "| poses "))
     if len(signals) > 1:
-        for _ in range(3):  # On a machine as busy as this it may take longer to be seen.
-            second = start(environment, "demo", "goldcrest", "--seconds", "1")
-            _, err = second.communicate(timeout=DEADLINE)
-            if second.returncode != 0:
-                break
+        second = start(environment, "demo", "goldcrest", "--seconds", "1")
+        _, err = second.communicate(timeout=DEADLINE)
         assert second.returncode == 2
-        assert "another program publishes 'wind' in this ROS domain; end it, or set" in err
+        assert "another demo runs in ROS domain" in err
     for one in signals:
         process.send_signal(one)
     out, err = process.communicate(timeout=DEADLINE)

@@ -31,6 +31,9 @@ class Command(NamedTuple):
 
 
 COMMANDS: dict[str, Command] = {
+    "show": Command(
+        "a tree in wind on a page of the browser, without ROS", "show goldcrest --seconds 10"
+    ),
     "demo": Command(
         "a tree sways in wind, all nodes in one process over real DDS",
         "demo goldcrest --speed 8 --seconds 10",

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
+import webbrowser
 from pathlib import Path
 
 from tree_sway_ros.core.tree.tree import Tree
@@ -19,10 +20,13 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
+from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
+from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.only_demo import only_demo
+from tree_sway_ros.tools.stream.text import summary
+from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 
@@ -56,6 +60,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
     )
+    parser.add_argument("--no-page", action="store_true", help="serve no page")
+    add_page_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -74,25 +80,33 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    try:
-        with interrupted_once(), Composition({}) as nodes:
-            monitor = StreamMonitor(nodes.context, tree)
+    with Ending() as ending, only_demo(), Composition({}) as nodes:
+        monitor = StreamMonitor(nodes.context, tree)
 
-            def goes_on() -> bool:
-                nodes.check()
-                return not nodes.is_done
+        def goes_on() -> bool:
+            nodes.check()
+            return not nodes.is_done
 
-            try:
-                monitor.expect_silence()
-                for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
-                    nodes.add(name, values)
-                begin = watch(monitor, seconds, goes_on)
-            finally:
-                monitor.close()
-    except KeyboardInterrupt:
-        return 0
-    print(summary(monitor.record.since(begin), arguments.rate))
+        try:
+            monitor.expect_silence()
+            for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
+                nodes.add(name, values)
+            if not arguments.no_page:
+                _serve_page(nodes, arguments)
+            ending.limit = LONGEST
+            watch(monitor, seconds, goes_on)
+            print(summary(monitor.totals, arguments.rate), flush=True)
+        finally:
+            monitor.close()
     return 0
+
+
+def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
+    """Add the viewer, tell where its page is, and open it if asked to."""
+    url = nodes.add("viewer", {**vars(page_settings(arguments)), "control": True}).server.url
+    print(f"page: {url}", flush=True)
+    if arguments.open:
+        webbrowser.open(url)
 
 
 def size_of(tree: Tree) -> str:

@@ -48,5 +48,10 @@ def output_path(arguments: argparse.Namespace, default: str = "") -> str:
 def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
     """Write a tree and say what was written."""
     write_tree(path, tree, species)
+    print(what_was_written(path, tree))
+
+
+def what_was_written(path: str, tree: Tree) -> str:
+    """Return a line about a tree in a file."""
     size = f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
-    print(f"{path}: {tree.name}, {size}")
+    return f"{path}: {tree.name}, {size}"

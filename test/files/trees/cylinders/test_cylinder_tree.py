@@ -125,9 +125,7 @@ def test_what_cannot_be(rows, message):
         built(rows)
 
 
-@pytest.mark.parametrize(
-    "options", [{"merge_below": -1.0}, {"twig_diameter": float("nan")}]
-)
+@pytest.mark.parametrize("options", [{"merge_below": -1.0}, {"twig_diameter": float("nan")}])
 def test_options_are_checked(options):
     with pytest.raises(ParameterError, match=next(iter(options))):
         CylinderOptions(**options)
