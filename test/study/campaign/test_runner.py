@@ -14,7 +14,6 @@ from tree_sway_ros.study.campaign.plan import Case
 from tree_sway_ros.study.campaign.runner import compute_to_file, result_path, run_study
 from tree_sway_ros.study.campaign.table import write_table
 
-
 SEEDLING = Path(__file__).parents[2] / "files" / "data" / "seedling.yaml"
 
 
