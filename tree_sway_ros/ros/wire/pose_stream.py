@@ -17,7 +17,7 @@ from tree_sway_ros.ros.process.topics import MARKERS, SEGMENT_POSES, TF, TREE_DE
 from tree_sway_ros.ros.timing.stepping import Divider
 from tree_sway_ros.ros.wire.cdr import pose_array_template
 from tree_sway_ros.ros.wire.markers import TreeMarkers
-from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD, describe
+from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD, describe, tree_hash
 from tree_sway_ros.ros.wire.wind_messages import fill_stamp
 
 
@@ -40,7 +40,9 @@ class PoseStream:
         values = node.values
         frame_id = values["frame_id"]
         self.frames = 0
-        self._template = pose_array_template(tree.n_segments, frame_id)
+        self.hash = tree_hash(tree)
+        shown = f"{frame_id}#{self.hash}" if values["hash_in_frame"] else frame_id
+        self._template = pose_array_template(tree.n_segments, shown)
         self.poses = self._template.blocks[0]
         self._pose_publisher = node.publisher(SEGMENT_POSES, alone=True)
         self._pose_divider, self._marker_divider = Divider(), Divider()
