@@ -18,7 +18,7 @@ from tree_sway_ros.files.wind.wind_file import read_wind
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("1", 1.0), (" -2.5e-3 ", -0.0025), (".5", 0.5), ("5.", 5.0), ("+1E2", 100.0)],
+    [("1", 1.0), (" -2.5e-3 ", -0.0025), (".5", 0.5), ("5.", 5.0), ("+1E2", 100.0), ("\x1e1", 1.0)],
 )
 def test_plain_numbers(text, value):
     assert finite(text) == value

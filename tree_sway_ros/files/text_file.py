@@ -117,9 +117,10 @@ def read_lines(path: Path) -> list[str]:
 
 def finite(text: str) -> float | None:
     """Read a plain decimal number; None if it is anything else, such as empty, NaN or infinite."""
-    if _NUMBER.fullmatch(text.strip()) is None:
+    cell = text.strip()
+    if _NUMBER.fullmatch(cell) is None:
         return None
-    value = float(text)
+    value = float(cell)
     return value if math.isfinite(value) else None
 
 

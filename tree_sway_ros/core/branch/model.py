@@ -28,6 +28,7 @@ from tree_sway_ros.core.branch.shapes import (
     Coordinate,
     ways_to_move,
 )
+from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -110,6 +111,10 @@ def branch_models(
 
     """
     n = tree.n_branches
+    if leaf_mass is not None:
+        leaf_mass = one_of_each("leaf_mass", leaf_mass, n, "branch")
+    if leaf_area is not None:
+        leaf_area = one_of_each("leaf_area", leaf_area, n, "branch")
     models: list[BranchModel] = []
     area, area_moment = np.zeros(n), np.zeros((n, 3))
     weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))

@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
-from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.simulator.season import in_season
@@ -93,8 +93,6 @@ class AdaptiveSimulator(KeepsState):
         self._shown = self._simulator(self.choice)
         self._next: SwaySimulator | None = None
         self._next_age = self._since_review = 0.0
-        self._poses = np.zeros((tree.n_segments, 7))
-        self._mixed = np.zeros((tree.n_segments, 7))
 
     @property
     def model(self) -> str:
@@ -128,7 +126,7 @@ class AdaptiveSimulator(KeepsState):
 
     @property
     def tip_displacement(self) -> Floats:
-        """Way of the highest tip from rest in [m], (3,), as last placed by the model in use."""
+        """Displacement of the highest tip from rest in [m], (3,), of the model in use."""
         return self._shown.tip_displacement
 
     @property
@@ -180,7 +178,8 @@ class AdaptiveSimulator(KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations of the whole tree, (n, 7)."""
-        poses = np.empty_like(self._poses) if out is None else out
+        shape = (self.tree.n_segments, 7)
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
         self.bank.place(rotations, self.tree.start[0], poses)
         return poses
 
@@ -231,9 +230,9 @@ class AdaptiveSimulator(KeepsState):
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""
-        poses = self._shown.place(self._poses if out is None else out)
+        poses = self._shown.place(out)
         if self._next is not None and self._faded > 0.0:
-            _mix(poses, self._next.place(self._mixed), self._faded)
+            _mix(poses, self._next.place(), self._faded)
         return poses
 
     def reset(self) -> None:
@@ -297,19 +296,10 @@ def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
     return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)
 
 
-@fused
 def _mix(poses: Floats, others: Floats, share: float) -> None:
-    """Go over from poses to others by a share of the way, in place."""
-    for j in range(len(poses)):
-        towards = 0.0
-        for k in range(3, 7):
-            towards += poses[j, k] * others[j, k]
-        sign = 1.0 if towards >= 0.0 else -1.0
-        square = 0.0
-        for k in range(7):
-            other = others[j, k] if k < 3 else sign * others[j, k]
-            poses[j, k] += share * (other - poses[j, k])
-            if k >= 3:
-                square += poses[j, k] * poses[j, k]
-        for k in range(3, 7):
-            poses[j, k] /= np.sqrt(square)
+    """Go over from poses to others by a share, in place."""
+    turn, other = poses[:, 3:], others[:, 3:]
+    towards = np.einsum("jk,jk->j", turn, other)
+    poses[:, :3] += share * (others[:, :3] - poses[:, :3])
+    turn += share * (np.where(towards < 0.0, -1.0, 1.0)[:, None] * other - turn)
+    turn /= np.sqrt(np.einsum("jk,jk->j", turn, turn))[:, None]

@@ -88,7 +88,8 @@ class ModalBank:
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self._half[:, 6] + self._half[:, 7]
-        self._loads["compliance"][block, lane] = self._participation @ velocity
+        compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads
+        self._loads["compliance"][block, lane] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -104,7 +105,7 @@ class ModalBank:
         Returns
         -------
         int
-            How many loads were held at their limit.
+            How many loads were held at their limit, -1 if the motion is not finite.
 
         """
         return int(
@@ -215,7 +216,7 @@ def _advance(
             here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
     wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
     generalised_loads(branches, work, loads, True, moment, pull)
-    over = 0
+    over, total = 0, 0.0
     for b in range(len(branches)):
         i = branches[b].coordinate
         moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
@@ -232,4 +233,5 @@ def _advance(
         c, old = whole[k], eta[k]
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * force[k]
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * force[k]
-    return over
+        total += 0.0 * eta[k] + 0.0 * rate[k] + 0.0 * rest[k]
+    return over if total == 0.0 else -1

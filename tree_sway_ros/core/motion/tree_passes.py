@@ -11,13 +11,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.drag import drag
-from tree_sway_ros.core.motion.fill_records import load_records
-from tree_sway_ros.core.motion.records import LANES, WORK
+from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import turned
 
 
@@ -239,30 +236,3 @@ def _add_carried_loads(branches: Any, work: Any, moment: Floats, pull: Floats) -
             )  # fmt: skip
         along = chord[0, 0] * wrench[0] + chord[0, 1] * wrench[1] + chord[0, 2] * wrench[2]
         pull[branch.parent] += branch.axial_lever * along
-
-
-def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True) -> Floats:
-    """
-    Moments of an even wind of 1 m/s and 1 kg/m^3, along x and along y, on the tree at rest.
-
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    n_coordinates
-        N.
-    carries
-        Whether what a branch carries pushes on it.
-
-    Returns
-    -------
-    Floats
-        In [N m], (N, 2).
-
-    """
-    moments, pull = np.zeros((2, n_coordinates)), np.zeros(len(branches))
-    for moment, (wx, wy) in zip(moments, np.eye(2), strict=True):
-        work, loads = np.zeros(len(branches), dtype=WORK), load_records(branches)
-        wind_forces(branches, work, loads, False, wx, wy, 0.0, 1.0)
-        generalised_loads(branches, work, loads, carries, moment, pull)
-    return moments.T

@@ -94,7 +94,7 @@ class UncoupledBank:
         Returns
         -------
         int
-            How many loads were held at their limit.
+            How many loads were held at their limit, -1 if the motion is not finite.
 
         """
         return int(
@@ -158,7 +158,7 @@ def _advance(
         for b in range(n):
             load, j = banks[b // LANES].load, b % LANES
             load[0, j], load[1, j], load[2, j] = pull[b], moment[2 * b], moment[2 * b + 1]
-    held = 0
+    held, total = 0, 0.0
     for block in range(len(banks)):
         held += _step(banks[block])
     for b in range(n):
@@ -167,7 +167,8 @@ def _advance(
             here, j = banks[branches[b].source // LANES], branches[b].source % LANES
         for k in range(2):
             x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
-    return held
+            total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
+    return held if total == 0.0 else -1
 
 
 @fused

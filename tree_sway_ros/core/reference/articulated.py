@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill, one_of_each
+from tree_sway_ros.core.kernel import need_compiler
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
@@ -93,6 +95,7 @@ class ArticulatedTree:
         leaf_mass: Floats | None = None,
         leaf_area: Floats | None = None,
     ) -> None:
+        need_compiler("the model 'segments'")
         self.tree = tree
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)
@@ -132,7 +135,8 @@ class ArticulatedTree:
         tree = self.tree
         if leaves is None:
             return np.zeros(tree.n_segments * self.subdivisions)
-        return np.repeat((leaves / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
+        each = one_of_each("leaves", leaves, tree.n_branches, "branch")
+        return np.repeat((each / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -140,7 +144,7 @@ class ArticulatedTree:
         self.state.rate[:] = 0.0
 
     def step(self, wind: ArrayLike, dt: float) -> None:
-        """Advance by dt in [s] under a wind in [m/s], (3,), or one a segment, (n, 3)."""
+        """Advance by dt in [s] under a wind in [m/s], (3,), or one per segment, (n, 3)."""
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
@@ -169,8 +173,8 @@ class ArticulatedTree:
 
     def place(self, out: Floats | None = None) -> Floats:
         """Pose of each segment at its start node, ``x y z qx qy qz qw``, (n, 7)."""
-        if out is None:
-            out = np.empty((self.tree.n_segments, 7))
+        shape = (self.tree.n_segments, 7)
+        out = np.empty(shape) if out is None else array_to_fill("out", out, shape)
         self._place_bodies()
         _, start, end = self._nodes
         pose_block(

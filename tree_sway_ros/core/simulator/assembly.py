@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
+from tree_sway_ros.core.kernel import WHY_PLAIN
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -21,15 +22,18 @@ from tree_sway_ros.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.numpy_banks import NumpyModalBank, NumpyUncoupledBank
+from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
+from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.motion.response import Responding
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
-from tree_sway_ros.core.motion.tree_passes import even_wind_moments
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
@@ -117,6 +121,8 @@ class Bank:
         Of wood and leaves in [kg].
     frozen
         What moves with its parent as one body, and how many branches that is.
+    plain
+        Whether nothing is compiled.
 
     """
 
@@ -129,9 +135,17 @@ class Bank:
     mass: float
     frozen: RigidParts | None = None
     n_frozen: int = 0
+    plain: bool = bool(WHY_PLAIN)
+
+    @cached_property
+    def _plain_placing(self) -> NumpyPlacing:
+        return NumpyPlacing(self.branches, self.segments, self.frozen)
 
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
         """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+        if self.plain:
+            self._plain_placing.place(rotations, origin, out)
+            return
         work = self.oscillators.work
         place(self.branches, self.segments, self.heads, work, rotations, origin, out)
         if self.frozen is not None:
@@ -165,11 +179,16 @@ class CalibratedTree:
     ----------
     tree, species, settings
         As for `SwaySimulator`; the settings' model does not matter.
+    plain
+        Whether its models run in numpy: always where nothing can be compiled.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
+    def __init__(
+        self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
+    ) -> None:
         """Wait to be asked."""
+        self.plain = plain or bool(WHY_PLAIN)
         self.tree, self.species = tree, species
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
@@ -182,6 +201,7 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping(bool(settings.in_leaf))
 
+    @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
         Build the oscillators of a model.
@@ -208,7 +228,7 @@ class CalibratedTree:
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
-            oscillators = ModalBank(
+            oscillators = (NumpyModalBank if self.plain else ModalBank)(
                 branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
             )
             frequencies = modes.frequencies
@@ -221,7 +241,10 @@ class CalibratedTree:
         solved = int((branches["source"] == np.arange(len(branches))).sum())
         segments = layer.segments.copy()
         heads = head_records(branches, segments)
-        return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
+        return Bank(
+            oscillators, branches, segments, heads, frequencies, solved, layer.mass,
+            plain=self.plain,
+        )  # fmt: skip
 
     def at_rest(self, model: str) -> Bank:
         """Return what places the key rotations of a model, and steps nothing."""
@@ -254,6 +277,7 @@ class CalibratedTree:
             carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
         )
 
+    @one_thread()
     def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
         tree, species, settings = self.tree, self.species, self.settings
         speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
@@ -307,4 +331,5 @@ class CalibratedTree:
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-        return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
+        kind = NumpyUncoupledBank if self.plain else UncoupledBank
+        return kind(branches, inertia, damping, stiffness, carries, settings.integrator)

@@ -17,13 +17,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.simulator.simulator import (
+    OK,
+    RESTARTED,
+    WIND_REFUSED,
+    Counts,
+    refuse_time_step,
+)
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -31,6 +38,9 @@ from tree_sway_ros.errors import ParameterError
 
 LONGEST_STEP = 1.0 / 60.0
 """Longest step of the implicit springs in [s]; longer ones are cut."""
+
+LARGEST_TURN = 1.0
+"""Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
 
 
 class SegmentsSimulator(KeepsState):
@@ -83,16 +93,17 @@ class SegmentsSimulator(KeepsState):
         )
         self.wind = np.zeros(3)
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0
-        self._poses = np.zeros((tree.n_segments, 7))
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
-        self.place()
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut."""
-        if not (math.isfinite(dt) and dt > 0.0):
-            raise ParameterError(
-                f"time step of {dt} s", where="step", cure="give a finite one above 0"
-            )
+        """
+        Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut.
+
+        Joints that would turn by more than `LARGEST_TURN` within a piece of a step, as a twig does
+        in a gale, are taken in finer pieces.
+
+        """
+        refuse_time_step(dt)
         wind = np.asarray(wind_mean, dtype=np.float64)
         status = OK
         if np.abs(wind).max() < 1e9 and np.linalg.norm(wind) <= self.settings.max_wind:
@@ -102,9 +113,27 @@ class SegmentsSimulator(KeepsState):
             self.counts.refused += 1
         pieces = math.ceil(dt / LONGEST_STEP - 1e-9)
         for _ in range(pieces):
-            self._model.step(self.wind, dt / pieces)
+            if not self._advance(dt / pieces):
+                self._model.reset()
+                self.counts.restarted += 1
+                status |= RESTARTED
         self.counts.steps += 1
         return status
+
+    def _advance(self, dt: float) -> bool:
+        """Advance by a time [s], finer where joints turn too fast; tell whether they still do."""
+        turn, rate = self._model.state
+        before = turn.copy(), rate.copy()
+        for pieces in (1, 4, 16, 64):
+            for _ in range(pieces):
+                self._model.step(self.wind, dt / pieces)
+                largest = float(np.abs(rate).max()) * dt / pieces
+                if not largest <= LARGEST_TURN:
+                    break
+            else:
+                return True
+            turn[:], rate[:] = before
+        return False
 
     @cached_property
     def _joined(self) -> tuple[Bank, RotationFit]:
@@ -136,22 +165,20 @@ class SegmentsSimulator(KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
-        poses = np.empty_like(self._poses) if out is None else out
+        shape = (self.tree.n_segments, 7)
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
         self._joined[0].place(rotations, self.tree.start[0], poses)
         return poses
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""
-        poses = self._model.place(self._poses if out is None else out)
-        if out is not None:
-            self._poses[:] = out
-        return poses
+        return self._model.place(out)
 
     @property
     def tip_displacement(self) -> Floats:
-        """Way of the highest branch's tip from rest in [m], (3,), as last placed."""
+        """Displacement of the highest branch's tip from rest in [m], (3,)."""
         rest = self.tree.end[self.tree.branch_first[self._highest + 1] - 1]
-        displacement: Floats = tips_of_poses(self.tree, self._poses)[self._highest] - rest
+        displacement: Floats = tips_of_poses(self.tree, self.place())[self._highest] - rest
         return displacement
 
     def frequencies(self, count: int = 10) -> Floats:
@@ -162,4 +189,3 @@ class SegmentsSimulator(KeepsState):
         """Go back to rest, with no wind; the counts stay."""
         self._model.reset()
         self.wind[:] = 0.0
-        self.place()

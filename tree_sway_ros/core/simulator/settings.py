@@ -47,7 +47,7 @@ class Settings:
         Wind over height.
     integrator
         Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be
-        unstable is refused at the first step.
+        unstable is refused at the first step. Later steps that are longer are cut.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +61,10 @@ class WindRecord:
         """Make the arrays read-only."""
         self.time.setflags(write=False)
         self.velocity.setflags(write=False)
+
+    def with_note(self, note: str) -> WindRecord:
+        """Return the record with one more note."""
+        return replace(self, notes=(*self.notes, note))
 
     @property
     def duration(self) -> float:

@@ -1,5 +1,5 @@
 """
-Rotations and the two-axis branch on whole arrays, in plain numpy: what `numpy_twin` is made of.
+Rotations and the two-axis branch on whole arrays, in plain numpy.
 
 Quaternions are w x y z, (n, 4); vectors are (n, 3).
 
@@ -22,17 +22,24 @@ def quaternions_of(vectors: Floats) -> Floats:
     return np.hstack([np.cos(half), 0.5 * np.sinc(half / np.pi) * vectors])
 
 
+def cross(a: Floats, b: Floats) -> Floats:
+    """Cross products of vectors."""
+    ax, ay, az = a.T
+    bx, by, bz = b.T
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+
+
 def quaternion_product(a: Floats, b: Floats) -> Floats:
     """Quaternions of b followed by a."""
     scalar = a[:, :1] * b[:, :1] - (a[:, 1:] * b[:, 1:]).sum(axis=1, keepdims=True)
-    vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:] + np.cross(a[:, 1:], b[:, 1:])
+    vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:] + cross(a[:, 1:], b[:, 1:])
     return np.hstack([scalar, vector])
 
 
 def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
     """Rotate vectors by unit quaternions."""
-    twice = 2.0 * np.cross(q[:, 1:], vectors)
-    rotated: Floats = vectors + q[:, :1] * twice + np.cross(q[:, 1:], twice)
+    twice = 2.0 * cross(q[:, 1:], vectors)
+    rotated: Floats = vectors + q[:, :1] * twice + cross(q[:, 1:], twice)
     return rotated
 
 
@@ -52,7 +59,7 @@ def cayley_turned(rotations: Floats, vectors: Floats) -> Floats:
     half = 0.5 * rotations
     square = np.square(half).sum(axis=1, keepdims=True)
     along = (half * vectors).sum(axis=1, keepdims=True)
-    turned = (1.0 - square) * vectors + 2.0 * along * half + 2.0 * np.cross(half, vectors)
+    turned = (1.0 - square) * vectors + 2.0 * along * half + 2.0 * cross(half, vectors)
     return np.asarray(turned / (1.0 + square))
 
 
@@ -60,7 +67,7 @@ def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Arr
     """
     Moment of a force on the two axes of each branch, with the gyroscopic term, held at a limit.
 
-    The formulas of `core.two_axis`, with sines and cosines.
+    The formulas of `oscillators.two_axis`, with sines and cosines.
 
     Parameters
     ----------
