@@ -25,7 +25,7 @@ from tree_sway_ros.ros.process import topics
 from tree_sway_ros.tools import cli
 from tree_sway_ros.tools.rooms import rooms_drawing
 
-PAGES = ("README.md", "doc/reference.md", "doc/trees.md")
+PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
 """Pages with tables."""
 
 FIGURES = "doc/pictures/fidelity.csv"
