@@ -13,8 +13,11 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.progress import Progress
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
@@ -31,7 +34,8 @@ _FARTHEST_CAMERA = 1e6
 
 class SolverNode(TreeSwayNode):
     """
-    Subscribes `wind/filtered`, publishes `segment_poses`, `markers` and `tree_description`.
+    Subscribes `wind/filtered`; publishes `segment_poses`, `markers`, `tree_state` and
+    `tree_description`.
 
     Parameters
     ----------
@@ -64,7 +68,7 @@ class SolverNode(TreeSwayNode):
         source = open_scene(self.values["tree"])
         if self.values["species"]:
             source = source.of_species(open_species(self.values["species"])).checked()
-        return source
+        return placed_scene(source, **self.values("x", "y", "z", "yaw"))
 
     def _make(self, source: Any) -> None:
         settings = Settings(
@@ -77,6 +81,7 @@ class SolverNode(TreeSwayNode):
                 self.values["anemometer_height"],
                 self.values["profile_exponent"],
                 self.values["roughness"],
+                ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
             ),
         )
         self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
@@ -92,6 +97,7 @@ class SolverNode(TreeSwayNode):
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
+        self._state = StatePublisher(self, self.simulator, leaves)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
@@ -139,6 +145,7 @@ class SolverNode(TreeSwayNode):
         self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
         index = tick.time // self.pacer.period
         self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
+        self._state.publish(index, tick.time)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._stepper.request(self.simulator.reset)

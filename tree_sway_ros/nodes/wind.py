@@ -54,7 +54,7 @@ class WindNode(TreeSwayNode):
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
-        frame_id = self.values["fixed_frame"]
+        frame_id = self.values["frame_id"]
         if sample.frame_id not in ("", frame_id):
             self.get_logger().warning(
                 f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'", once=True

@@ -158,12 +158,8 @@ WIND: Table = (
         1.0,
         source="the paper, 3.2",
     ),
-    Parameter(
-        "fixed_frame",
-        "map",
-        "The frame of everything that this node publishes; no transform is applied.",
-    ),
-    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, 200.0),
+    _FRAME,
+    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, 150.0),
     Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
     Parameter(
         "longest_refusal", 0.5, "A change that lasts so long is taken as true.", "s", 0.05, 10.0
@@ -348,6 +344,15 @@ SOLVER: Table = (
         60.0,
     ),
     _FRAME,
+    Parameter("x", 0.0, "Where the tree's own origin lies in the frame.", "m", -1e6, 1e6),
+    Parameter("y", 0.0, "The same to the north.", "m", -1e6, 1e6),
+    Parameter("z", 0.0, "The same upwards; the ground of the wind profile.", "m", -1e4, 1e4),
+    Parameter("yaw", 0.0, "Turn of the tree, counterclockwise from above.", "rad", -6.3, 6.3),
+    Parameter(
+        "hash_in_frame",
+        False,
+        "Poses say `frame_id#hash`, with the hash of `tree_description`: whose they are is seen.",
+    ),
     Parameter(
         "marker_rate",
         20.0,
@@ -357,6 +362,9 @@ SOLVER: Table = (
         20.0,
     ),
     Parameter("marker_classes", 6, "The markers have so many line widths.", "", 1, 32),
+    Parameter(
+        "state_rate", 30.0, "States per second on `tree_state`; 0 for none.", "Hz", 0.0, 1000.0
+    ),
     Parameter(
         "publish_tf",
         False,
@@ -393,9 +401,20 @@ PLAYER: Table = (
     Parameter("wait_for_subscriber", True, "The record starts when somebody listens."),
 )
 
+VIEWER: Table = (
+    Parameter("address", "127.0.0.1", "To bind to; any but this machine's own needs a token."),
+    Parameter("port", 8765, "Of the page; 0 for a free one.", "", 0, 65535),
+    Parameter("token", "", "What pages must know, as `?token=`."),
+    Parameter("certificate", "", "PEM file, to serve the page over TLS."),
+    Parameter("private_key", "", "PEM file of the certificate's key."),
+    Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
+    Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
+)
+
 NODE_PARAMETERS: dict[str, Table] = {
     "anemometer": ANEMOMETER,
     "wind": WIND,
     "solver": SOLVER,
     "player": PLAYER,
+    "viewer": VIEWER,
 }
