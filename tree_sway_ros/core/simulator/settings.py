@@ -9,8 +9,10 @@ import math
 from dataclasses import dataclass, field
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import ParameterError
 
 MODELS = ("frozen", "branch", "subtree", "modes", "coupled")
@@ -77,7 +79,7 @@ class Settings:
     enrich: str = "limbs"
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
-    max_wind: float = 150.0
+    max_wind: float = FASTEST_WIND
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
@@ -100,7 +102,8 @@ class Settings:
             raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
         if self.n_modes is not None and self.n_modes < 1:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
-        for name in ("volume_stiffness", "volume_damping", "max_wind"):
+        within("max_wind", self.max_wind, 0.0, FASTEST_WIND, "m/s", above=True)
+        for name in ("volume_stiffness", "volume_damping"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
