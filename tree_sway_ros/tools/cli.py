@@ -119,7 +119,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     """
     with warnings.catch_warnings():
-        warnings.showwarning = _show_warning
+        warnings.showwarning = _show_warning  # type: ignore[assignment]
         return _main(list(sys.argv[1:] if argv is None else argv))
 
 
