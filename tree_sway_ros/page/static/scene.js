@@ -18,8 +18,8 @@ import * as shaders from "./shaders.js";
 /** A shadow is drawn anew every so many frames without a graphics unit. */
 const SHADOW_EVERY = 5;
 /** Frames per second below which, without a graphics unit, fewer points are drawn. */
-const WANTED_FPS = 52;
-const COARSEST = 0.55;
+const WANTED_FPS = 45;
+const COARSEST = 0.7;
 const POT_HEIGHT = 0.17;
 
 /**
