@@ -16,10 +16,13 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 PACKAGE = "tree_sway_ros"
+CHAIN = "wind wind/filtered"
 ARGUMENTS = (
     ("tree", "", "benjamina, goldcrest, broadleaf, or a file of trees; as configured if empty"),
     ("source", "simulated", "where the wind comes from", ["simulated", "player", "live"]),
     ("file", "", "wind record for source:=player"),
+    ("topic", "", "topic of the wind in a bag; as configured if empty"),
+    ("reader_options", "", "more for the reader of the file: 'rate=20 yaw=1.57'"),
     ("wind_topic", "wind", "topic of the wind for source:=live"),
     ("rate", "", "frames a second; as configured if empty"),
     ("x", "", "where the tree stands in the frame, to the east [m]; as configured if empty"),
@@ -86,8 +89,9 @@ def overrides_of(name, given):
         overrides["use_sim_time"] = with_clock and name != "player"
         if name == "player":
             overrides["publish_clock"] = with_clock
-    if name == "player" and given["file"]:
-        overrides["file"] = given["file"]
+    if name == "player":
+        names = ("file", "topic", "reader_options")
+        overrides.update({each: given[each] for each in names if given[each]})
     if name == "solver":
         if given["tree"]:
             overrides["tree"] = given["tree"]
@@ -101,13 +105,16 @@ def make_node(name, given, config):
     files = [os.path.join(config, f"{name}.yaml")]
     if given["params_file"]:
         files.append(given["params_file"])
+    # The player begins when the whole chain listens; a file of the user's may say otherwise.
+    with_clock = " /clock:2" if given["use_sim_time"] in ("true", "True", "1") else ""
+    chain = [{"wait_for": CHAIN + with_clock}] if name == "player" else []
     is_live = name == "wind" and given["source"] == "live"
     return Node(
         package=PACKAGE,
         executable=name,
         name=name,
         namespace=given["namespace"],
-        parameters=[*files, overrides_of(name, given)],
+        parameters=[*chain, *files, overrides_of(name, given)],
         remappings=[("wind", given["wind_topic"])] if is_live else [],
         output="screen",
     )

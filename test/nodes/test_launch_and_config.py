@@ -8,7 +8,10 @@ import yaml
 from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
-ARGUMENTS = ("tree", "file", "rate", "x", "y", "z", "yaw", "frame_id", "use_sim_time")
+ARGUMENTS = (
+    *("tree", "file", "topic", "reader_options", "rate"),
+    *("x", "y", "z", "yaw", "frame_id", "use_sim_time"),
+)
 GIVEN = dict.fromkeys(ARGUMENTS, "")
 
 

@@ -301,7 +301,22 @@ PLAYER: Table = (
     Parameter("start", 0.0, "Skip so much of the record.", "s", 0.0),
     Parameter("publish_clock", False, "Publish /clock, for nodes with `use_sim_time`."),
     Parameter("clock_rate", 250.0, "Clock messages a second of real time.", "Hz", 10.0, 1000.0),
-    Parameter("wait_for_subscriber", True, "Start when somebody listens."),
+    Parameter("wait_for_subscriber", True, "Start when those of `wait_for` listen."),
+    Parameter(
+        "wait_for",
+        "wind",
+        "Topics that must have a subscriber, or `topic:number`. With `publish_clock` and "
+        "`wind/filtered` among them time waits for each sample to come back: the replay is exact.",
+    ),
+    Parameter("topic", "", "Topic of the wind in a bag; empty if it has but one."),
+    Parameter("yaw", 0.0, "From east to the x axis of the sensor.", "rad", -6.3, 6.3),
+    Parameter(
+        "input_convention",
+        "",
+        "Whether the record's vectors say where the wind blows `to` or comes `from`.",
+        choices=("", "to", "from"),
+    ),
+    Parameter("reader_options", "", "More for the reader of the file: `rate=20 sentence=MWV`."),
 )
 
 VIEWER: Table = (
