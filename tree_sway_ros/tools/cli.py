@@ -65,11 +65,18 @@ COMMANDS: dict[str, Command] = {
     "paper": Command(
         "the experiment of Kanda & Ohya as it is written, and what ours does instead", "paper"
     ),
+    "study": Command(
+        "many trees in many winds with many settings, over all cores",
+        "study study.yaml -o study.csv",
+    ),
     "docs": Command("write the tables of topics and parameters into the pages", "docs --check"),
 }
 
 #: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
-_STUDIES = ("bench", "battery", "chart", "compare", "paper")
+_STUDIES = {
+    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
+    "study": "campaign",
+}
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -161,7 +168,8 @@ def _shortened(name: str) -> str:
 
 
 def _module(command: str) -> Any:
-    where = f"study.{command}.command" if command in _STUDIES else f"tools.{command}"
+    room = _STUDIES.get(command)
+    where = f"study.{room}.command" if room else f"tools.{command}"
     return importlib.import_module(f"tree_sway_ros.{where}")
 
 

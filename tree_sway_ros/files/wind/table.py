@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 
+from tree_sway_ros.core.wind.convention import WindConvention, velocity_of_bearing
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.table_file import TextTable, parse_table
 from tree_sway_ros.files.text_file import finite, read_lines, why_no_number
@@ -27,8 +28,6 @@ from tree_sway_ros.files.wind.units import (
     ANGLE_UNITS,
     SPEED_UNITS,
     TIME_UNITS,
-    check_convention,
-    from_bearing,
     unit_factor,
 )
 
@@ -78,7 +77,7 @@ def read_csv_wind(
 
     """
     if direction_convention is not None:
-        check_convention(direction_convention)
+        WindConvention(direction_convention)  # refused before the file is read
     source = str(path)
     table = parse_table(read_lines(path), source)
     time = _column(table, _TIME, TIME_UNITS, 1.0)
@@ -108,7 +107,9 @@ def read_csv_wind(
             stamps.pop()
         else:
             bearing = values[1] - yaw
-            rows.add(number, 0.0, from_bearing(values[0], bearing, direction_convention or "from"))
+            rows.add(
+                number, 0.0, velocity_of_bearing(values[0], bearing, direction_convention or "from")
+            )
     seconds, epoch = _times(stamps, time.factor)
     rows.time = array("d", seconds)
     if u and v:

@@ -13,8 +13,9 @@ from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
-from tree_sway_ros.core.wind.simulated.turbulence import TURBULENCE_MODELS
+from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
 _MODEL = Settings()
@@ -55,7 +56,7 @@ ANEMOMETER: Table = (
         "turbulence",
         "kaimal",
         "Spectrum of the turbulence.",
-        choices=(*TURBULENCE_MODELS, "none"),
+        choices=(*SPECTRA, "none"),
         live=True,
         source="IEC 61400-1",
     ),
@@ -131,7 +132,7 @@ WIND: Table = (
         source="the paper, 3.2",
     ),
     _FRAME,
-    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, 150.0),
+    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, FASTEST_WIND),
     Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
     Parameter("longest_refusal", 0.5, "After so long a change is taken as true.", "s", 0.05, 10.0),
     Parameter("frozen_after", 10.0, "Equal samples for so long are reported.", "s", 1.0, 3600.0),

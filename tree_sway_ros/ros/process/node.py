@@ -10,6 +10,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from tree_sway_ros.core.wind.gate import LARGEST_LEAD
 from tree_sway_ros.ros.parameters.declaration import ParameterValues
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.origin import own_names
@@ -142,6 +143,11 @@ class TreeSwayNode(Node):  # type: ignore[misc]
                 yield taken[0]
 
         return take
+
+    @property
+    def clock_lead(self) -> int:
+        """How far stamps may be ahead of the clock in [ns]: simulated time stands between ticks."""
+        return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
         """Publish what `collect` returns on `/diagnostics`."""
