@@ -33,6 +33,7 @@ ARGUMENTS = (
     ("namespace", "", "of all nodes and topics: one a tree"),
     ("params_file", "", "ROS parameter file whose values override those of config/"),
     ("use_sim_time", "", "follow /clock; with source:=player the player publishes it"),
+    ("page", "false", "serve a page for the browser: start the viewer"),
     ("rviz", "false", "start RViz"),
 )
 
@@ -53,7 +54,8 @@ def start_nodes(context):
     given = {name: LaunchConfiguration(name).perform(context) for name, *_ in ARGUMENTS}
     config = os.path.join(get_package_share_directory(PACKAGE), "config")
     source = {"simulated": ["anemometer"], "player": ["player"], "live": []}[given["source"]]
-    nodes = [make_node(name, given, config) for name in (*source, "wind", "solver")]
+    viewer = ["viewer"] if is_true("page", given["page"]) else []
+    nodes = [make_node(name, given, config) for name in (*source, "wind", "solver", *viewer)]
     if is_true("rviz", given["rviz"]):
         sim_time = {}
         if given["use_sim_time"]:
@@ -82,7 +84,7 @@ def is_true(name, text):
 def overrides_of(name, given):
     """Values of a node's parameters that arguments ask for; nothing where nothing was given."""
     overrides = {}
-    if given["frame_id"]:
+    if given["frame_id"] and name != "viewer":
         overrides["frame_id"] = given["frame_id"]
     if given["use_sim_time"]:
         with_clock = is_true("use_sim_time", given["use_sim_time"])

@@ -47,7 +47,8 @@ def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executab
     assert set(start(launch_file, monkeypatch, source=source)) == executables
 
 
-def test_rviz_is_started_if_asked_for(launch_file, monkeypatch):
+def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):
+    assert "viewer" in start(launch_file, monkeypatch, page="1")
     assert "rviz2" in start(launch_file, monkeypatch, rviz="true")
 
 
