@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import difflib
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
@@ -104,7 +105,8 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
 
 def _refuse_snares(text: str, source: str) -> None:
     depth = documents = 0
-    for event in yaml.parse(text, Loader=_LOADER):
+    events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
+    for event in events:
         what = cure = ""
         if isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
