@@ -9,7 +9,7 @@ from setuptools import find_packages, setup
 PACKAGE = "tree_sway_ros"
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
-NODES = ("anemometer", "wind", "solver", "player")
+NODES = ("anemometer", "wind", "solver", "player", "viewer")
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 

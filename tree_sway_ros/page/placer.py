@@ -77,7 +77,11 @@ class Placer:
 
     def place(self, frame: Frame) -> Floats:
         """Poses of a frame, (n, 7): x y z in [m] and the quaternion's x y z w."""
-        rotations = np.append(self.rotations(frame), (0.0, 0.0))
+        return self.place_rotations(self.rotations(frame))
+
+    def place_rotations(self, rotations: Floats) -> Floats:
+        """Poses of key rotations (N,) in [rad], (n, 7)."""
+        rotations = np.append(rotations, (0.0, 0.0))
         poses = np.empty((self._n, 7))
         for first, end, branches, segments, heads, work in self._trees:
             place(branches, segments, heads, work, rotations, np.zeros(3), poses[first:end])

@@ -32,7 +32,7 @@ class SceneState:
     """
     Tells the state of a tree or a forest.
 
-    Finding the basis runs each simulator for some seconds of its time and sets it back.
+    Finding the basis takes some seconds; the simulator may run meanwhile.
 
     Parameters
     ----------
@@ -122,12 +122,14 @@ def _basis(simulator: Any, found: dict[Any, Any]) -> Any:
     return found[key]
 
 
-def _runner(simulator: Any) -> Any:
+def _runner(simulator: Any) -> SwaySimulator:
     """
-    What the basis is found on: for models whose key rotations are those of ``modes``, that one.
+    Make a simulator to find the basis on, so that the one that runs is left alone.
+
+    It is of the same model, or of ``modes`` where that one has the same key rotations at less cost.
 
     """
-    if isinstance(simulator, SwaySimulator) and simulator.model != "coupled":
-        return simulator
-    settings = replace(simulator.settings, model="modes", n_modes=None)
+    is_cheap = isinstance(simulator, SwaySimulator) and simulator.model != "coupled"
+    model = simulator.model if is_cheap else "modes"
+    settings = replace(simulator.settings, model=model, n_modes=None)
     return SwaySimulator(simulator.tree, simulator.species, settings)

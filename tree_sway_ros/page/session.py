@@ -101,11 +101,12 @@ class Session:
         self._thread = threading.Thread(target=self._run, name="session", daemon=True)
         self.failure: Exception | None = None
 
-    def start(self, server: PageServer) -> None:
-        """Begin to step and to publish."""
-        self._server = server
+    def serve(self, server: PageServer) -> None:
+        """Publish on a server from now on; the first time, begin to step."""
         server.describe(self._scene.description)
-        self._thread.start()
+        self._server = server
+        if not self._thread.is_alive():
+            self._thread.start()
 
     def stop(self) -> None:
         """Stop stepping; may be called twice."""
@@ -198,10 +199,11 @@ class Session:
             self.failure = error
 
     def _step(self, begin: float) -> None:
+        assert self._server is not None
         has_restarted, self._resets = self._resets, False
         if self._next is not None:
             self._scene, self._next = self._next, None
-            self._tell_scene()
+            self._server.describe(self._scene.description)
         simulator = self._scene.simulator
         if has_restarted:
             simulator.reset()
@@ -209,7 +211,6 @@ class Session:
             wind = self.wind.mean(self._time, self._time + self._period)
             simulator.step(wind, self._period)
             self._time += self._period
-        assert self._server is not None
         frame = self._scene.frame(
             time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
         )
@@ -218,7 +219,3 @@ class Session:
         self._work += _NEWEST * (now - begin - self._work)
         self._spacing += _NEWEST * (begin - self._last - self._spacing)
         self._last = begin
-
-    def _tell_scene(self) -> None:
-        assert self._server is not None
-        self._server.describe(self._scene.description)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
+import webbrowser
 from pathlib import Path
 
 from tree_sway_ros.core.tree.tree import Tree
@@ -21,6 +22,7 @@ from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument
+from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.only_demo import only_demo
 from tree_sway_ros.tools.stream.text import summary
@@ -58,6 +60,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
     )
+    parser.add_argument("--no-page", action="store_true", help="serve no page")
+    add_page_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -87,12 +91,22 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
             monitor.expect_silence()
             for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
                 nodes.add(name, values)
+            if not arguments.no_page:
+                _serve_page(nodes, arguments)
             ending.limit = LONGEST
             watch(monitor, seconds, goes_on)
             print(summary(monitor.totals, arguments.rate), flush=True)
         finally:
             monitor.close()
     return 0
+
+
+def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
+    """Add the viewer, tell where its page is, and open it if asked to."""
+    url = nodes.add("viewer", {**vars(page_settings(arguments)), "control": True}).server.url
+    print(f"page: {url}", flush=True)
+    if arguments.open:
+        webbrowser.open(url)
 
 
 def size_of(tree: Tree) -> str:

@@ -22,11 +22,12 @@ from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.page.controls import Control, ControlPanel
-from tree_sway_ros.page.server import PageServer, PageSettings
+from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.session import Choices, Session
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
+from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 _SPACING = 1.2
@@ -69,43 +70,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
     )
-    parser.add_argument("--open", action="store_true", help="open the page in the browser")
     parser.add_argument("--read-only", action="store_true", help="viewers may change nothing")
     add_page_arguments(parser)
-
-
-def add_page_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add where and to whom a page is served."""
-    parser.add_argument("--port", type=int, default=8765, help="0 for a free one (%(default)s)")
-    parser.add_argument(
-        "--address",
-        default="127.0.0.1",
-        help="to bind to; any other than this machine's own needs a token (%(default)s)",
-    )
-    parser.add_argument("--token", default="", help="what viewers must know")
-    parser.add_argument("--certificate", default="", metavar="PEM", help="for https")
-    parser.add_argument("--private-key", default="", metavar="PEM", help="of the certificate")
-
-
-def page_settings(arguments: argparse.Namespace) -> PageSettings:
-    """
-    Settings of the page's server from the arguments.
-
-    Raises
-    ------
-    ParameterError
-        A port that is none.
-
-    """
-    if not 0 <= arguments.port <= 65535:
-        raise ParameterError(f"port {arguments.port}", where="--port", cure="give 0 .. 65535")
-    return PageSettings(
-        arguments.address,
-        arguments.port,
-        arguments.token,
-        arguments.certificate,
-        arguments.private_key,
-    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -121,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.read_only:
         panel = ControlPanel(_controls(choices, wind), session.apply)
     with PageServer(settings, panel, session.status) as server:
-        session.start(server)
+        session.serve(server)
         print(f"open {server.url} (Ctrl-C ends)", flush=True)
         if arguments.open:
             webbrowser.open(server.url)

@@ -23,11 +23,12 @@ from pathlib import Path
 
 import numpy as np
 
+from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.table_file import Column, TextTable, parse_table, split_row
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
-from tree_sway_ros.files.wind.units import ANGLE_UNITS, SPEED_UNITS, TIME_UNITS, check_convention
+from tree_sway_ros.files.wind.units import ANGLE_UNITS, SPEED_UNITS, TIME_UNITS
 
 TIME_NAMES = (
     *("time", "t", "timestamp", "stamp", "datetime", "date_time", "seconds", "secs", "elapsed"),
@@ -67,7 +68,7 @@ def read_csv_wind(
         A column that is missing, a unit that is not known, or no good row.
 
     """
-    check_convention(direction_convention or "to")
+    WindConvention(direction_convention or "to")  # refused before the file is read
     return _wind(parse_table(read_lines(path), str(path)), direction_convention, yaw)
 
 
@@ -95,7 +96,7 @@ def read_toa5_wind(
         Not TOA5, no such columns, or no good row.
 
     """
-    check_convention(direction_convention or "to")
+    WindConvention(direction_convention or "to")  # refused before the file is read
     lines, split = read_lines(path), partial(split_row, separator=",")
     if len(lines) < 4 or not lines[0].lstrip('"').startswith("TOA5"):
         raise FormatError("not TOA5: its 4 header lines are missing", where=f"{path}:1")

@@ -37,6 +37,9 @@ let frames = 0;
 let drawn = 0;
 let factsAt = performance.now();
 let fps = 0;
+/** Time that leaves flutter by [s]; it stands still with the tree. */
+let sceneTime = 0;
+let lastDrawn = 0;
 /** @type {Record<string, any>} */
 let status = {};
 let toastTimer = 0;
@@ -194,7 +197,9 @@ function draw(now) {
   if (!scene) return;
   const coordinates = playout.sample(Date.now());
   scene.wind = playout.wind;
-  scene.draw(coordinates, now / 1000);
+  if (!playout.isPaused) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
+  lastDrawn = now;
+  scene.draw(coordinates, sceneTime);
   drawn += 1;
   if (coordinates && stateNow()[0] === "live") {
     const at = scene.position(highest);

@@ -16,7 +16,7 @@ from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.table_file import filled_lines, parse_columns
 from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.cylinders.joining import parents_first
+from tree_sway_ros.files.trees.cylinders.joining import checked_order
 from tree_sway_ros.files.trees.skeletons.node_skeleton import Skeleton
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
@@ -56,7 +56,7 @@ def read_swc(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
         raise FormatError("no nodes", where=str(path), cure="give a node in each line")
     nodes = unit * table.strict(_COLUMNS)[:, 2:6]
     labels, parent = table.family("number", "parent", [-1], "node")
-    order = parents_first(parent, labels)
+    order = checked_order(parent, labels)
     members: dict[int, list[int]] = {}
     root, place = np.arange(len(parent)), np.full(len(parent), -1)
     for index in order:

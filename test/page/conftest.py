@@ -13,7 +13,7 @@ import time
 from types import TracebackType
 from typing import Any
 
-import aiohttp
+import pytest
 
 DEADLINE = 60.0
 _FLAGS = (
@@ -39,6 +39,7 @@ class Browser:
         self._number = 0
         self._target = ""
         self.console: list[str] = []
+        self.requests: list[str] = []
 
     async def __aenter__(self) -> Browser:
         assert self._process.stderr is not None
@@ -48,6 +49,8 @@ class Browser:
                 break
         else:
             raise AssertionError("Chromium did not start")
+        import aiohttp
+
         self._session = aiohttp.ClientSession()
         self._ws = await self._session.ws_connect(found[1], max_msg_size=0)
         created = await self.call("Target.createTarget", url="about:blank")
@@ -93,8 +96,6 @@ class Browser:
         elif method == "Network.requestWillBeSent":
             self.requests.append(told["request"]["url"])
 
-    requests: list[str]
-
     async def open(
         self, url: str, width: int = 1280, height: int = 800, dark: bool = False
     ) -> None:
@@ -126,3 +127,11 @@ class Browser:
     async def screenshot(self) -> bytes:
         """The page as PNG."""
         return base64.b64decode((await self.call("Page.captureScreenshot"))["data"])
+
+
+@pytest.fixture
+def browser_class() -> type[Browser]:
+    """`Browser`, where there is a Chromium."""
+    if chromium() is None:
+        pytest.skip("chromium is not installed here")
+    return Browser
