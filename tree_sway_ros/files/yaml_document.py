@@ -119,7 +119,7 @@ def _refuse_snares(text: str, source: str) -> None:
             if event.anchor is not None:
                 what, cure = "an anchor or alias", "write the value itself"
             elif getattr(event, "tag", None) is not None:
-                what, cure = f"a tag {event.tag!r}", "write the value itself"
+                what, cure = f"a tag {getattr(event, 'tag', None)!r}", "write the value itself"
             elif depth > _MAX_DEPTH:
                 what = f"nested deeper than {_MAX_DEPTH}"
         if what:
