@@ -1,0 +1,4 @@
+"""
+Stands as a forester has them: a table of places, species and heights.
+
+"""
