@@ -399,7 +399,26 @@ PLAYER: Table = (
         10.0,
         1000.0,
     ),
-    Parameter("wait_for_subscriber", True, "The record starts when somebody listens."),
+    Parameter("wait_for_subscriber", True, "The record starts when those of `wait_for` listen."),
+    Parameter(
+        "wait_for",
+        "wind",
+        "These topics must have a subscriber, or so many as `topic:number` says. With "
+        "`publish_clock` and `wind/filtered` among them time waits until each sample has come "
+        "back: the replay is exact.",
+    ),
+    Parameter("topic", "", "The topic of the wind in a bag; may be empty if it has but one."),
+    Parameter("yaw", 0.0, "Angle from east to the x axis of the sensor.", "rad", -6.3, 6.3),
+    Parameter(
+        "input_convention",
+        "",
+        "The record's vectors say where the wind blows `to` or comes `from`; empty for the "
+        "format's own.",
+        choices=("", "to", "from"),
+    ),
+    Parameter(
+        "reader_options", "", "More for the reader of the file, such as `rate=20 sentence=MWV`."
+    ),
 )
 
 VIEWER: Table = (
