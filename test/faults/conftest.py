@@ -26,6 +26,11 @@ level, statuses, tree_file = (
 FRAME = 1.0 / 60.0
 
 
+def numbers_of(pose):
+    at, q = pose.position, pose.orientation
+    return at.x, at.y, at.z, q.x, q.y, q.z, q.w
+
+
 class Chain:
     """Anemometer, wind node and solver in one process, heard by another context."""
 
@@ -65,14 +70,7 @@ class Chain:
     def poses(self, first):
         """Poses from a frame on, (frames, segments, 7), and their stamps in [s]."""
         frames = list(self.frames)[first:]
-        table = [
-            [
-                (p.position.x, p.position.y, p.position.z)
-                + (p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
-                for p in frame.poses
-            ]
-            for frame in frames
-        ]
+        table = [[numbers_of(pose) for pose in frame.poses] for frame in frames]
         stamps = [f.header.stamp.sec + 1e-9 * f.header.stamp.nanosec for f in frames]
         return np.array(table), np.array(stamps)
 
