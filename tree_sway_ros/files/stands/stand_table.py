@@ -1,8 +1,8 @@
 """
 A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories have.
 
-Trees of one species are scaled from few that are grown: heights of a species within a factor of three
-share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a tree
+Trees of one species are scaled from few that are grown: heights of a species within a factor of
+three share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a tree
 without a name is called after its row, one without a yaw is turned at random.
 
 """
