@@ -17,7 +17,7 @@ from pathlib import Path
 
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.trees.tree_file import TREE_FORMATS
+from tree_sway_ros.files.trees.tree_file import TREE_FORMATS, options_of
 from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
@@ -132,7 +132,7 @@ def formats_table() -> str:
     """Formats of tree files, with the options that each takes."""
     lines = ["| format | files | options |", "|---|---|---|"]
     for each in TREE_FORMATS:
-        options = ", ".join(f"`{option}`" for option in each.options)
+        options = ", ".join(f"`{option}`" for option in options_of(each))
         lines.append(f"| {each.name} | {', '.join(each.suffixes)} | {options} |")
     return "\n".join(lines) + "\n"
 

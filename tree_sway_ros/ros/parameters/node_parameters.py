@@ -15,6 +15,7 @@ from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
+from tree_sway_ros.core.wind.simulated.sensor_faults import FAULTS
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
@@ -122,6 +123,23 @@ ANEMOMETER: Table = (
         3600.0,
         live=True,
     ),
+    Parameter(
+        "fault",
+        "none",
+        "The sensor fails in this way from time to time, in each in turn with `all`.",
+        choices=FAULTS,
+        live=True,
+    ),
+    Parameter(
+        "fault_every",
+        20.0,
+        "Time from one fault to the next; the first comes after so long.",
+        "s",
+        0.1,
+        3600.0,
+        live=True,
+    ),
+    Parameter("fault_duration", 1.0, "Each fault lasts so long.", "s", 0.01, 600.0, live=True),
 )
 
 WIND: Table = (
@@ -399,7 +417,26 @@ PLAYER: Table = (
         10.0,
         1000.0,
     ),
-    Parameter("wait_for_subscriber", True, "The record starts when somebody listens."),
+    Parameter("wait_for_subscriber", True, "The record starts when those of `wait_for` listen."),
+    Parameter(
+        "wait_for",
+        "wind",
+        "These topics must have a subscriber, or so many as `topic:number` says. With "
+        "`publish_clock` and `wind/filtered` among them time waits until each sample has come "
+        "back: the replay is exact.",
+    ),
+    Parameter("topic", "", "The topic of the wind in a bag; may be empty if it has but one."),
+    Parameter("yaw", 0.0, "Angle from east to the x axis of the sensor.", "rad", -6.3, 6.3),
+    Parameter(
+        "input_convention",
+        "",
+        "The record's vectors say where the wind blows `to` or comes `from`; empty for the "
+        "format's own.",
+        choices=("", "to", "from"),
+    ),
+    Parameter(
+        "reader_options", "", "More for the reader of the file, such as `rate=20 sentence=MWV`."
+    ),
 )
 
 VIEWER: Table = (

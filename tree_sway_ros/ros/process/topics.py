@@ -61,7 +61,7 @@ WIND_FILTERED = Topic(
     "wind/filtered",
     "geometry_msgs/msg/Vector3Stamped",
     "The wind that the trees feel, blowing TO, ENU [m/s]: bad samples refused.",
-    depth=10,
+    depth=40,
 )
 FORCE_PLANE = Topic(
     "wind/force_plane",
