@@ -142,7 +142,7 @@ def test_bad_wind_leaves_the_state_alone(compose, observer, tree_file, bad):
     nodes = compose(solver={"tree": tree_file})
     frames = observer.listen(SEGMENT_POSES)
     breeze = Breeze(observer, (bad, 0.0, 0.0))
-    counts = nodes["solver"]._gate.counts
+    counts = nodes["solver"]._intake.counts
     observer.until(lambda: counts.refused > 3 and len(frames) > 5, "refusals")
     np.testing.assert_array_equal(block(frames[-1]), block(frames[0]))
     breeze.vector = (5.0, 0.0, 0.0)

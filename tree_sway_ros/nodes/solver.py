@@ -11,8 +11,8 @@ from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
-from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -92,13 +92,12 @@ class SolverNode(TreeSwayNode):
         tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
         self._tell_demand()
         self.simulator.reset()  # on the model that is asked for
-        # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
-        self._gate = WindGate(max_speed=150.0, max_rate=1e4)
+        self._intake = WindIntake.of_velocities()
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, leaves)
-        self.subscription(WIND_FILTERED, self._receive)
+        self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
@@ -110,11 +109,11 @@ class SolverNode(TreeSwayNode):
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
-        vector = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds
-        verdict = self._gate.offer(sample.stamp * 1e-9, vector, arrival * 1e-9)
-        if verdict.accepted:
-            self._stepper.add_wind(round(verdict.time * 1e9), vector)
+        components = (sample.u, sample.v, sample.w)
+        good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
+        if good is not None:
+            self._stepper.add_wind(*good)
 
     def _see(self, message: Any) -> None:
         at = message.pose.position
@@ -142,7 +141,14 @@ class SolverNode(TreeSwayNode):
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._stepper.restart(tick.time)
-        self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
+        for message in self._new_wind():
+            self._receive(message)
+        self._stepper.advance(
+            tick.time,
+            tick.periods,
+            self.values["wind_delay"],
+            may_join=not self.pacer.is_simulated,
+        )
         index = tick.time // self.pacer.period
         self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
         self._state.publish(index, tick.time)

@@ -16,7 +16,7 @@ import numpy as np
 
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
-from tree_sway_ros.core.rotation import quaternions_from_x, rotated
+from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.protocol import encode_description
@@ -138,7 +138,7 @@ def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
 
     """
     b, n = tree.n_branches, tree.n_segments
-    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    rest = tree.rest_frame
     chord = np.empty((n, 3))
     chord[:-1] = tree.start[1:] - tree.start[:-1]
     last = tree.branch_first[1:] - 1

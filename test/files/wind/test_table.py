@@ -52,7 +52,7 @@ def test_errors(tmp_path, text, message):
 
 
 def test_convention_is_checked():
-    with pytest.raises(ParameterError, match="use 'to' or 'from'"):
+    with pytest.raises(ParameterError, match="blows to, as ROS"):
         read_csv_wind(DATA / "wind.csv", direction_convention="in")
 
 

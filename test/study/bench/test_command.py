@@ -22,7 +22,7 @@ def test_the_tree_is_the_one_that_is_claimed() -> None:
     assert tree.branch_length == pytest.approx(lengths)
     assert tree.base_diameter[0] == pytest.approx(0.120)
     assert tree.tip_diameter.min() == pytest.approx(0.008)
-    directions = (tree.end - tree.start) / tree.length[:, None]
+    directions = tree.direction
     firsts = directions[tree.branch_first[:-1]].round(6)
     assert len(np.unique(firsts, axis=0)) == tree.n_branches
 

@@ -164,19 +164,12 @@ def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, i
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
-    """
-    Where children sit: the foot of the perpendicular from their start onto the parent's segment.
-
-    """
+    """Where children sit on the segments of their parent."""
     if len(children) == 0:
         return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
     first = tree.branch_first[children]
     seat = tree.segment_parent[first]
-    step = tree.end[seat] - tree.start[seat]
-    along = (
-        np.einsum("ij,ij->i", tree.start[first] - tree.start[seat], step) / tree.length[seat] ** 2
-    )
-    return Attachments(seat - tree.branch_first[branch], np.clip(along, 0.0, 1.0))
+    return Attachments(seat - tree.branch_first[branch], tree.place_on_parent[first])
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:

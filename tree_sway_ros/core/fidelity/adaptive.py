@@ -29,7 +29,7 @@ from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
+from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, Counts, SwaySimulator
 from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
@@ -81,6 +81,8 @@ class AdaptiveSimulator(KeepsState):
         self.settings = in_season(tree, self.species, settings or Settings())
         self.ladder = FidelityLadder(tree, self.species, self.settings)
         self.tolerance, self.budget = tolerance, budget
+        self.counts = Counts()
+        """Steps, refused winds and held loads since the start, whatever models were in use."""
         self.pace = 1.0
         """Cost here over the cost that the ladder says: set it once it is measured."""
         self._expected = expected or WindClimate.steady(8.0, 0.2)
@@ -120,11 +122,6 @@ class AdaptiveSimulator(KeepsState):
         return self.pace * self.choice.cost
 
     @property
-    def counts(self) -> Counts:
-        """Steps, refused winds and held loads of the model in use."""
-        return self._shown.counts
-
-    @property
     def tip_displacement(self) -> Floats:
         """Displacement of the highest tip from rest in [m], (3,), of the model in use."""
         return self._shown.tip_displacement
@@ -141,7 +138,11 @@ class AdaptiveSimulator(KeepsState):
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step, as `SwaySimulator.step`; now and then look at the choice again."""
+        held = self._shown.counts.held
         status = self._shown.step(wind_mean, dt)
+        self.counts.steps += 1
+        self.counts.refused += status & WIND_REFUSED
+        self.counts.held += self._shown.counts.held - held
         self._tracker.add(self._shown.wind, dt)
         if self._next is not None:
             self._next.step(wind_mean, dt)
@@ -288,7 +289,6 @@ class AdaptiveSimulator(KeepsState):
             sim = SwaySimulator(self.tree, self.species, model, calibrated=calibrated)
             sim.step((0.0, 0.0, 0.0), 1.0 / 60.0)
             sim.reset()
-            sim.counts.steps = 0
             self._built[wanted.name] = sim
         return self._built[wanted.name]
 

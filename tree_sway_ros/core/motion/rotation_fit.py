@@ -18,7 +18,7 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.placing import turn_at
-from tree_sway_ros.core.rotation import product, quaternions_from_x
+from tree_sway_ros.core.rotation import product
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -38,7 +38,7 @@ class RotationFit:
     def __init__(self, tree: Tree, branches: Any, segments: Any) -> None:
         """Invert the shapes of every branch."""
         self._branches = branches
-        self._rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+        self._rest = tree.rest_frame
         n_slopes = segments["slope"].shape[1]
         self._inverse = np.zeros((tree.n_segments, n_slopes))
         for b, branch in enumerate(branches):

@@ -29,7 +29,6 @@ from tree_sway_ros.core.reference.articulated_modes import (
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
 from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
 from tree_sway_ros.core.reference.refinement import refined
-from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.tree import Tree
 
 RIGID_TWIST = 1e3
@@ -105,7 +104,7 @@ class ArticulatedTree:
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
         self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
         self._rotation, self._nodes = np.zeros((n, 3, 3)), np.zeros((3, n, 3))
-        self._rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+        self._rest = tree.rest_frame
         self._wind = np.zeros((n, 3))
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]

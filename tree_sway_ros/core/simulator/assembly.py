@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
-from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of
+from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -31,6 +31,8 @@ from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.motion.response import Responding
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+from tree_sway_ros.core.motion.wind_basis import WindBasisBank
+from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
@@ -59,11 +61,14 @@ class Oscillators(Responding, Protocol):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+
     def reset(self) -> None:
         """Go back to rest."""
 
 
-_COUPLED = ("modes", "coupled")
+_COUPLED = ("wind_basis", "modes", "coupled")
 
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
@@ -73,6 +78,7 @@ class Frozen:
     """Model 0: a tree that stands still, for one too far away to be seen moving."""
 
     carries = True
+    is_tabled = False
 
     def __init__(self, branches: Any, n_coordinates: int) -> None:
         """Rest is all there is."""
@@ -98,6 +104,11 @@ class Frozen:
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
+
+    def forces(self) -> Floats:
+        """None, (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Stay at rest."""
@@ -203,6 +214,7 @@ class CalibratedTree:
         self.tree, self.species = tree, species
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
+        self._tables: dict[int, WindBasisTable] = {}
 
     @property
     def damping_ratio(self) -> float:
@@ -222,8 +234,8 @@ class CalibratedTree:
         model
             One of `MODELS`.
         n_modes
-            How many modes the model ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if
-            None.
+            How many modes ``modes`` and ``wind_basis`` step; `USUAL_MODES`, or all if there are
+            fewer, if None.
 
         Raises
         ------
@@ -233,16 +245,23 @@ class CalibratedTree:
             More modes than there are.
 
         """
-        layer = self.layer(model)
+        layer, settings = self.layer(model), self.settings
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if model == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
-            oscillators = (NumpyModalBank if self.plain else ModalBank)(
-                branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
+            modal = (NumpyModalBank if self.plain else ModalBank)(
+                branches, layer.reduction, modes, self.damping_ratio, settings.integrator
             )
-            frequencies = modes.frequencies
+            oscillators, frequencies = modal, modes.frequencies
+            if model == "wind_basis":
+                need_compiler("the model 'wind_basis'")
+                n = len(modes.circular)
+                if n not in self._tables:
+                    law = self.species.drag_law(bool(settings.in_leaf))
+                    self._tables[n] = WindBasisTable(modal, law, settings.degree)
+                oscillators = WindBasisBank(modal, self._tables[n])
         else:
             refuse_buckling(self.tree, layer.reduction)
             copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
@@ -319,7 +338,7 @@ class CalibratedTree:
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
-        is_driven = model == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
+        is_driven = model != "coupled" and self.settings.mode_choice == "driven" and n_modes <= n
         candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
         wanted = n if model == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:

@@ -104,7 +104,7 @@ class SwaySimulator(KeepsState):
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
-        self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
+        self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
         self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
@@ -212,7 +212,7 @@ class SwaySimulator(KeepsState):
             speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
-        load = pressure(speed, *self._drag_law)
+        load = pressure(speed, *self.drag_law)
         for _ in range(self._pieces):
             held = self._advance(wx, wy, wz, load)
             if held > 0:
@@ -272,7 +272,7 @@ class SwaySimulator(KeepsState):
         rest, in [N m], (3,).
 
         """
-        centre, force = self.bank.branches["centre"], self.bank.oscillators.work["force"]
+        centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
 

@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.leaves.foliage import LeafClusters
-from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.tree import Tree
 
 SIDES = 8
@@ -57,7 +56,7 @@ def rest_poses(tree: Tree) -> Floats:
     Poses of the segments at rest, bit for bit as the solver's: x y z, quaternion x y z w, (n, 7).
 
     """
-    quaternions = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    quaternions = tree.rest_frame
     return np.hstack([tree.start, quaternions[:, [1, 2, 3, 0]]])
 
 

@@ -23,6 +23,7 @@ from functools import partial
 from math import pi
 from pathlib import Path
 
+from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.text_file import finite
 from tree_sway_ros.files.wind.record import WindRecord
@@ -32,7 +33,7 @@ from tree_sway_ros.files.wind.sensor_line import (
     checksum_of,
     read_sensor_log,
 )
-from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing, from_bearing
+from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing
 
 SENTENCES = ("MWD", "MWV T", "VWT", "MWV R", "VWR")
 """What can be read, in the order of preference: least depends on the motion of the boat first."""
@@ -141,7 +142,7 @@ def _mwv(fields: list[str], heading: float) -> Velocity | str:
     bearing = None if angle is None else degrees_to_bearing(angle)
     if bearing is None or speed is None or unit is None or speed < 0.0:
         return f"angle '{fields[0][:8]}', speed '{fields[2][:8]}', unit '{fields[3][:8]}'"
-    return from_bearing(speed * unit, bearing + heading)
+    return velocity_of_bearing(speed * unit, bearing + heading)
 
 
 def _mwd(fields: list[str], declination: float) -> Velocity | str:
@@ -156,7 +157,7 @@ def _mwd(fields: list[str], declination: float) -> Velocity | str:
         bearing = None if needle is None else needle + declination
     if bearing is None or speed is None or speed < 0.0:
         return f"direction '{fields[0][:8]}', speed '{fields[6][:8]}'"
-    return from_bearing(speed, bearing)
+    return velocity_of_bearing(speed, bearing)
 
 
 def _vwr(fields: list[str], heading: float) -> Velocity | str:
@@ -172,4 +173,4 @@ def _vwr(fields: list[str], heading: float) -> Velocity | str:
     if speed is None or speed < 0.0:
         return "no speed" if speed is None else f"speed is {speed:g} m/s"
     turn = angle * pi / 180.0
-    return from_bearing(speed, heading + (turn if side == "R" else -turn))
+    return velocity_of_bearing(speed, heading + (turn if side == "R" else -turn))

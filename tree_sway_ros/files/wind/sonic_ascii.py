@@ -19,6 +19,7 @@ from functools import partial
 from math import hypot, pi, sqrt
 from pathlib import Path
 
+from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.files.text_file import finite
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.sensor_line import (
@@ -27,7 +28,7 @@ from tree_sway_ros.files.wind.sensor_line import (
     checksum_of,
     read_sensor_log,
 )
-from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing, from_bearing
+from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing
 
 KINDS = ("gill", "trisonica")
 """Kinds of lines."""
@@ -126,8 +127,8 @@ def _gill(fields: list[str], heading: float) -> Velocity | str:
     signed = [text[:1] in ("+", "-") for text in texts]
     if len(values) >= 2 and None not in values and all(signed):
         u, v, w = (unit * (value or 0.0) for value in (*values, 0.0)[:3])
-        x, y, _ = from_bearing(u, heading, "to")
-        left_x, left_y, _ = from_bearing(v, heading - 0.5 * pi, "to")
+        x, y, _ = velocity_of_bearing(u, heading, "to")
+        left_x, left_y, _ = velocity_of_bearing(v, heading - 0.5 * pi, "to")
         return x + left_x, y + left_y, w
     if len(values) < 2 or "." not in texts[1] or signed[0]:
         return f"neither components nor a direction: {','.join(texts)[:30]}"
@@ -139,7 +140,7 @@ def _gill(fields: list[str], heading: float) -> Velocity | str:
         if texts[0] or speed * unit >= _CALM:
             return f"direction '{texts[0][:8]}'"
         bearing = 0.0
-    x, y, _ = from_bearing(unit * speed, bearing + heading)
+    x, y, _ = velocity_of_bearing(unit * speed, bearing + heading)
     return x, y, unit * up
 
 
@@ -163,5 +164,5 @@ def _trisonica(words: list[str], heading: float) -> Velocity | str:
         return "no speed S, S2, or U and V"
     if speed is not None and abs(hypot(level, up) - speed) > 0.5 + 0.2 * speed:
         return f"components of {hypot(level, up):.3g} m/s at a speed of {speed:g}"
-    x, y, _ = from_bearing(level, bearing + heading)
+    x, y, _ = velocity_of_bearing(level, bearing + heading)
     return x, y, up

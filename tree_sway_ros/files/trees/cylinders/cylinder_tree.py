@@ -23,8 +23,8 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.diameter_fit import corrected_twigs, fitted_taper
 from tree_sway_ros.files.trees.cylinders.joining import (
     branch_keys,
+    checked_order,
     join_loose_branches,
-    parents_first,
 )
 from tree_sway_ros.files.trees.cylinders.merging import merge_tiny
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -91,7 +91,7 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
             f"{loose.count} branches had no parent and were set on the nearest cylinder, "
             f"at most {loose.distance:.3g} m away"
         )
-    order = parents_first(cylinders.parent, cylinders.labels)
+    order = checked_order(cylinders.parent, cylinders.labels)
     merged = merge_tiny(cylinders, order, options.merge_below)
     cylinders = merged.cylinders
     if merged.count:

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import FormatError, TreeError
 from tree_sway_ros.files.trees.assembly import SegmentTable
+from tree_sway_ros.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]
 
@@ -25,22 +27,14 @@ class _Placed:
     first: int
 
 
-def branch_segments(
-    branches: list[Values], lines: list[int], segment_lines: list[list[int]], source: str
-) -> SegmentTable:
+def branch_segments(document: YamlDocument) -> SegmentTable:
     """
     Join named branches to one table of segments.
 
     Parameters
     ----------
-    branches
-        Checked values of each branch.
-    lines
-        Line of each branch.
-    segment_lines
-        Line of each node or segment of each branch.
-    source
-        The file, for the errors.
+    document
+        A tree with ``branches``.
 
     Raises
     ------
@@ -50,14 +44,15 @@ def branch_segments(
         A parent that is not there, a cycle, not exactly one stem, a branch in the air.
 
     """
+    branches = document.values["branches"]
     where = [
-        f"{source}:{line}: branch '{b['name']}'" for b, line in zip(branches, lines, strict=True)
+        f"{document.where('branches', i)}: branch '{b['name']}'" for i, b in enumerate(branches)
     ]
     index = _indices(branches, where)
     parents = _parents(branches, index, where)
     table = SegmentTable(branch_names=[branch["name"] for branch in branches])
     placed: dict[int, _Placed] = {}
-    for number in _parents_first(parents, branches, where):
+    for number in _checked_order(parents, where):
         branch, its_parent = branches[number], placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
         sits_on, origin = -1, np.zeros(3)
@@ -71,9 +66,12 @@ def branch_segments(
         base = its_parent.first + sits_on if its_parent is not None else -1
         table.parent += [base, *range(rows.first, rows.first + len(start) - 1)]
         table.branch += [number] * len(start)
+        # A segment between two nodes is called by the line of the second.
+        key, ahead = ("nodes", 1) if "nodes" in branch else ("segments", 0)
         table.labels += [
-            f"{source}:{line}: segment {i} of branch '{branch['name']}'"
-            for i, line in enumerate(segment_lines[number][-len(start) :])
+            f"{document.where('branches', number, key, i + ahead)}: "
+            f"segment {i} of branch '{branch['name']}'"
+            for i in range(len(start))
         ]
     return table
 
@@ -111,13 +109,8 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
     return parents
 
 
-def _parents_first(parents: list[int], branches: list[Values], where: list[str]) -> list[int]:
-    children: dict[int, list[int]] = {}
-    for number, its_parent in enumerate(parents):
-        children.setdefault(its_parent, []).append(number)
-    order = list(children.get(-1, ()))
-    for number in order:
-        order.extend(children.get(number, ()))
+def _checked_order(parents: list[int], where: list[str]) -> list[int]:
+    order = parents_first(parents)
     if len(order) < len(parents):
         lost = min(set(range(len(parents))) - set(order))
         raise TreeError(
