@@ -15,6 +15,7 @@ from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
+from tree_sway_ros.core.wind.simulated.sensor_faults import FAULTS
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
@@ -122,6 +123,23 @@ ANEMOMETER: Table = (
         3600.0,
         live=True,
     ),
+    Parameter(
+        "fault",
+        "none",
+        "The sensor fails in this way from time to time, in each in turn with `all`.",
+        choices=FAULTS,
+        live=True,
+    ),
+    Parameter(
+        "fault_every",
+        20.0,
+        "Time from one fault to the next; the first comes after so long.",
+        "s",
+        0.1,
+        3600.0,
+        live=True,
+    ),
+    Parameter("fault_duration", 1.0, "Each fault lasts so long.", "s", 0.01, 600.0, live=True),
 )
 
 WIND: Table = (
