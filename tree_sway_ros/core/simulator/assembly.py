@@ -1,13 +1,15 @@
 """
 From a tree to the oscillators that move it, for every model of the ladder.
 
+What only one model needs is imported where that model is made.
+
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,30 +23,32 @@ from tree_sway_ros.core.motion.fill_records import (
     head_records,
     segment_records,
 )
-from tree_sway_ros.core.motion.modal import ModalBank
-from tree_sway_ros.core.motion.numpy_banks import NumpyModalBank, NumpyUncoupledBank
-from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
-from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
-from tree_sway_ros.core.motion.response import Responding
-from tree_sway_ros.core.motion.rigid_placing import RigidParts
-from tree_sway_ros.core.motion.uncoupled import UncoupledBank
-from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.similar_twigs import twig_sources
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
+if TYPE_CHECKING:
+    from tree_sway_ros.core.motion.modal import ModalBank
+    from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
+    from tree_sway_ros.core.motion.rigid_placing import RigidParts
+    from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 
-class Oscillators(Responding, Protocol):
+
+class Oscillators(Protocol):
     """What every model gives: key rotations that a wind moves."""
 
+    carries: bool
+    branches: Any
     work: Any
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
@@ -139,6 +143,8 @@ class Bank:
 
     @cached_property
     def _plain_placing(self) -> NumpyPlacing:
+        from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
+
         return NumpyPlacing(self.branches, self.segments, self.frozen)
 
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
@@ -228,12 +234,14 @@ class CalibratedTree:
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
-            oscillators = (NumpyModalBank if self.plain else ModalBank)(
+            oscillators = self._modal_bank()(
                 branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
             )
             frequencies = modes.frequencies
         else:
             refuse_buckling(self.tree, layer.reduction)
+            from tree_sway_ros.core.tree.similar_twigs import twig_sources
+
             copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
             bank = self._uncoupled(layer, branches, carries=model == "subtree")
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
@@ -316,10 +324,24 @@ class CalibratedTree:
         modes = self._slowest.slowest(wanted)
         if not is_driven:
             return modes
+        from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
+
         return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+
+    def _modal_bank(self) -> type[ModalBank]:
+        if self.plain:
+            from tree_sway_ros.core.motion.numpy_banks import NumpyModalBank
+
+            return NumpyModalBank
+        from tree_sway_ros.core.motion.modal import ModalBank
+
+        return ModalBank
 
     def _uncoupled(self, layer: Layer, branches: Any, *, carries: bool) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
+        from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+        from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
+
         tree, settings = self.tree, self.settings
         inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)
         stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
@@ -331,5 +353,9 @@ class CalibratedTree:
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-        kind = NumpyUncoupledBank if self.plain else UncoupledBank
+        kind: type[UncoupledBank] = UncoupledBank
+        if self.plain:
+            from tree_sway_ros.core.motion.numpy_banks import NumpyUncoupledBank
+
+            kind = NumpyUncoupledBank
         return kind(branches, inertia, damping, stiffness, carries, settings.integrator)
