@@ -117,4 +117,5 @@ def test_the_digest_tells_trees_and_settings_apart(fork, stem):
     assert own != digest_of(stem(), sim.settings)
     assert own != digest_of(tree, replace(sim.settings, gravity=0.0))
     leaves = np.ones(tree.n_branches)
-    assert own != digest_of(tree, replace(sim.settings, leaf_mass=leaves))
+    in_leaf = replace(sim.settings, in_leaf=True)
+    assert digest_of(tree, in_leaf) != digest_of(tree, replace(in_leaf, leaf_mass=leaves))

@@ -96,8 +96,8 @@ class NumpyModalBank(ModalBank):
         """Advance one step, as `ModalBank.advance`."""
         passes, n = self._passes, len(self.branches)
         eta, rate, rest, force = self.modal[:4]
-        moment, flexibility = self.state[0], self._flexibility
-        h, c = self._half.T, self._whole.T
+        moment, flexibility = self.state[0], self.flexibility
+        h, c = self.half.T, self.whole.T
         middle_eta = h[0] * eta + h[1] * rate + (h[2] + h[3]) * force - rest
         middle_rate = h[4] * eta + h[5] * rate + (h[6] + h[7]) * force
         x = passes.per_branch(flexibility * moment + _summed(middle_eta, self._shapes))
@@ -112,10 +112,10 @@ class NumpyModalBank(ModalBank):
         first = self.branches["coordinate"][:, None] + np.arange(2)
         load, none = np.hstack([pull[:, None], moment[first]]), np.zeros(n)
         moment[first] = two_axis_moment(x[:, :2], v[:, :2], load, none, np.inf)
-        over = ~(np.abs(moment) <= self._limit)
-        moment[over] = np.where(moment[over] > 0.0, self._limit[over], -self._limit[over])
+        over = ~(np.abs(moment) <= self.limit)
+        moment[over] = np.where(moment[over] > 0.0, self.limit[over], -self.limit[over])
         force[:] = np.einsum("mi,i->m", self._shapes, moment)
-        rest[:] = np.einsum("mi,i->m", self._held, moment)
+        rest[:] = np.einsum("mi,i->m", self.held, moment)
         new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
         rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force
         eta[:] = new_eta
@@ -124,7 +124,7 @@ class NumpyModalBank(ModalBank):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
         x: Floats = self.state[3]
-        x[:] = self._flexibility * self.state[0]
+        x[:] = self.flexibility * self.state[0]
         x += _summed(self.modal[0] - self.modal[2], self._shapes)
         return x
 

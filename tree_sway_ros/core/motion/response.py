@@ -27,6 +27,7 @@ class Responding(Protocol):
 
     branches: Any
     carries: bool
+    is_tabled: bool
 
     def response(self, moments: Floats, circular: Floats) -> Complexes:
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""

@@ -45,6 +45,8 @@ class UncoupledBank:
 
     """
 
+    is_tabled = False
+
     def __init__(
         self,
         branches: Any,
@@ -125,6 +127,11 @@ class UncoupledBank:
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
         return self.x
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Go back to rest."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
-from tree_sway_ros.core.kernel import WHY_PLAIN
+from tree_sway_ros.core.kernel import WHY_PLAIN, need_compiler
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -38,12 +38,14 @@ if TYPE_CHECKING:
     from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
     from tree_sway_ros.core.motion.rigid_placing import RigidParts
     from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+    from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
 
 
 class Oscillators(Protocol):
     """What every model gives: key rotations that a wind moves."""
 
     carries: bool
+    is_tabled: bool
     branches: Any
     work: Any
 
@@ -62,11 +64,14 @@ class Oscillators(Protocol):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+
     def reset(self) -> None:
         """Go back to rest."""
 
 
-_COUPLED = ("modes", "coupled")
+_COUPLED = ("wind_basis", "modes", "coupled")
 
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
@@ -76,6 +81,7 @@ class Frozen:
     """Model 0: a tree that stands still, for one too far away to be seen moving."""
 
     carries = True
+    is_tabled = False
 
     def __init__(self, branches: Any, n_coordinates: int) -> None:
         """Rest is all there is."""
@@ -101,6 +107,11 @@ class Frozen:
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
+
+    def forces(self) -> Floats:
+        """None, (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Stay at rest."""
@@ -198,6 +209,7 @@ class CalibratedTree:
         self.tree, self.species = tree, species
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
+        self._tables: dict[int, WindBasisTable] = {}
 
     @property
     def damping_ratio(self) -> float:
@@ -217,8 +229,8 @@ class CalibratedTree:
         model
             One of `MODELS`.
         n_modes
-            How many modes the model ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if
-            None.
+            How many modes ``modes`` and ``wind_basis`` step; `USUAL_MODES`, or all if there are
+            fewer, if None.
 
         Raises
         ------
@@ -228,16 +240,26 @@ class CalibratedTree:
             More modes than there are.
 
         """
-        layer = self.layer(model)
+        layer, settings = self.layer(model), self.settings
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if model == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
-            oscillators = self._modal_bank()(
-                branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
+            modal = self._modal_bank()(
+                branches, layer.reduction, modes, self.damping_ratio, settings.integrator
             )
-            frequencies = modes.frequencies
+            oscillators, frequencies = modal, modes.frequencies
+            if model == "wind_basis":
+                from tree_sway_ros.core.motion.wind_basis import WindBasisBank
+                from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
+
+                need_compiler("the model 'wind_basis'")
+                n = len(modes.circular)
+                if n not in self._tables:
+                    law = self.species.drag_law(bool(settings.in_leaf))
+                    self._tables[n] = WindBasisTable(modal, law, settings.degree)
+                oscillators = WindBasisBank(modal, self._tables[n])
         else:
             refuse_buckling(self.tree, layer.reduction)
             from tree_sway_ros.core.tree.similar_twigs import twig_sources
@@ -316,7 +338,7 @@ class CalibratedTree:
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
-        is_driven = model == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
+        is_driven = model != "coupled" and self.settings.mode_choice == "driven" and n_modes <= n
         candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
         wanted = n if model == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:

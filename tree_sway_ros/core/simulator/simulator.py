@@ -268,7 +268,7 @@ class SwaySimulator(KeepsState):
         rest, in [N m], (3,).
 
         """
-        centre, force = self.bank.branches["centre"], self.bank.oscillators.work["force"]
+        centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.response import tip_motion
+from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.state.state_basis import BasisError, StateBasis
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
@@ -65,6 +66,7 @@ class Swaying(Protocol):
         """Go back to rest."""
 
 
+@one_thread()
 def state_basis(
     simulator: Swaying, n_coordinates: int | None = None, *, seed: int = 1
 ) -> StateBasis:
