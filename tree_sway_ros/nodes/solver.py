@@ -74,6 +74,7 @@ class SolverNode(TreeSwayNode):
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
+            model=self.values["fidelity"],
             in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
             profile=WindProfile(
@@ -84,7 +85,7 @@ class SolverNode(TreeSwayNode):
                 ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
             ),
         )
-        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
+        self.simulator: Any = source.simulator(settings, **self.values("tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)

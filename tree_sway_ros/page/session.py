@@ -45,7 +45,7 @@ class Choices:
 
     tree: str
     count: str = "1"
-    fidelity: str = "modes"
+    fidelity: str = "auto"
     damping_ratio: float = 0.0
 
 

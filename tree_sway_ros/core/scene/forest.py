@@ -39,11 +39,8 @@ class Forest:
         The trees, each with a name of its own.
     settings
         How they are modelled, but for those with settings of their own.
-    fidelity
-        Model of trees without settings of their own, as of `make_simulator`; the model of the
-        settings if None.
     tolerance
-        Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on
+        Largest error of the tips in [m] that the model ``auto`` may allow itself, in each tree on
         its own.
     anemometer
         Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind
@@ -77,7 +74,6 @@ class Forest:
         trees: Sequence[PlacedTree],
         settings: Settings | None = None,
         *,
-        fidelity: str | None = None,
         tolerance: float = 0.005,
         anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
@@ -95,7 +91,6 @@ class Forest:
             _simulator(
                 tree,
                 tree.settings_where_it_stands(self.settings),
-                None if tree.settings is not None else fidelity,
                 tolerance,
             )
             for tree in trees
@@ -238,7 +233,7 @@ class Forest:
 
 
 def _simulator(
-    tree: PlacedTree, settings: Settings, fidelity: str | None, tolerance: float
+    tree: PlacedTree, settings: Settings, tolerance: float
 ) -> Simulator:
     """Simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
@@ -247,7 +242,6 @@ def _simulator(
             placed,
             tree.species if tree.species is not None else species_named(placed.species),
             settings,
-            fidelity=fidelity or settings.model,
             tolerance=tolerance,
         )
     except TreeSwayError as error:

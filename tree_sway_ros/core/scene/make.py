@@ -1,5 +1,5 @@
 """
-One way to every model of a tree: by the name of its fidelity.
+One way to every model of a tree, by its name.
 
 """
 
@@ -13,14 +13,10 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.simulator.segments import SegmentsSimulator
-from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
-from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError
-
-FIDELITIES = ("auto", *MODELS, "segments")
-"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
 
 class Simulator(Protocol):
@@ -65,10 +61,9 @@ class Simulator(Protocol):
 
 def make_simulator(
     tree: Tree,
-    species: Species,
+    species: Species | None = None,
     settings: Settings | None = None,
     *,
-    fidelity: str = "auto",
     tolerance: float = 0.005,
     budget: float = 0.0,
     **changes: Any,
@@ -79,9 +74,7 @@ def make_simulator(
     Parameters
     ----------
     tree, species, settings
-        As for `SwaySimulator`.
-    fidelity
-        One of `FIDELITIES`.
+        As for `SwaySimulator`; the model is one of `FIDELITIES`.
     tolerance
         Largest error of the tips in [m] that ``auto`` may allow itself.
     budget
@@ -93,21 +86,18 @@ def make_simulator(
     Raises
     ------
     ParameterError
-        An unknown fidelity, or a setting out of its range.
+        An unknown model, or a setting out of its range.
     TreeError
         A tree that buckles under its own weight.
 
     """
-    if fidelity not in FIDELITIES:
-        raise ParameterError(
-            f"unknown fidelity '{fidelity}'", cure=f"use one of: {', '.join(FIDELITIES)}"
-        )
-    model = replace(settings or Settings(), **changes)
-    if fidelity == "auto":
-        return AdaptiveSimulator(tree, species, model, tolerance=tolerance, budget=budget)
-    if fidelity == "segments":
-        return SegmentsSimulator(tree, species, model)
-    return SwaySimulator(tree, species, replace(model, model=fidelity))
+    chosen = replace(settings or Settings(), **changes)
+    wood = species if species is not None else species_named(tree.species)
+    if chosen.model == "auto":
+        return AdaptiveSimulator(tree, wood, chosen, tolerance=tolerance, budget=budget)
+    if chosen.model == "segments":
+        return SegmentsSimulator(tree, wood, chosen)
+    return SwaySimulator(tree, wood, chosen)
 
 
 def simulators_of(simulator: Any) -> tuple[Any, ...]:

@@ -62,7 +62,6 @@ def simulate(
     rate: float = 60.0,
     seconds: float | None = None,
     branches: Sequence[int] | None = None,
-    fidelity: str = "auto",
     settings: Settings | None = None,
     progress: Callable[[float], None] | None = None,
     **changes: Any,
@@ -83,7 +82,7 @@ def simulate(
         Length of what is simulated in [s]; all of the wind if None.
     branches
         Branches whose tips are told; the one that bears the highest tip if None.
-    fidelity, settings, **changes
+    settings, **changes
         The model, as for `make_simulator`.
     progress
         Called now and then with the part that is done, from 0 to 1.
@@ -107,8 +106,8 @@ def simulate(
     means = _step_means(wind, rate, seconds)
     chosen = _chosen(body, branches)
     model = replace(settings or Settings(), **changes)
-    simulator = cast(TreeSimulator, make_simulator(body, species, model, fidelity=fidelity))
-    base = BaseMoment(body, species, model, fidelity)
+    simulator = cast(TreeSimulator, make_simulator(body, species, model))
+    base = BaseMoment(body, species, model)
     rest = tips_of_poses(body, simulator.place())[chosen]
     tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
     poses, every = np.empty((body.n_segments, 7)), max(len(means) // 100, 1)
@@ -139,15 +138,15 @@ class BaseMoment:
 
     Parameters
     ----------
-    tree, species, settings, fidelity
+    tree, species, settings
         As for the simulator that is asked.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: Settings, fidelity: str) -> None:
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Find the moment per unit of each coordinate of the stem."""
         layer = CalibratedTree(tree, species, settings).layer(
-            fidelity if fidelity in ("branch", "subtree") else "coupled"
+            settings.model if settings.model in ("branch", "subtree") else "coupled"
         )
         stem = layer.models[0]
         beam = stem.beam

@@ -174,7 +174,7 @@ def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
     Calibrate a tree for the model of its settings; see `CalibratedTree.bank`.
 
     """
-    return CalibratedTree(tree, species, settings).bank(settings.model, settings.n_modes)
+    return CalibratedTree(tree, species, settings).bank(settings.fixed_model, settings.n_modes)
 
 
 @dataclass(frozen=True)

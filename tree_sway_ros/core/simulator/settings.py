@@ -18,6 +18,12 @@ from tree_sway_ros.errors import ParameterError
 MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 """Models of the ladder of models, the least first."""
 
+FIDELITIES = ("auto", *MODELS, "segments")
+"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
+
+FIXED_MODEL = "subtree"
+"""The model of what has to keep to one, and is not told to which."""
+
 STIFFNESS_RULES = ("beam", "volume_rule")
 """Ways to set the stiffness of a branch."""
 
@@ -30,8 +36,8 @@ class Settings:
     Parameters
     ----------
     model
-        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes`` or
-        ``coupled``.
+        Model: ``auto``, which takes the least that will do; ``frozen``, ``branch`` (the paper's),
+        ``subtree``, ``wind_basis``, ``modes`` or ``coupled``; or ``segments``.
     n_modes
         How many modes the models ``wind_basis`` and ``modes`` step; 12, or all if there are
         fewer, if None.
@@ -68,7 +74,7 @@ class Settings:
 
     """
 
-    model: str = "subtree"
+    model: str = "auto"
     n_modes: int | None = None
     mode_choice: str = "driven"
     degree: int = 5
@@ -88,7 +94,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
-        _one_of("model", self.model, MODELS)
+        _one_of("model", self.model, FIDELITIES)
         _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)
@@ -116,6 +122,11 @@ class Settings:
                 raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
         if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
             raise ParameterError(f"gravity {self.gravity} m/s^2", cure="give 0 or more")
+
+    @property
+    def fixed_model(self) -> str:
+        """The model of `MODELS` to keep to where none is chosen on the way."""
+        return FIXED_MODEL if self.model == "auto" else self.model
 
 
 def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:

@@ -63,7 +63,8 @@ class SwaySimulator(KeepsState):
     species
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
-        How it is modelled.
+        How it is modelled; on `FIXED_MODEL` where the model is ``auto``, as this simulator keeps to
+        one.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
     **changes
@@ -103,7 +104,7 @@ class SwaySimulator(KeepsState):
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
-        self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
+        self.bank: Bank = calibrated.bank(self.settings.fixed_model, self.settings.n_modes)
         self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
         self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
@@ -117,7 +118,7 @@ class SwaySimulator(KeepsState):
     @property
     def model(self) -> str:
         """Model in use."""
-        return self.settings.model
+        return self.settings.fixed_model
 
     @property
     def n_solved(self) -> int:

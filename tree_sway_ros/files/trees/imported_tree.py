@@ -75,7 +75,6 @@ class TreeFile:
         self,
         settings: Settings | None = None,
         *,
-        fidelity: str = "auto",
         tolerance: float = 0.005,
         **changes: Any,
     ) -> Simulator:
@@ -84,7 +83,7 @@ class TreeFile:
 
         Parameters
         ----------
-        settings, fidelity, tolerance, **changes
+        settings, tolerance, **changes
             As for `make_simulator`.
 
         Raises
@@ -95,7 +94,7 @@ class TreeFile:
         """
         model = replace(settings or Settings(), **changes)
         return make_simulator(
-            self.tree, self.species, model, fidelity=fidelity, tolerance=tolerance
+            self.tree, self.species, model, tolerance=tolerance
         )
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
