@@ -24,10 +24,11 @@ if TYPE_CHECKING:
     from tree_sway_ros.core.growth.grow import grow
     from tree_sway_ros.core.identification.calibration import calibrate
     from tree_sway_ros.core.scene.forest import Forest
-    from tree_sway_ros.core.scene.make import Simulator, make_simulator
+    from tree_sway_ros.core.scene.make import make_simulator
     from tree_sway_ros.core.scene.placed_tree import PlacedTree
     from tree_sway_ros.core.scene.simulate import simulate
     from tree_sway_ros.core.scene.sway_record import SwayRecord
+    from tree_sway_ros.core.simulator.protocol import Simulator
     from tree_sway_ros.core.simulator.settings import Settings
     from tree_sway_ros.core.tree.species import Species, species_named
     from tree_sway_ros.core.tree.tree import Tree
@@ -45,10 +46,11 @@ _MODULES = {
     "core.growth.grow": ("grow",),
     "core.identification.calibration": ("calibrate",),
     "core.scene.forest": ("Forest",),
-    "core.scene.make": ("Simulator", "make_simulator"),
+    "core.scene.make": ("make_simulator",),
     "core.scene.placed_tree": ("PlacedTree",),
     "core.scene.simulate": ("simulate",),
     "core.scene.sway_record": ("SwayRecord",),
+    "core.simulator.protocol": ("Simulator",),
     "core.simulator.settings": ("Settings",),
     "core.tree.species": ("Species", "species_named"),
     "core.tree.tree": ("Tree",),

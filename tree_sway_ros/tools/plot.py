@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.scene.make import Simulator, simulators_of
+from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError

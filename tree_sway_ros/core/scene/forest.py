@@ -19,8 +19,9 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
 from tree_sway_ros.core.tree.species import species_named
@@ -234,7 +235,7 @@ class Forest:
 
 def _simulator(
     tree: PlacedTree, settings: Settings, tolerance: float
-) -> Simulator:
+) -> TreeSimulator:
     """Simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:

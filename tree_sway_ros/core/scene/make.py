@@ -6,57 +6,15 @@ One way to every model of a tree, by its name.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
-from numpy.typing import ArrayLike
-
-from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
 from tree_sway_ros.core.simulator.segments import SegmentsSimulator
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
-
-
-class Simulator(Protocol):
-    """A tree that sways, whatever the model; or a forest."""
-
-    tree: Tree
-    settings: Settings
-
-    @property
-    def model(self) -> str:
-        """Model in use."""
-
-    @property
-    def counts(self) -> Counts:
-        """What was refused or held."""
-
-    @property
-    def n_solved(self) -> int:
-        """Branches that are solved."""
-
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-
-    @property
-    def n_frozen(self) -> int:
-        """Branches that move with their parent as one body."""
-
-    @property
-    def tip_displacement(self) -> Floats:
-        """Way of the highest tip from rest in [m], (3,)."""
-
-    def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """Advance one step of dt [s] in a wind [m/s]."""
-
-    def place(self, out: Floats | None = None) -> Floats:
-        """Place every segment, (n, 7)."""
-
-    def reset(self) -> None:
-        """Go back to rest."""
 
 
 def make_simulator(
@@ -67,7 +25,7 @@ def make_simulator(
     tolerance: float = 0.005,
     budget: float = 0.0,
     **changes: Any,
-) -> Simulator:
+) -> TreeSimulator:
     """
     Make a simulator of a tree.
 
@@ -100,6 +58,6 @@ def make_simulator(
     return SwaySimulator(tree, wood, chosen)
 
 
-def simulators_of(simulator: Any) -> tuple[Any, ...]:
+def simulators_of(simulator: Simulator) -> tuple[TreeSimulator, ...]:
     """Return the simulator of each tree: of a `Forest` all of them, of a tree its own."""
-    return tuple(getattr(simulator, "simulators", (simulator,)))
+    return simulator.simulators

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Protocol, cast, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.sway_record import SwayRecord
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
@@ -33,13 +33,6 @@ class GrownTree(Protocol):
     @property
     def species(self) -> Species:
         """The wood."""
-
-
-class TreeSimulator(Simulator, Protocol):
-    """A simulator of one tree, whose key rotations are one array."""
-
-    def rotations(self) -> Floats:
-        """Key rotations in [rad], (N,)."""
 
 
 @runtime_checkable
@@ -106,7 +99,7 @@ def simulate(
     means = _step_means(wind, rate, seconds)
     chosen = _chosen(body, branches)
     model = replace(settings or Settings(), **changes)
-    simulator = cast(TreeSimulator, make_simulator(body, species, model))
+    simulator = make_simulator(body, species, model)
     base = BaseMoment(body, species, model)
     rest = tips_of_poses(body, simulator.place())[chosen]
     tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.plausibility import doubts, refuse_nonsense
@@ -77,7 +78,7 @@ class TreeFile:
         *,
         tolerance: float = 0.005,
         **changes: Any,
-    ) -> Simulator:
+    ) -> TreeSimulator:
         """
         Make a simulator of the tree.
 
