@@ -72,6 +72,8 @@ extras = {
         *("pygltflib>=1.16", "trimesh>=4.0"),
     ],
     "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML", "types-jsonschema"],
+    # Studies on a cluster, and their tables as Parquet.
+    "cluster": ["distributed>=2023.1", "pyarrow>=12"],
     "docs": ["sphinx>=7", "myst-parser>=2"],
 }
 

@@ -39,7 +39,9 @@ NEEDS = {
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
-    **dict.fromkeys(("pytest", "py.test"), ("ros", "bag", "plot", "h5", "mujoco", "test")),
+    **dict.fromkeys(
+        ("pytest", "py.test"), ("ros", "bag", "plot", "h5", "mujoco", "cluster", "test")
+    ),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
     "sphinx-build": ("docs",),

@@ -8,7 +8,10 @@ import yaml
 from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
-ARGUMENTS = ("tree", "file", "rate", "x", "y", "z", "yaw", "frame_id", "use_sim_time")
+ARGUMENTS = (
+    *("tree", "file", "topic", "reader_options", "rate"),
+    *("x", "y", "z", "yaw", "frame_id", "use_sim_time"),
+)
 GIVEN = dict.fromkeys(ARGUMENTS, "")
 
 
@@ -44,7 +47,8 @@ def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executab
     assert set(start(launch_file, monkeypatch, source=source)) == executables
 
 
-def test_rviz_is_started_if_asked_for(launch_file, monkeypatch):
+def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):
+    assert "viewer" in start(launch_file, monkeypatch, page="1")
     assert "rviz2" in start(launch_file, monkeypatch, rviz="true")
 
 

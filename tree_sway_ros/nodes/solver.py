@@ -99,7 +99,7 @@ class SolverNode(TreeSwayNode):
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, leaves)
-        self.subscription(WIND_FILTERED, self._receive)
+        self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
@@ -143,7 +143,14 @@ class SolverNode(TreeSwayNode):
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._stepper.restart(tick.time)
-        self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
+        for message in self._new_wind():
+            self._receive(message)
+        self._stepper.advance(
+            tick.time,
+            tick.periods,
+            self.values["wind_delay"],
+            may_join=not self.pacer.is_simulated,
+        )
         index = tick.time // self.pacer.period
         self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
         self._state.publish(index, tick.time)

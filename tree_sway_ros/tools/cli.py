@@ -17,6 +17,7 @@ import io
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple, NoReturn
 
@@ -65,11 +66,18 @@ COMMANDS: dict[str, Command] = {
     "paper": Command(
         "the experiment of Kanda & Ohya as it is written, and what ours does instead", "paper"
     ),
+    "study": Command(
+        "many trees in many winds with many settings, over all cores",
+        "study study.yaml -o study.csv",
+    ),
     "docs": Command("write the tables of topics and parameters into the pages", "docs --check"),
 }
 
 #: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
-_STUDIES = ("bench", "battery", "chart", "compare", "paper")
+_STUDIES = {
+    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
+    "study": "campaign",
+}
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -110,7 +118,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit code: 0, or 2 if the user can mend it, with one line that says how.
 
     """
-    given = list(sys.argv[1:] if argv is None else argv)
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning  # type: ignore[assignment]
+        return _main(list(sys.argv[1:] if argv is None else argv))
+
+
+def _main(given: list[str]) -> int:
     command = given[0] if given else ""
     _write_any_name()
     try:
@@ -139,6 +152,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _INTERRUPTED
 
 
+def _show_warning(message: Warning | str, *_where: Any) -> None:
+    """Say what a library warns of on one line, without the line of code it stands in."""
+    if sys.stderr is not None:
+        print(f"note: {' '.join(str(message).split())}", file=sys.stderr)
+
+
 def _write_any_name() -> None:
     """Let names that a terminal has no letters for be printed with escapes, not end the program."""
     for stream in (sys.stdout, sys.stderr):
@@ -161,7 +180,8 @@ def _shortened(name: str) -> str:
 
 
 def _module(command: str) -> Any:
-    where = f"study.{command}.command" if command in _STUDIES else f"tools.{command}"
+    room = _STUDIES.get(command)
+    where = f"study.{room}.command" if room else f"tools.{command}"
     return importlib.import_module(f"tree_sway_ros.{where}")
 
 

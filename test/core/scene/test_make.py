@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.simulator.settings import FIDELITIES
+from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.tree.resegment import resegment
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError
@@ -91,3 +93,18 @@ def test_every_segment_is_pushed_by_the_leaves_too():
         sim.place()
         ways.append(sim.tip_displacement[0])
     assert ways[1] == pytest.approx(ways[0], rel=0.05)
+
+
+@pytest.mark.parametrize("model", FIDELITIES)
+def test_a_tree_is_used_like_a_forest_of_one(stem, model):
+    sim = make_simulator(stem, WOOD, model=model)
+    sim.step((3.0, 1.0, 0.0), DT)
+    assert sim.simulators == (sim,)
+    assert sim.gusts is None
+    assert sim.wind == pytest.approx([3.0, 1.0, 0.0])
+
+
+def test_the_model_is_that_of_the_settings(stem):
+    assert make_simulator(stem, WOOD, Settings(model="branch")).model == "branch"
+    assert make_simulator(stem, WOOD, Settings(model="branch"), model="modes").model == "modes"
+    assert make_simulator(replace(stem, species="oak")).species is species_named("oak")

@@ -82,11 +82,15 @@ class ModalBank:
         self._pull = np.zeros(len(branches))
         self.whole, self.half = np.zeros((2, m, 8))
 
-    def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+    def set_pace(self, dt: float) -> None:
+        """Refill how the modes go on in a time step [s]."""
         one = np.ones(len(self.stiffness))
         fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        self.set_pace(dt)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self.half[:, 6] + self.half[:, 7]
         compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads

@@ -106,7 +106,7 @@ class SwaySimulator(OneTree, KeepsState):
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.fixed_model, self.settings.n_modes)
-        self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
+        self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
         self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
@@ -216,7 +216,7 @@ class SwaySimulator(OneTree, KeepsState):
             speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
-        load = pressure(speed, *self._drag_law)
+        load = pressure(speed, *self.drag_law)
         for _ in range(self._pieces):
             held = self._advance(wx, wy, wz, load)
             if held > 0:

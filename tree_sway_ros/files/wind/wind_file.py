@@ -20,8 +20,7 @@ from tree_sway_ros.files.wind.bag import read_bag_wind
 from tree_sway_ros.files.wind.nmea import read_nmea_wind
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.sonic_ascii import read_sonic_wind
-from tree_sway_ros.files.wind.table import read_csv_wind
-from tree_sway_ros.files.wind.toa5 import read_toa5_wind
+from tree_sway_ros.files.wind.table import read_csv_wind, read_toa5_wind
 
 
 @dataclass(frozen=True)

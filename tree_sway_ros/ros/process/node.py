@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
+from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
@@ -16,6 +17,17 @@ from tree_sway_ros.ros.parameters.origin import own_names
 from tree_sway_ros.ros.process.guard import CallbackGuard
 from tree_sway_ros.ros.process.topics import Topic, message_class, qos_profile
 from tree_sway_ros.ros.reports.diagnostics import WARN, Reporter, Status
+
+
+class _Never(CallbackGroup):  # type: ignore[misc]
+    """Of a subscription that no executor looks at."""
+
+    def can_execute(self, _entity: Any) -> bool:
+        return False
+
+
+def _nobody(_message: Any) -> None:
+    """Stand where rclpy wants a callback."""
 
 
 class TreeSwayNode(Node):  # type: ignore[misc]
@@ -104,6 +116,33 @@ class TreeSwayNode(Node):  # type: ignore[misc]
             qos_profile(topic),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
+
+    def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
+        """
+        Subscribe without a callback: the function returned takes what has come, oldest first.
+
+        No executor comes between a thread that keeps time and its messages: what came before the
+        clock went on is there when the tick is.
+
+        """
+        made = self.create_subscription(
+            message_class(topic),
+            topic.name,
+            _nobody,
+            qos_profile(topic),
+            callback_group=_Never(),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+
+        def take() -> Iterator[Any]:
+            for _ in range(made.qos_profile.depth):
+                with made.handle:
+                    taken = made.handle.take_message(made.msg_type, False)
+                if taken is None:
+                    return
+                yield taken[0]
+
+        return take
 
     @property
     def clock_lead(self) -> int:

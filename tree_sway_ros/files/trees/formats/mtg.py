@@ -19,6 +19,7 @@ from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.skeletons.mtg_graph import MtgVertex, parse_mtg
+from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _POSITION = ("XX", "YY", "ZZ")
 _DIAMETER = "TopDia"
@@ -118,3 +119,6 @@ def _before(
             return whole
         whole = vertices[whole].complex if vertices[whole].edge == "/" else -1
     return place[vertex.parent] if vertex.parent >= 0 else -1
+
+
+FORMAT = TreeFormat("mtg", (".mtg",), looks_like_mtg, read_mtg)

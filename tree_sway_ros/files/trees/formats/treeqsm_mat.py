@@ -16,12 +16,13 @@ import numpy as np
 
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.cylinders.mat_file import numbers, read_mat
+from tree_sway_ros.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
 from tree_sway_ros.files.trees.cylinders.treeqsm_columns import (
     USED_COLUMNS,
     looks_like_cylinders,
     treeqsm_cylinders,
 )
+from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _FIELDS = (
     ("radius", "Rad"), ("length", "Len"), ("start", "Sta"), ("axis", "Axe"), ("parent", "CPar"),
@@ -102,3 +103,6 @@ def _table(name: str, fields: dict[str, Any], source: str) -> Any:
     if len({len(column) for column in columns}) > 1:
         raise FormatError("columns of different lengths", where=source, cure="export it anew")
     return np.hstack(columns)
+
+
+FORMAT = TreeFormat("treeqsm-mat", (".mat",), looks_like_mat, read_treeqsm_mat)

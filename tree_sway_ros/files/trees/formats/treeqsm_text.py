@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.table_file import parse_columns
 from tree_sway_ros.files.text_file import finite, read_lines, why_no_number
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.treeqsm_columns import (
@@ -22,26 +23,23 @@ from tree_sway_ros.files.trees.cylinders.treeqsm_columns import (
     looks_like_cylinders,
     treeqsm_cylinders,
 )
+from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _MANY = 15
 """Rows from the beginning of a file that are judged."""
 
 
 def looks_like_treeqsm_text(head: str) -> bool:
-    """Whether the beginning of a file is that of a TreeQSM text, judged by all whole rows there."""
+    """Whether the beginning of a file is that of a TreeQSM text, judged by many rows."""
     lines = [line for line in head.splitlines() if line.strip()]
     if lines and lines[0].lower().startswith("radius") and "axis_direction" in lines[0]:
         return True
-    rows = [[finite(cell) for cell in _cells(line)] for line in lines]
+    rows = [[finite(cell) for cell in _cells(line)] for line in lines[:_MANY]]
     # The first line may be a header of some kind, the last one of many cut in the middle.
-    whole = [row for row in rows[:_MANY] if None not in row]
-    width = max((len(row) for row in whole), default=0)
+    whole = [row for row in rows if None not in row]
+    width = max(map(len, whole), default=0)
     table = np.array([row for row in whole if len(row) == width], dtype=np.float64)
-    return (
-        10 * len(table) >= 7 * (min(len(rows), _MANY) - 1)
-        and bool(width)
-        and looks_like_cylinders(table)
-    )
+    return width > 0 and len(table) >= 0.7 * (len(rows) - 1) and looks_like_cylinders(table)
 
 
 def _cells(line: str) -> list[str]:
@@ -60,21 +58,23 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
         A row that is too short or holds something that is not a finite number.
 
     """
-    source, rows, labels = str(path), list[list[float]](), list[str]()
-    for number, line in enumerate(read_lines(path), start=1):
-        cells = _cells(line)
-        is_header = not rows and all(finite(cell) is None for cell in cells)
-        if is_header or not cells:
-            continue
-        values = [finite(cell) for cell in cells[:USED_COLUMNS]]
-        good = [value for value in values if value is not None]
-        if len(good) < USED_COLUMNS:
-            bad = next((f": {why_no_number(c)}" for c in cells if finite(c) is None), "")
-            raise FormatError(
-                f"{len(good)} good numbers of {USED_COLUMNS}{bad}",
-                where=f"{source}:{number}",
-                cure="a row is radius, length, start, axis, parent, extension ...",
-            )
-        rows.append(good)
-        labels.append(f"{source}:{number}: cylinder {len(rows)}")
-    return (treeqsm_cylinders(np.array(rows).reshape(-1, USED_COLUMNS), labels, source),)
+    lines = read_lines(path)
+    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
+    if lines and all(finite(cell) is None for cell in _cells(lines[first])):
+        lines[first] = ""
+    table = parse_columns(lines, str(path), [""] * USED_COLUMNS, _cells)
+    values = table.values(range(USED_COLUMNS))
+    for row in np.flatnonzero(np.isnan(values).any(axis=1))[:1]:
+        bad = next(
+            (f": {why_no_number(c)}" for c in _cells(table.texts[row]) if finite(c) is None), ""
+        )
+        raise FormatError(
+            f"{np.isfinite(values[row]).sum()} good numbers of {USED_COLUMNS}{bad}",
+            where=table.where(row),
+            cure="a row is radius, length, start, axis, parent, extension ...",
+        )
+    labels = [f"{table.where(row)}: cylinder {row + 1}" for row in range(len(values))]
+    return (treeqsm_cylinders(values, labels, str(path)),)
+
+
+FORMAT = TreeFormat("treeqsm-text", (".cyl",), looks_like_treeqsm_text, read_treeqsm_text)
