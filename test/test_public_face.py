@@ -85,21 +85,22 @@ def test_from_a_tree_to_a_record_of_its_sway() -> None:
 
 
 def test_one_default_model_behind_every_door() -> None:
-    from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+    from tree_sway_ros.core.simulator.simulator import SwaySimulator
     from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
     from tree_sway_ros.tools.cli import _parser
 
-    assert tree_sway_ros.Settings().model == "auto"
+    default = tree_sway_ros.Settings().model
     file = tree_sway_ros.open_tree("goldcrest")
     tree = file.tree
     doors = (
         tree_sway_ros.make_simulator(tree),
         file.simulator(),
+        SwaySimulator(tree),
         tree_sway_ros.Forest([tree_sway_ros.PlacedTree("one", tree)]).simulators[0],
     )
-    assert all(isinstance(each, AdaptiveSimulator) for each in doors)
+    assert [each.model for each in doors] == [default] * len(doors)
     (fidelity,) = (each for each in NODE_PARAMETERS["solver"] if each.name == "fidelity")
-    assert fidelity.default == "auto"
+    assert fidelity.default == default
     for command in ("demo", "show", "plot"):
         told = vars(_parser(command).parse_args([command, "goldcrest"]))
-        assert told.get("fidelity", told.get("model")) == "auto"
+        assert told.get("fidelity", told.get("model")) == default

@@ -9,6 +9,7 @@ import pytest
 
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.resegment import resegment
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError
@@ -102,6 +103,12 @@ def test_a_tree_is_used_like_a_forest_of_one(stem, model):
     assert sim.simulators == (sim,)
     assert sim.gusts is None
     assert sim.wind == pytest.approx([3.0, 1.0, 0.0])
+
+
+@pytest.mark.parametrize("model", ["auto", "segments"])
+def test_a_reduced_simulator_keeps_to_one_reduced_model(stem, model):
+    with pytest.raises(ParameterError, match=f"'{model}' is no model .* make_simulator knows"):
+        SwaySimulator(stem, WOOD, model=model)
 
 
 def test_the_model_is_that_of_the_settings(stem):

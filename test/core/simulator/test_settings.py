@@ -12,8 +12,8 @@ from tree_sway_ros.errors import ParameterError
 
 def test_the_defaults_stand():
     chosen = Settings()
-    assert chosen.model == "auto"
-    assert chosen.fixed_model in MODELS
+    assert chosen.model == "modes"
+    assert chosen.model in MODELS
     assert chosen.damping_ratio is None
     with pytest.raises(dataclasses.FrozenInstanceError):
         chosen.model = "frozen"

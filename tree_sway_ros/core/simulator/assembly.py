@@ -29,9 +29,10 @@ from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
 
 if TYPE_CHECKING:
     from tree_sway_ros.core.motion.modal import ModalBank
@@ -174,7 +175,7 @@ def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
     Calibrate a tree for the model of its settings; see `CalibratedTree.bank`.
 
     """
-    return CalibratedTree(tree, species, settings).bank(settings.fixed_model, settings.n_modes)
+    return CalibratedTree(tree, species, settings).bank(settings.model, settings.n_modes)
 
 
 @dataclass(frozen=True)
@@ -237,9 +238,15 @@ class CalibratedTree:
         TreeError
             A tree that buckles under its own weight, or a branch without mass.
         ParameterError
-            More modes than there are.
+            More modes than there are, or a model that is none of `MODELS`.
 
         """
+        if model not in MODELS:
+            raise ParameterError(
+                f"'{model}' is no model of one set of oscillators",
+                where="model",
+                cure=f"use one of: {', '.join(MODELS)}; make_simulator knows the others",
+            )
         layer, settings = self.layer(model), self.settings
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if model == "frozen":

@@ -21,9 +21,6 @@ MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 FIDELITIES = ("auto", *MODELS, "segments")
 """Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
-FIXED_MODEL = "subtree"
-"""The model of what has to keep to one, and is not told to which."""
-
 STIFFNESS_RULES = ("beam", "volume_rule")
 """Ways to set the stiffness of a branch."""
 
@@ -36,8 +33,9 @@ class Settings:
     Parameters
     ----------
     model
-        Model: ``auto``, which takes the least that will do; ``frozen``, ``branch`` (the paper's),
-        ``subtree``, ``wind_basis``, ``modes`` or ``coupled``; or ``segments``.
+        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes``,
+        ``coupled`` or ``segments``; or ``auto``, which takes the least that will do, and takes some
+        seconds to judge them all.
     n_modes
         How many modes the models ``wind_basis`` and ``modes`` step; 12, or all if there are
         fewer, if None.
@@ -74,7 +72,7 @@ class Settings:
 
     """
 
-    model: str = "auto"
+    model: str = "modes"
     n_modes: int | None = None
     mode_choice: str = "driven"
     degree: int = 5
@@ -122,11 +120,6 @@ class Settings:
                 raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
         if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
             raise ParameterError(f"gravity {self.gravity} m/s^2", cure="give 0 or more")
-
-    @property
-    def fixed_model(self) -> str:
-        """The model of `MODELS` to keep to where none is chosen on the way."""
-        return FIXED_MODEL if self.model == "auto" else self.model
 
 
 def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:

@@ -64,8 +64,7 @@ class SwaySimulator(OneTree, KeepsState):
     species
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
-        How it is modelled; on `FIXED_MODEL` where the model is ``auto``, as this simulator keeps to
-        one.
+        How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
     **changes
@@ -105,7 +104,7 @@ class SwaySimulator(OneTree, KeepsState):
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
-        self.bank: Bank = calibrated.bank(self.settings.fixed_model, self.settings.n_modes)
+        self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
         self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
@@ -119,7 +118,7 @@ class SwaySimulator(OneTree, KeepsState):
     @property
     def model(self) -> str:
         """Model in use."""
-        return self.settings.fixed_model
+        return self.settings.model
 
     @property
     def n_solved(self) -> int:
