@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.step_rules import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
@@ -171,10 +171,8 @@ class SwaySimulator(OneTree, KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
-        shape = self._poses.shape
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self.bank.place(rotations, self._origin, poses)
-        return poses
+        expected = self.bank.oscillators.rotations().shape
+        return self._placed(array_to_read("rotations", rotations, expected), out)
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -249,7 +247,13 @@ class SwaySimulator(OneTree, KeepsState):
             An array that cannot hold the poses.
 
         """
-        return self.place_rotations(self.bank.oscillators.rotations(), out)
+        return self._placed(self.bank.oscillators.rotations(), out)
+
+    def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
+        shape = self._poses.shape
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        self.bank.place(rotations, self._origin, poses)
+        return poses
 
     @property
     def tip_displacement(self) -> Floats:

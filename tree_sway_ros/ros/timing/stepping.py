@@ -94,9 +94,7 @@ class Stepper:
         self._samples.clear()
         self.simulator.reset()
 
-    def advance(
-        self, time_ns: int, periods: int, delay: float, *, may_join: bool = True
-    ) -> None:
+    def advance(self, time_ns: int, periods: int, delay: float, *, may_join: bool = True) -> None:
         """
         Solve up to a time.
 
