@@ -22,11 +22,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, Counts, SwaySimulator
@@ -48,7 +49,7 @@ REVIEW = 2.0
 _SPARE = 2.0 / 3.0
 
 
-class AdaptiveSimulator(KeepsState):
+class AdaptiveSimulator(OneTree, KeepsState):
     """
     A tree on the least model that its scene needs; otherwise as `SwaySimulator`.
 
@@ -117,6 +118,11 @@ class AdaptiveSimulator(KeepsState):
         return self._shown.n_frozen
 
     @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+        return self._shown.wind
+
+    @property
     def frame_cost(self) -> float:
         """What a step and a placing of the chosen model take on this machine in [us]."""
         return self.pace * self.choice.cost
@@ -181,6 +187,8 @@ class AdaptiveSimulator(KeepsState):
         """Place every segment by key rotations of the whole tree, (n, 7)."""
         shape = (self.tree.n_segments, 7)
         poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        expected = self.bank.oscillators.rotations().shape
+        rotations = array_to_read("rotations", rotations, expected)
         self.bank.place(rotations, self.tree.start[0], poses)
         return poses
 

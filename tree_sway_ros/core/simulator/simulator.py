@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.step_rules import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
@@ -52,7 +53,7 @@ class Counts:
     restarted: int = 0
 
 
-class SwaySimulator(KeepsState):
+class SwaySimulator(OneTree, KeepsState):
     """
     A tree that sways.
 
@@ -63,7 +64,7 @@ class SwaySimulator(KeepsState):
     species
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
-        How it is modelled.
+        How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
     **changes
@@ -170,10 +171,8 @@ class SwaySimulator(KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
-        shape = self._poses.shape
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self.bank.place(rotations, self._origin, poses)
-        return poses
+        expected = self.bank.oscillators.rotations().shape
+        return self._placed(array_to_read("rotations", rotations, expected), out)
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -248,7 +247,13 @@ class SwaySimulator(KeepsState):
             An array that cannot hold the poses.
 
         """
-        return self.place_rotations(self.bank.oscillators.rotations(), out)
+        return self._placed(self.bank.oscillators.rotations(), out)
+
+    def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
+        shape = self._poses.shape
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        self.bank.place(rotations, self._origin, poses)
+        return poses
 
     @property
     def tip_displacement(self) -> Floats:
