@@ -2,25 +2,26 @@
 
 import re
 import sys
-from glob import glob
 from pathlib import Path
 
 from setuptools import find_packages, setup
 
 PACKAGE = "tree_sway_ros"
+#: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
+ROOT = Path(__file__).resolve().parent
 NODES = ("anemometer", "wind", "solver", "player")
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
 def version():
     """Return the version, which is written in the package's ``__init__.py`` and nowhere else."""
-    text = Path(PACKAGE, "__init__.py").read_text(encoding="utf-8")
+    text = (ROOT / PACKAGE / "__init__.py").read_text(encoding="utf-8")
     return re.search(r'^__version__ = "(.+)"$', text, re.MULTILINE).group(1)
 
 
 def launchers():
     """
-    Write one small executable a node, to stand in ``lib/tree_sway_ros/``, and return their paths.
+    Write one small executable per node, to stand in ``lib/tree_sway_ros/``, and return their paths.
 
     ``ros2 run`` looks there. colcon installs the console scripts there itself (setup.cfg); pip puts
     them in ``bin/``, so a wheel brings these along, which go on to ``bin/``.
@@ -34,17 +35,26 @@ def launchers():
     return [str(folder / node) for node in NODES]
 
 
+def files(pattern):
+    """Return the files of the source that fit a pattern, from its root as setuptools asks."""
+    return sorted(str(path.relative_to(ROOT)) for path in ROOT.glob(pattern))
+
+
 data_files = [
     ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
     (f"share/{PACKAGE}", ["package.xml"]),
-    (f"share/{PACKAGE}/launch", sorted(glob("launch/*.launch.py"))),
-    (f"share/{PACKAGE}/config", sorted(glob("config/*"))),
+    (f"share/{PACKAGE}/launch", files("launch/*.launch.py")),
+    (f"share/{PACKAGE}/config", files("config/*")),
 ]
 if "bdist_wheel" in sys.argv:
     data_files.append((f"lib/{PACKAGE}", launchers()))
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 extras = {
+    # Compiled kernels; without numba the same steps run on numpy alone, slower.
+    "fast": ["numba>=0.59"],
+    # Bars for long waits; without tqdm a line is printed now and then.
+    "progress": ["tqdm>=4.60"],
     # The real rclpy and Fast DDS as wheels; `pip -c .ci/constraints-ros-jazzy.txt` pins the rest.
     "ros": [
         f"ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}",
@@ -55,28 +65,32 @@ extras = {
     "gltf": ["trimesh>=4.0"],
     "h5": ["h5py>=3.7"],
     "mujoco": ["mujoco>=3.2"],
+    "battery": ["mpmath>=1.2"],
     "sundials": ["scikit-sundae>=1.0"],
     # colcon runs pytest only where an extra of this name asks for it.
-    "test": ["pytest>=7,<9", "pytest-xdist>=3", "hypothesis>=6.60", "mpmath>=1.2", "jsonschema>=4"],
-    "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML"],
+    "test": [
+        *("pytest>=7,<9", "pytest-xdist>=3", "pytest-cov>=4", "hypothesis>=6.60", "mpmath>=1.2"),
+    ],
+    "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML", "types-jsonschema"],
+    "docs": ["sphinx>=7", "myst-parser>=2"],
 }
 
 setup(
     name=PACKAGE,
     version=version(),
     description="Trees that sway in measured wind, solved in real time and streamed over ROS 2",
-    long_description=Path("README.md").read_text(encoding="utf-8"),
+    long_description=(ROOT / "README.md").read_text(encoding="utf-8"),
     long_description_content_type="text/markdown",
     author="Tree Sway maintainers",
     author_email="maintainers@users.noreply.github.com",
     maintainer="Tree Sway maintainers",
     maintainer_email="maintainers@users.noreply.github.com",
     license="Apache-2.0",
-    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={"": ["py.typed", "*.html", "*.css", "*.js", "*.yaml", "*.json"]},
+    packages=find_packages(str(ROOT), include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={"": ["py.typed", "*.json", "*.yaml", "*.csv", "static/*", "static/*/*"]},
     data_files=data_files,
     python_requires=">=3.10",
-    install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "numba>=0.59", "PyYAML>=6"],
+    install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "PyYAML>=6", "jsonschema>=4.10"],
     extras_require=extras,
     zip_safe=False,
     entry_points={

@@ -5,11 +5,12 @@ Run a command in this checkout's own virtual environment, made first if it is no
     python3 .ci/in_venv.py tree-sway demo
     python3 .ci/in_venv.py pytest
 
-Needs Python 3.10-3.13 on x86_64 Linux, and the network the first time. The package is installed in
-editable form with everything the demo and the tests use, the real rclpy and Fast DDS among it, in
-the versions of constraints-ros-jazzy.txt. The environment is made anew when the Python differs and
-brought up to date when a file that describes the installation has changed. TREE_SWAY_VENV names
-another place for it than .venv.
+Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
+form, with what the command needs and no more: `tree-sway demo` brings the real rclpy and Fast DDS
+in the versions of constraints-ros-jazzy.txt (x86_64 Linux, Python 3.10-3.14), `pytest` what the
+tests use, `ruff` the linters; a later command adds what it lacks. The environment is made anew when
+the Python differs and brought up to date when a file that describes the installation has changed.
+TREE_SWAY_VENV names another place for it than .venv.
 
 """
 
@@ -17,6 +18,7 @@ import fcntl
 import hashlib
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -26,8 +28,24 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 VENV = Path(os.environ.get("TREE_SWAY_VENV") or ROOT / ".venv").absolute()
 CONSTRAINTS = ROOT / ".ci" / "constraints-ros-jazzy.txt"
-EXTRAS = "ros,bag,plot,gltf,h5,mujoco,test,lint"
-PYTHONS = ((3, 10), (3, 13))
+#: The oldest Python that this package runs on, and the newest that there are ROS wheels for.
+OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
+#: What is always installed: compiled kernels, and bars for waits.
+ALWAYS = ("fast", "progress")
+#: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
+NEEDS = {
+    **dict.fromkeys(("anemometer", "wind", "solver", "player", "ros2"), ("ros",)),
+    **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
+    **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
+    "tree-sway battery": ("battery",),
+    "tree-sway compare": ("mujoco",),
+    **dict.fromkeys(("pytest", "py.test"), ("ros", "bag", "plot", "gltf", "h5", "mujoco", "test")),
+    "coverage": ("test",),
+    **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
+    "sphinx-build": ("docs",),
+}
+#: Extras that a file needs which is named on the command line, by its suffix.
+NEEDS_OF_FILES = {".db3": "bag", ".mcap": "bag", ".glb": "gltf", ".gltf": "gltf", ".mat": "h5"}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     "AMENT_PREFIX_PATH",
@@ -46,12 +64,12 @@ def main(command):
     """Make the environment ready and become the command in it."""
     if not command:
         stop("no command given", "for example: python3 .ci/in_venv.py tree-sway demo")
-    check_machine()
+    extras = extras_for(command)
     environment = without_ros(dict(os.environ))
     environment.pop("PYTHONHOME", None)
     with open(__file__) as lock:  # one set-up at a time, however many start at once
         fcntl.flock(lock, fcntl.LOCK_EX)
-        make_ready(environment)
+        make_ready(environment, extras)
     programs = str(VENV / "bin")
     environment.update(
         VIRTUAL_ENV=str(VENV),
@@ -70,20 +88,57 @@ def stop(what, cure):
     sys.exit(2)
 
 
-def check_machine():
-    """Refuse a Python or a machine that the ROS wheels are not made for."""
-    if not PYTHONS[0] <= sys.version_info[:2] <= PYTHONS[1]:
-        fitting = [shutil.which(f"python3.{minor}") for minor in (12, 11, 13, 10)]
-        found = next(filter(None, fitting), None)
-        stop(
-            f"Python {platform.python_version()} does not fit, 3.10 to 3.13 do",
-            f"run it with {found or 'one of those, from your system or python.org'}",
-        )
+def extras_for(command):
+    """Return the extras that a command needs; refuse it where this Python or machine has none."""
+    names = [os.path.basename(command[0])]
+    names += [argument for argument in command[1:] if not argument.startswith("-")][:1]
+    needed = {*ALWAYS, *NEEDS.get(names[0], ()), *NEEDS.get(" ".join(names), ())}
+    for argument in command[1:]:
+        path = Path(argument.rpartition("=")[2])
+        if path.suffix in NEEDS_OF_FILES:
+            needed.add(NEEDS_OF_FILES[path.suffix])
+        elif is_bag(path):
+            needed.add("bag")
+    if names[0] == "pytest" and no_ros_wheels():
+        needed.discard("ros")  # the tests that need it say that they are left out
+    check_machine("ros" in needed)
+    return needed
+
+
+def is_bag(path):
+    """Whether a path is the folder of a rosbag2 recording."""
+    try:
+        return (path / "metadata.yaml").is_file()
+    except OSError:  # an argument that is no path at all
+        return False
+
+
+def no_ros_wheels():
+    """Return why there are no ROS wheels here and the cure; None where there are."""
+    fitting = f"3.10 to 3.{NEWEST_WITH_ROS[1]}"
     if (sys.platform, platform.machine()) != ("linux", "x86_64"):
-        stop(
+        return (
             f"the ROS wheels are for x86_64 Linux, not {platform.machine()} {sys.platform}",
-            "use a ROS installation (README), or `pip install .` for the solver without ROS",
+            "use a ROS installation (README), or `tree-sway show`, which needs no ROS",
         )
+    if sys.version_info[:2] > NEWEST_WITH_ROS:
+        return f"the ROS wheels are for Python {fitting}, not {platform.python_version()}", other()
+    return None
+
+
+def check_machine(with_ros):
+    """Refuse a Python that is too old, or with ROS a machine that there are no wheels for."""
+    if sys.version_info[:2] < OLDEST:
+        stop(f"Python {platform.python_version()} is too old, 3.10 is the least", other())
+    if with_ros and no_ros_wheels():
+        stop(*no_ros_wheels())
+
+
+def other():
+    """Say which other Python to take."""
+    fitting = [shutil.which(f"python3.{minor}") for minor in (12, 13, 11, 14, 10)]
+    found = next(filter(None, fitting), None)
+    return f"run it with {found or 'one of those, from your system or python.org'}"
 
 
 def without_ros(environment):
@@ -108,27 +163,32 @@ def wanted():
         if path.is_file():
             digest.update(path.name.encode() + b"\0" + path.read_bytes())
     version = ".".join(platform.python_version_tuple()[:2])
-    return f"{version} {ROOT} {digest.hexdigest()}"
+    return [version, str(ROOT), digest.hexdigest()]
 
 
-def make_ready(environment):
-    """Create the environment and install into it, unless it is there and up to date."""
+def make_ready(environment, extras):
+    """Create the environment and install into it, unless it is there, up to date and enough."""
     stamp = VENV / "tree_sway_ros.stamp"
     runs = (VENV / "bin" / "python").exists() and (VENV / "bin" / "pip").exists()
-    made_from = stamp.read_text() if runs and stamp.is_file() else ""
-    if made_from == wanted():
+    made_from = stamp.read_text().split("\n") if runs and stamp.is_file() else [""]
+    there = set(made_from[3].split(",")) if len(made_from) > 3 else set()
+    if made_from[:3] == wanted() and there >= extras:
         return
     began = time.monotonic()
-    if made_from.split()[:1] != wanted().split()[:1]:
-        say(f"setting up {VENV}: about two minutes and 1 GB, once")
+    if made_from[0] != wanted()[0]:
+        there = set()
+        size = "two minutes and 0.6 GB" if "ros" in extras else "a minute and 0.4 GB"
+        say(f"setting up {VENV}, once: about {size}{' and the tests' * ('test' in extras)}")
         make_venv(environment)
+        pip(environment, "setuptools>=70.1,<81")
+    elif made_from[:3] == wanted():
+        say(f"adding to {VENV}, once: {', '.join(sorted(extras - there))}")
     else:
         say(f"bringing {VENV} up to date")
-    pip(environment, "setuptools>=70.1,<81")
-    target = f"{ROOT}[{EXTRAS}]"
+    target = f"{ROOT}[{','.join(sorted(there | extras))}]"
     pip(environment, "-c", str(CONSTRAINTS), "--no-build-isolation", "-e", target)
     link_resources()
-    stamp.write_text(wanted())
+    stamp.write_text("\n".join([*wanted(), ",".join(sorted(there | extras))]))
     say(f"ready after {time.monotonic() - began:.0f} s")
 
 
@@ -210,9 +270,10 @@ def pip(environment, *arguments):
 
 def failure(words, log):
     """Return what went wrong and the cure, from pip's words."""
-    signs = ("NewConnectionError", "Name or service", "name resolution", "ConnectTimeout", "ProxyError")
-    if any(sign in words for sign in signs):
-        return "no network: the package index cannot be reached", "connect, or set a proxy, and run again"
+    signs = "NewConnectionError|Name or service|name resolution|ConnectTimeout|ProxyError"
+    if re.search(signs, words):
+        cure = "connect, or set a proxy, and run again"
+        return "no network: the package index cannot be reached", cure
     if "No space left" in words:
         return "the disk is full", f"make about 1 GB of room at {VENV}"
     errors = [line for line in words.splitlines() if line.startswith("ERROR")]

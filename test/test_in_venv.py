@@ -39,26 +39,77 @@ def test_no_command(script: ModuleType, capsys: pytest.CaptureFixture[str]) -> N
     assert "no command given" in refusal(capsys)
 
 
-@pytest.mark.parametrize("version", [(3, 9, 18), (3, 14, 0)])
+@pytest.mark.parametrize(
+    ("version", "command", "expected"),
+    [
+        ((3, 9, 18), "show", "is too old, 3.10 is the least; run it with"),
+        ((3, 15, 0), "demo", "are for Python 3.10 to 3.14, not "),
+        ((3, 14, 0), "demo", ""),
+        ((3, 15, 0), "show", ""),
+    ],
+)
 def test_a_python_without_wheels(
     script: ModuleType,
     version: tuple[int, int, int],
+    command: str,
+    expected: str,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(sys, "version_info", version)
+    monkeypatch.setattr(script.platform, "machine", lambda: "x86_64")
+    if not expected:
+        assert script.extras_for(["tree-sway", command])
+        return
     with pytest.raises(SystemExit, match="2"):
-        script.check_machine()
-    assert "does not fit, 3.10 to 3.13 do; run it with" in refusal(capsys)
+        script.extras_for(["tree-sway", command])
+    assert expected in refusal(capsys)
 
 
 def test_a_machine_without_wheels(
     script: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(script.platform, "machine", lambda: "aarch64")
+    assert "ros" not in script.extras_for(["tree-sway", "show", "oak.yaml"])
+    assert "ros" not in script.extras_for(["pytest"])
     with pytest.raises(SystemExit, match="2"):
-        script.check_machine()
+        script.extras_for(["tree-sway", "demo"])
     assert "x86_64 Linux, not aarch64" in refusal(capsys)
+
+
+@pytest.mark.parametrize(
+    ("command", "brought", "left"),
+    [
+        ("tree-sway demo --seconds 10", {"fast", "ros"}, {"plot", "mujoco", "test", "lint"}),
+        ("tree-sway --version", {"fast"}, {"ros"}),
+        ("tree-sway info scan.mat", {"h5"}, {"ros", "plot"}),
+        ("tree-sway demo --wind=gale.mcap", {"ros", "bag"}, {"gltf"}),
+        ("tree-sway convert oak.yaml -o oak.glb", {"gltf"}, {"ros", "bag"}),
+        ("tree-sway plot", {"plot"}, {"ros"}),
+        ("tree-sway compare", {"mujoco"}, {"ros"}),
+        ("solver --ros-args", {"ros"}, {"plot"}),
+        ("pytest -n 2", {"ros", "bag", "plot", "gltf", "h5", "mujoco", "test"}, {"lint"}),
+        ("mypy", {"lint"}, {"ros", "mujoco"}),
+        (f"python {'x' * 300}", {"fast"}, {"ros"}),
+    ],
+)
+def test_a_command_brings_what_it_needs_and_no_more(
+    script: ModuleType,
+    command: str,
+    brought: set[str],
+    left: set[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(script.platform, "machine", lambda: "x86_64")
+    extras = script.extras_for(command.split())
+    assert brought <= extras
+    assert not left & extras
+
+
+def test_every_extra_that_is_asked_for_is_one_of_setup_py(script: ModuleType) -> None:
+    asked = {*script.ALWAYS, *script.NEEDS_OF_FILES.values(), *sum(script.NEEDS.values(), ())}
+    setup = (ROOT / "setup.py").read_text()
+    assert not [extra for extra in asked if f'"{extra}": [' not in setup]
 
 
 def test_a_python_without_ensurepip(
@@ -123,23 +174,25 @@ def test_it_sets_up_once_and_again_when_the_stamp_is_old(
 
     monkeypatch.setattr(script, "make_venv", make_venv)
     monkeypatch.setattr(script, "pip", lambda environment, *arguments: done.append(arguments[-1]))
-    target = f"{ROOT}[{script.EXTRAS}]"
-    script.make_ready({})
+    script.make_ready({}, {"fast", "ros"})
     assert done[0] == "venv"
-    assert done[-1] == target
+    assert done[-1] == f"{ROOT}[fast,ros]"
     done.clear()
-    script.make_ready({})
+    script.make_ready({}, {"fast"})
     assert done == []
-    stamp = script.VENV / "tree_sway_ros.stamp"
-    version, root, _ = stamp.read_text().split()
-    stamp.write_text(f"{version} {root} another")
-    script.make_ready({})
-    assert "venv" not in done
-    assert done[-1] == target
+    script.make_ready({}, {"fast", "lint"})  # adds, and forgets nothing
+    assert done == [f"{ROOT}[fast,lint,ros]"]
     done.clear()
-    stamp.write_text(f"2.7 {root} another")
-    script.make_ready({})
+    stamp = script.VENV / "tree_sway_ros.stamp"
+    version, root, _, extras = stamp.read_text().split("\n")
+    stamp.write_text(f"{version}\n{root}\nanother\n{extras}")
+    script.make_ready({}, {"fast"})
+    assert done == [f"{ROOT}[fast,lint,ros]"]
+    done.clear()
+    stamp.write_text(f"2.7\n{root}\nanother\n{extras}")
+    script.make_ready({}, {"fast"})
     assert done[0] == "venv"
+    assert done[-1] == f"{ROOT}[fast]"
     share = script.VENV / "share" / "tree_sway_ros"
     files = {name for _, _, names in os.walk(share) for name in names}  # as `ros2 launch` looks
     assert {"package.xml", "sway.launch.py", "solver.yaml", "tree_sway.rviz"} <= files

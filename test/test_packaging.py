@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
+import runpy
 import shutil
 import subprocess
 import sys
+import tempfile
 import zipfile
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -57,7 +60,44 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
 
 
 #: Asked for by a part that says so when it is missing; they come with an extra, not with rosdep.
-OPTIONAL = {"PIL", "h5py", "mpl_toolkits", "mpmath", "mujoco", "rosbags", "sksundae", "trimesh"}
+OPTIONAL = {
+    *("PIL", "h5py", "mpl_toolkits", "mpmath", "mujoco", "numba", "rosbags", "sksundae", "trimesh"),
+}
+
+
+def test_what_ubuntu_has_no_package_of_is_not_asked_for(package: ElementTree.Element) -> None:
+    """Neither numba nor mpmath has a rosdep key on Ubuntu 24.04: rosdep would install nothing."""
+    asked = {element.text for element in package if element.tag.endswith("depend")}
+    assert not asked & {"python3-numba", "python3-mpmath", "python3-sympy"}
+
+
+@pytest.fixture(scope="module")
+def setup_words() -> dict[str, Any]:
+    """What setup.py hands to setuptools, run by a link in another folder, as colcon does."""
+    setuptools = pytest.importorskip("setuptools", reason="setuptools is not installed here")
+    words: dict[str, Any] = {}
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        link = Path(folder) / "setup.py"
+        link.symlink_to(ROOT / "setup.py")
+        patch.chdir(folder)
+        patch.setattr(setuptools, "setup", lambda **given: words.update(given))
+        runpy.run_path(str(link))
+    return words
+
+
+def test_setup_finds_its_files_from_any_folder(setup_words: dict[str, Any]) -> None:
+    assert setup_words["version"] == tree_sway_ros.__version__
+    assert "tree_sway_ros.core.motion" in setup_words["packages"]
+    assert setup_words["long_description"].startswith("# ")
+    shared = [name for _, names in setup_words["data_files"] for name in names]
+    assert {"package.xml", "launch/sway.launch.py", "config/solver.yaml"} <= set(shared)
+
+
+def test_numba_is_wanted_and_not_needed(setup_words: dict[str, Any]) -> None:
+    needed = " ".join(setup_words["install_requires"])
+    assert "numba" not in needed
+    assert "numpy" in needed
+    assert setup_words["extras_require"]["fast"] == ["numba>=0.59"]
 
 
 NO_BUILDER = (
@@ -91,6 +131,9 @@ def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> N
         assert f"share/tree_sway_ros/{name}" in infos
     assert "share/ament_index/resource_index/packages/tree_sway_ros" in infos
     assert "tree_sway_ros/py.typed" in infos
+    package = ROOT / "tree_sway_ros"
+    data = {p for p in package.rglob("*.*") if p.suffix not in {".py", ".pyc"} and p.is_file()}
+    assert not [path for path in data if str(path.relative_to(ROOT)) not in infos]
 
 
 def test_colcon_gets_no_second_executables(tmp_path: Path) -> None:
@@ -105,4 +148,5 @@ def test_colcon_gets_no_second_executables(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     scripts = {path.name for path in (installed / "lib" / "tree_sway_ros").iterdir()}
     assert scripts == {*NODES, "tree-sway"}
-    assert "python" in (installed / "lib" / "tree_sway_ros" / "solver").read_text().split("\n")[0]
+    first = (installed / "lib" / "tree_sway_ros" / "solver").read_text().split("\n")[0]
+    assert first == "#!/usr/bin/env python3"  # so that an activated environment is heeded

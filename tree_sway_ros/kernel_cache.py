@@ -3,10 +3,11 @@
 """
 Compiled kernels on disk, keyed by all the source that goes into them.
 
-numba's own cache looks at the file of a function alone, so that after an edit the callers of a changed
-function run the old code. Here the key is a digest of a function's module and of every module of this
-package that it imports, directly or not, beside signature, processor, compiler version and flags. A
-kernel that cannot be read from disk is compiled again; one that cannot be written is kept in memory.
+numba's own cache looks at the file of a function alone, so that after an edit the callers of a
+changed function run the old code. Here the key is a digest of a function's module and of every
+module of this package that it imports, directly or not, beside signature, processor, compiler
+version and flags. A kernel that cannot be read from disk is compiled again; one that cannot be
+written is kept in memory.
 
 """
 
@@ -121,7 +122,7 @@ class KernelCache:
 
 @cache
 def source_digest(path: Path) -> str:
-    """Digest of a source file and of all modules of this package it imports; empty if unreadable."""
+    """Digest of a source file and of all modules of ours it imports; empty if unreadable."""
     try:
         found: dict[Path, bytes] = {path: path.read_bytes()}
     except OSError:
@@ -154,7 +155,7 @@ def _imported(path: Path) -> tuple[Path, ...]:
 
 @cache
 def kernel_folder() -> Path | None:
-    """Folder for compiled kernels: the one asked for, the user's, or one for this user alone; or None."""
+    """Folder for compiled kernels: the one asked for, the user's, a temporary one; or None."""
     asked = os.environ.get(FOLDER_VARIABLE) or os.environ.get("NUMBA_CACHE_DIR")
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     own = f"tree_sway_ros-{os.getuid()}" if hasattr(os, "getuid") else "tree_sway_ros"

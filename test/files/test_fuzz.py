@@ -25,9 +25,11 @@ WINDS = ["sonic.toa5.dat", "mast.nmea", "weather.nmea", "wind.csv", "wind_compon
          "wind.db3", "wind.mcap"]  # fmt: skip
 
 SEEDLING = open_tree(DATA / "seedling.yaml")
-TOKENS = [b"nan", b"inf", b"-1", b"0", b"1e308", b"-1e999", b"99999999999999999999", b"", b"\n", b"\t",
+TOKENS = [b"nan", b"inf", b"-1", b"0", b"1e308", b"-1e999", b"99999999999999999999", b"", b"\n",
+          b"\t",
           b",", b"[", b"{", b"&a [*a]", b"- ", b"\x00", b"\xff\xfe", b'"', b"1e-320", b".5", b"1_0",
-          "\u0663".encode(), b"$", b"*", b"<S1", b"+A1", b"segment: 3", b"parent: stem", b"at: 0"]  # fmt: skip
+          "\u0663".encode(), b"$", b"*", b"<S1", b"+A1", b"segment: 3", b"parent: stem",
+          b"at: 0"]  # fmt: skip
 MUTATION = st.tuples(
     st.sampled_from(["token", "replace", "delete", "copy", "flip", "cut", "number"]),
     st.floats(0.0, 1.0, exclude_max=True),
@@ -229,7 +231,8 @@ def nasty_swc(n: int) -> bytes:
     return "\n".join(rows).encode()
 
 
-@pytest.mark.parametrize(("suffix", "content"), [(".mtg", nasty_mtg(20_000)), (".swc", nasty_swc(5_000))],
+@pytest.mark.parametrize(("suffix", "content"),
+                         [(".mtg", nasty_mtg(20_000)), (".swc", nasty_swc(5_000))],
                          ids=["mtg", "swc"])  # fmt: skip
 def test_long_ways_back_are_not_walked_again_and_again(tmp_path, suffix, content):
     check(tmp_path / f"file{suffix}", "tree", content, None)

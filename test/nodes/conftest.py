@@ -125,9 +125,14 @@ def compose(domain):
         return made[-1]
 
     yield start
-    for composition in made:
-        composition.check()
-        composition.close()
+    try:
+        for composition in made:
+            composition.check()
+            for node in composition.nodes:
+                assert not node.guard.count, node.guard.latest
+    finally:
+        for composition in made:
+            composition.close()
 
 
 @pytest.fixture

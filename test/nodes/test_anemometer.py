@@ -4,6 +4,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
+from rcl_interfaces.srv import SetParameters  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel  # noqa: E402
@@ -56,3 +57,23 @@ def test_a_turn_turns(compose, observer):
 def test_gusts_that_overlap_are_refused(compose):
     with pytest.raises(TreeSwayError, match="every"):
         compose(anemometer={"gust": "step", "gust_duration": 5.0, "gust_every": 1.0})
+
+
+@pytest.mark.parametrize(("name", "value"), [("gust_every", 3), ("gust_duration", 21)])
+def test_a_live_change_that_overlaps_gusts_is_refused_with_an_answer(
+    compose, observer, name, value
+):
+    """Each value is in its range; together they cannot be."""
+    compose(anemometer={"gust": "step", "rate": 50.0})
+    request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
+    (result,) = observer.call(SetParameters, "anemometer/set_parameters", request).results
+    assert not result.successful
+    assert "overlap" in result.reason
+    said = observer.listen(WIND)
+    observer.until(lambda: len(said) > 5, "wind that goes on")
+
+
+def test_both_together_are_taken(compose):
+    nodes = compose(anemometer={"gust": "step"})
+    changes = [Parameter("gust_every", value=3.0), Parameter("gust_duration", value=2.0)]
+    assert nodes["anemometer"].set_parameters_atomically(changes).successful

@@ -1,3 +1,6 @@
+import dataclasses
+from datetime import datetime
+
 import numpy as np
 import pytest
 
@@ -12,6 +15,10 @@ from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 @pytest.fixture
 def wind_file(tmp_path):
+    return gusty(tmp_path)
+
+
+def gusty(tmp_path):
     """Four seconds of a gusty westerly at 20 Hz."""
     time = np.arange(80) * 0.05
     wind = 6.0 + 2.0 * np.sin(2.0 * time) + 0.3 * np.cos(9.0 * time)
@@ -85,3 +92,25 @@ def test_what_cannot_be_played_says_why(compose, parameters, message):
 def test_a_start_behind_the_end_is_refused(compose, wind_file):
     with pytest.raises(TreeSwayError, match="smaller start"):
         compose(player={"file": wind_file, "start": 100.0})
+
+
+@pytest.mark.parametrize("epoch", ["1969-06-01T00:00:00Z", "2039-01-01T00:00:00Z"])
+def test_a_date_that_no_clock_can_say_is_left_out(compose, observer, tmp_path, epoch, monkeypatch):
+    from tree_sway_ros.nodes import player
+
+    record = read_wind(gusty(tmp_path))
+    date = datetime.fromisoformat(epoch.replace("Z", "+00:00")).timestamp()
+    monkeypatch.setattr(player, "read_wind", lambda _: dataclasses.replace(record, epoch=date))
+    ticks = observer.listen(CLOCK)
+    compose(player={"file": "dated", "publish_clock": True, "wait_for_subscriber": False})
+    observer.until(lambda: len(ticks) > 5, "/clock")
+    assert 10**9 <= stamp_to_ns(ticks[0].clock) < 5 * 10**9
+
+
+def test_a_clock_in_steps_that_no_node_follows_is_refused(compose, tmp_path):
+    options = {"file": gusty(tmp_path), "publish_clock": True}
+    with pytest.raises(
+        TreeSwayError, match=r"steps of 1 s.* give speed up to 62.5, or clock_rate 1000$"
+    ):
+        compose(player={**options, "speed": 250.0})
+    compose(player={**options, "speed": 250.0, "clock_rate": 1000.0})

@@ -18,7 +18,8 @@ SCAN = SEEDLING.parent / "fork.treeqsm23.txt"
 def forest(tmp_path: Path) -> str:
     path = tmp_path / "glade.yaml"
     path.write_text(
-        f"trees:\n- {{name: a, tree: {SEEDLING}, leaf_on: true}}\n- {{name: b, tree: {SEEDLING}, x: 3, species: birch}}\n"
+        f"trees:\n- {{name: a, tree: {SEEDLING}, leaf_on: true}}\n- {{name: b, tree: {SEEDLING}, "
+        f"x: 3, species: birch}}\n"
     )
     return str(path)
 

@@ -8,7 +8,7 @@ import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.scene.placed_tree import StandingTree, joined
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
@@ -66,7 +66,7 @@ def test_wind_from_the_west_leans_the_right_hand_tree_to_the_right(tmp_path: Pat
 
 
 def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
-    trees = [StandingTree(f"pole{i}", pole(), x=3.0 * i).placed() for i in range(3)]
+    trees = [PlacedTree(f"pole{i}", pole(), x=3.0 * i).placed() for i in range(3)]
     joint = joined(trees)
     leaves = leaf_clusters(trees[1], np.random.default_rng(0), count=30)
     leaves = replace(leaves, segment=leaves.segment + trees[0].n_segments)

@@ -25,8 +25,8 @@ def kernel(function: _F) -> _F:
     """
     Compile a function of numbers and arrays to machine code at its first call.
 
-    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released; the
-    code is kept on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
+    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released;
+    the code is kept on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
 
     """
     return _compiled(function)
@@ -34,7 +34,7 @@ def kernel(function: _F) -> _F:
 
 def fused(function: _F) -> _F:
     """
-    Compile like `kernel`, but let a product and a sum be one instruction and reorder sums of a loop.
+    Compile like `kernel`, but let a product and a sum be one instruction and reorder sums.
 
     For what is placed and summed, where the last bit does not matter; the result is still the same
     bit for bit on one machine. Not for code that counts on rounding.

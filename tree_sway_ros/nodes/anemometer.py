@@ -6,6 +6,7 @@ from typing import Any
 
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.core.wind.simulated.gust_event import GustEvent
+from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import WIND
 from tree_sway_ros.ros.reports.diagnostics import OK, Status
@@ -29,11 +30,21 @@ class AnemometerNode(TreeSwayNode):
         self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
         self._model = self._make_model()
         self._ticks = 0
-        self._publisher = self.publisher(WIND, self._writer.message_class)
+        self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
         self.report_with("simulated anemometer", self._report)
-        self._pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
+        self._pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
         self.on_close(self._pacer.stop)
         self._pacer.start()
+
+    def check_values(self, values: dict[str, Any]) -> None:
+        """Refuse gusts that overlap."""
+        duration, every = values["gust_duration"], values["gust_every"]
+        if values["gust"] != "none" and 0.0 < every < duration:
+            raise ParameterError(
+                f"gusts of {duration:g} s every {every:g} s overlap",
+                where="parameters 'gust_duration' and 'gust_every'",
+                cure="give gust_every 0 or not less than gust_duration, both at once if need be",
+            )
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Blow otherwise from the next sample on; the gusts of a seed keep their pattern."""
@@ -44,13 +55,13 @@ class AnemometerNode(TreeSwayNode):
         return AnemometerModel(events=self._events(), **self.values(*names))
 
     def _events(self) -> tuple[GustEvent, ...]:
-        kind = self.values["gust"]
+        values = self.values
+        kind = values["gust"]
         if kind == "none":
             return ()
         is_angle = kind in ("direction_change", "turn")
-        amplitude = self.values["gust_angle" if is_angle else "gust_speed"]
-        every = self.values["gust_every"]
-        duration = self.values["gust_duration"]
+        amplitude = values["gust_angle" if is_angle else "gust_speed"]
+        every, duration = values["gust_every"], values["gust_duration"]
         return (GustEvent(kind, amplitude, duration, start=every or 1.0, every=every),)
 
     def _tick(self, tick: Tick) -> None:

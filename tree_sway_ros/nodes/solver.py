@@ -8,6 +8,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.gate import WindGate
@@ -16,12 +17,15 @@ from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import Status
+from tree_sway_ros.ros.reports.diagnostics import WARN, Status
 from tree_sway_ros.ros.reports.sway_report import SwayReport
 from tree_sway_ros.ros.timing.pacer import Pacer, Tick
 from tree_sway_ros.ros.timing.stepping import Stepper
 from tree_sway_ros.ros.wire.pose_stream import PoseStream
 from tree_sway_ros.ros.wire.wind_messages import wind_from_message
+
+_FARTHEST_CAMERA = 1e6
+"""Along each axis [m]."""
 
 
 class SolverNode(TreeSwayNode):
@@ -43,6 +47,7 @@ class SolverNode(TreeSwayNode):
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
+            in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
             profile=WindProfile(
                 self.values["profile"],
@@ -52,10 +57,11 @@ class SolverNode(TreeSwayNode):
             ),
         )
         self.simulator: Any = source.simulator(
-            settings, **self.values("fidelity", "tolerance", "leaf_on")
+            settings, **self.values("fidelity", "tolerance")
         )
         self._camera: Any = None
-        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail)
+        self._refused_cameras = 0
+        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
         tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
         self._tell_demand()
@@ -63,7 +69,7 @@ class SolverNode(TreeSwayNode):
         # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
         self._gate = WindGate(max_speed=150.0, max_rate=1e4)
         self._sway_report = SwayReport()
-        leaves = source.leaves(**self.values("leaf_on"), count=self.values["leaf_clusters"])
+        leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
@@ -88,7 +94,13 @@ class SolverNode(TreeSwayNode):
 
     def _see(self, message: Any) -> None:
         at = message.pose.position
-        self._camera = (at.x, at.y, at.z)
+        camera = (at.x, at.y, at.z)
+        if not all(
+            abs(component) <= _FARTHEST_CAMERA for component in camera
+        ):  # NaN is refused, too
+            self._refused_cameras += 1
+            return
+        self._camera = camera
         self.on_change({})
 
     def on_change(self, values: dict[str, Any]) -> None:
@@ -99,6 +111,11 @@ class SolverNode(TreeSwayNode):
     def _tell_demand(self) -> None:
         wanted = self.values("tolerance", "tolerance_pixels", "focal_length", "budget")
         tell_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
+
+    def slip(self, error: Exception) -> None:
+        """Go on from rest: what was amid a step is not to be trusted."""
+        super().slip(error)
+        self._stepper.request(self.simulator.reset)
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
@@ -118,4 +135,10 @@ class SolverNode(TreeSwayNode):
         return response
 
     def _statuses(self) -> list[Status]:
-        return self._sway_report.statuses(self._stepper, self.pacer, self.stream.frames)
+        statuses = self._sway_report.statuses(self._stepper, self.pacer, self.stream.frames)
+        if self._refused_cameras:
+            text = (
+                f"{self._refused_cameras} poses of the camera refused: not finite or too far away"
+            )
+            statuses.append(Status("camera", WARN, text, {"refused": self._refused_cameras}))
+        return statuses

@@ -41,7 +41,7 @@ class WindNode(TreeSwayNode):
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._gate = WindGate(**self.values(*_GATE))
         self._attitude: Any = None
-        self._filtered = self.publisher(WIND_FILTERED)
+        self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
         kind = wind_class(self.values["input_type"])
         self._topic = self.subscription(WIND, self._receive, kind).topic_name

@@ -8,11 +8,12 @@ from pathlib import Path
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.identification.calibration import Calibration, calibrate
 from tree_sway_ros.core.identification.sway_record import KINDS, SwayEstimate, estimate_sway
+from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.wind.sway_table import read_csv_sway
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaf_settings
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
 from tree_sway_ros.tools.tree_output import write_tree_file
 
@@ -62,9 +63,10 @@ def run(arguments: argparse.Namespace) -> int:
         found = _measured(arguments)
         frequency, error = found.frequency, found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
-    settings = Settings(model="modes", **leaf_settings(tree_file.tree, arguments))
+    settings = Settings(model="modes", in_leaf=told_leaves(arguments))
     fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
-    for line in _summary(tree_file.species, fitted, error, in_leaf=settings.in_leaf):
+    in_leaf = is_in_leaf(tree_file.species, settings.in_leaf)
+    for line in _summary(tree_file.species, fitted, error, in_leaf=in_leaf):
         print(line)
     write_tree_file(arguments.output, tree_file.tree, fitted.species)
     return 0
@@ -127,7 +129,8 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     ]
     if not min(moduli) / _FAR < after.modulus / 1e9 < max(moduli) * _FAR:
         lines.append(
-            "  note       no green wood has such a modulus: check density, diameters and leaves, and "
+            "  note       no green wood has such a modulus: check density, diameters and leaves, "
+            "and "
             "whether this was the slowest sway"
         )
     season = "damping_in_leaf" if in_leaf else "damping_bare"
@@ -137,7 +140,8 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     else:
         lines += [
             f"  damping    {old:.3g} -> {new:.3g} {'in leaf' if in_leaf else 'bare'}",
-            "  note       a measured damping holds that of the air; the solver adds the air's drag to it, "
+            "  note       a measured damping holds that of the air; the solver adds the air's "
+            "drag to it, "
             "so it damps a little more than the tree in strong wind",
         ]
     return lines

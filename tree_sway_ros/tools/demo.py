@@ -14,7 +14,7 @@ from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument
 from tree_sway_ros.tools.stream_monitor import StreamMonitor
 from tree_sway_ros.tools.stream_text import summary
 from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
@@ -98,7 +98,7 @@ def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
         "rate": arguments.rate,
         "fidelity": arguments.fidelity,
     }
-    solver["leaf_on"] = leaves_are_on(arguments)
+    solver["leaves"] = arguments.leaves
     if arguments.gravity == "off":
         solver["gravity"] = 0.0
     if arguments.wind is None:

@@ -13,7 +13,6 @@ import argparse
 import re
 from pathlib import Path
 
-from tree_sway_ros.core.leaves.traits import leaf_traits
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros.parameters import parameter as parameters
@@ -101,16 +100,18 @@ def markdown_tables() -> dict[str, str]:
 def species_table() -> str:
     """Wood, damping, drag and leaves of every species."""
     lines = [
-        "| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | leaves [m^2/m^2] | [kg/m^2] |",
+        "| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | "
+        "leaves [m^2/m^2] | [kg/m^2] |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for key in species_keys():
-        wood, leaf = species_named(key), leaf_traits(key)
+        wood, leaf = species_named(key), species_named(key).leaves
         mark = " (an estimate)" if wood.is_estimate else ""
         lines.append(
             f"| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} "
             f"| {wood.damping_bare:g}, {wood.damping_in_leaf:g} "
             f"| {wood.drag_coefficient:g} U^-{wood.drag_exponent:g} "
-            f"| {leaf.area_per_section:g}{', evergreen' if leaf.is_evergreen else ''} | {leaf.fresh_mass:g} |"
+            f"| {leaf.area_per_section:g}{', evergreen' if leaf.is_evergreen else ''} | "
+            f"{leaf.fresh_mass:g} |"
         )
     return "\n".join(lines) + "\n"

@@ -17,7 +17,7 @@ from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.tools.info_forest import forest_facts, forest_text
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, leaves_are_on
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
@@ -46,24 +46,25 @@ def run(arguments: argparse.Namespace) -> int:
         )
     scene = opened_scene(arguments)
     if isinstance(scene, ForestFile):
-        facts = forest_facts(scene, partial(_facts, arguments), leaves_are_on(arguments))
+        facts = forest_facts(scene, partial(_facts, arguments), told_leaves(arguments))
         print(json.dumps(facts, indent=2) if arguments.json else forest_text(facts))
         return 0
-    facts = _facts(arguments, scene, leaves_are_on(arguments))
+    facts = _facts(arguments, scene, told_leaves(arguments))
     print(json.dumps(facts, indent=2) if arguments.json else _text(facts, scene))
     return 0
 
 
-def _facts(arguments: argparse.Namespace, tree_file: TreeFile, leaf_on: bool) -> dict[str, Any]:
+def _facts(
+    arguments: argparse.Namespace, tree_file: TreeFile, in_leaf: bool | None
+) -> dict[str, Any]:
     settings = Settings(
         model=arguments.model,
         gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
         # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
         n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
         mode_choice="slowest",
+        in_leaf=in_leaf,
     )
-    if leaf_on:
-        settings = in_season(tree_file.tree, settings, leaf_on=True)
     return tree_facts(tree_file, settings, arguments.count)
 
 
@@ -92,6 +93,7 @@ def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str,
 
     """
     tree, species = tree_file.tree, tree_file.species
+    settings = in_season(tree, species, settings)
     notes = list(tree_file.notes)
     try:
         bank = build_bank(tree, species, settings)
@@ -165,9 +167,11 @@ def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
         + (f", {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m" if breast is not None else ""),
         f"  wood       {tree_file.species.title}{estimate}: {facts['modulus'] / 1e9:.3g} GPa, "
         f"{facts['density']:.4g} kg/m^3",
-        f"  mass       {facts['mass']:.4g} kg {'in leaf' if facts['in_leaf'] else 'without leaves'}, "
+        f"  mass       {facts['mass']:.4g} kg "
+        f"{'in leaf' if facts['in_leaf'] else 'without leaves'}, "
         f"{facts['stem_mass']:.4g} kg of it in the stem",
-        f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} copied",
+        f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} "
+        f"copied",
     ]
     lines += [f"  note       {note}" for note in facts["notes"]]
     if facts["modes"]:

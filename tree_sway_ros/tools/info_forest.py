@@ -16,7 +16,7 @@ _SUMS = ("branches", "segments", "volume", "mass")
 
 
 def forest_facts(
-    forest: ForestFile, facts_of: Callable[[TreeFile, bool], dict[str, Any]], leaf_on: bool
+    forest: ForestFile, facts_of: Callable[[TreeFile, bool], dict[str, Any]], told: bool | None
 ) -> dict[str, Any]:
     """
     Gather what there is to say about a forest.
@@ -27,8 +27,8 @@ def forest_facts(
         The forest.
     facts_of
         Says the same of one tree, with or without leaves.
-    leaf_on
-        Whether trees that do not say bear leaves.
+    told
+        Whether trees that do not say bear leaves; None leaves it to their species.
 
     Returns
     -------
@@ -41,7 +41,7 @@ def forest_facts(
         species = each.species if each.species is not None else species_named(each.tree.species)
         file = TreeFile(each.placed(), species, forest.source)
         place = {"x": each.x, "y": each.y, "z": each.z, "yaw": each.yaw}
-        trees.append({**facts_of(file, each.bears_leaves(leaf_on)), "place": place})
+        trees.append({**facts_of(file, each.bears_leaves(told)), "place": place})
     return {
         "name": forest.name,
         "source": forest.source,
@@ -58,9 +58,11 @@ def forest_text(facts: dict[str, Any]) -> str:
     wide = max(4, *(len(tree["name"]) for tree in trees))
     lines = [
         f"{facts['name']}, from {facts['source']}",
-        f"  size       {len(trees)} trees, {facts['branches']} branches, {facts['segments']} segments, "
+        f"  size       {len(trees)} trees, {facts['branches']} branches, {facts['segments']} "
+        f"segments, "
         f"{facts['volume'] * 1e3:.4g} l of wood, {facts['mass']:.4g} kg",
-        f"  {'tree':{wide}}   species       east    north   height   segments       mass       sways",
+        f"  {'tree':{wide}}   species       east    north   height   segments       mass       "
+        f"sways",
     ]
     for tree in trees:
         place, slowest = tree["place"], tree["frequencies"]

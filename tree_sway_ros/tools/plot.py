@@ -20,7 +20,7 @@ from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.wind.wind_file import read_wind
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, leaves_are_on
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
 from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
 from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_scene
 from tree_sway_ros.view.pictures import picture_in_wind
@@ -94,7 +94,7 @@ def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> No
 
 def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> Simulator:
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
-    model: dict[str, Any] = {"fidelity": arguments.model, "leaf_on": leaves_are_on(arguments)}
+    model: dict[str, Any] = {"fidelity": arguments.model, "in_leaf": told_leaves(arguments)}
     try:
         return scene.simulator(**model)
     except TreeError as error:

@@ -16,7 +16,8 @@ def status_line(latest: StreamRecord, elapsed: float) -> str:
     """One line about the last two seconds of a stream."""
     wind = "wind none yet"
     if latest.wind:
-        wind = f"wind {_speed(latest.wind[-1]):4.1f} m/s {_from(latest.wind[-1]):>7} at {latest.wind_rate:4.1f} Hz"
+        speed, origin = _speed(latest.wind[-1]), _from(latest.wind[-1])
+        wind = f"wind {speed:4.1f} m/s {origin:>7} at {latest.wind_rate:4.1f} Hz"
     tip = f" tip {1e3 * float(np.linalg.norm(latest.tip[-1])):6.1f} mm |" if latest.tip else ""
     late = f"{1e3 * latest.latency(0.5):.2f} ms (p95 {1e3 * latest.latency(0.95):.2f})"
     return f"{elapsed:6.1f} s | {wind} |{tip} poses {latest.pose_rate:5.1f} Hz, latency {late}"

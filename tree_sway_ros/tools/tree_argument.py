@@ -40,7 +40,8 @@ def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="how to read its file, for example twig_diameter=0.004; may be repeated (doc/trees.md)",
+        help="how to read its file, for example twig_diameter=0.004; may be repeated "
+        "(doc/trees.md)",
     )
 
 

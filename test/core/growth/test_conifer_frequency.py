@@ -9,6 +9,7 @@ told here.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -16,7 +17,6 @@ import pytest
 
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
@@ -44,8 +44,8 @@ def frequencies(species: str, height: float, slenderness: float) -> tuple[float,
     diameter = height / slenderness
     tree = grow(species, height, diameter, rng=np.random.default_rng(0))
     wood, stem = species_named(species), stem_of(tree)
-    whole = build_bank(tree, wood, in_season(tree, SUBTREE, leaf_on=True)).frequencies[0]
-    alone = build_bank(stem, wood, SUBTREE).frequencies[0]
+    whole = build_bank(tree, wood, replace(SUBTREE, in_leaf=True)).frequencies[0]
+    alone = build_bank(stem, wood, replace(SUBTREE, in_leaf=False)).frequencies[0]
     return 0.0766 + 3.1219 * (100.0 * diameter) / height**2, float(whole), float(alone)
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.growth.grow import HABITS, greenhill_length, grow, habit_of
+from tree_sway_ros.core.growth.grow import HABITS, greenhill_length, grow
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, SpeciesError
@@ -40,7 +40,7 @@ def test_height_and_breast_height_diameter_are_met(
 
 @pytest.mark.parametrize("species", species_keys())
 def test_every_species_grows_without_a_diameter(species: str) -> None:
-    height = 1.5 if habit_of(species) == "pot" else 12.0
+    height = 1.5 if species_named(species).habit == "pot" else 12.0
     tree = grow(species, height, rng=rng(), name="mine")
     assert tree.name == "mine"
     assert 800 >= height / stem_diameter_at(tree, 0.0) >= 20
@@ -55,7 +55,8 @@ def test_the_habit_can_be_chosen(habit: str) -> None:
 
 
 def test_habits_follow_the_species() -> None:
-    assert [habit_of(s) for s in ("spruce", "oak", "goldcrest")] == ["conifer", "broadleaf", "pot"]
+    habits = [species_named(s).habit for s in ("spruce", "oak", "goldcrest")]
+    assert habits == ["conifer", "broadleaf", "pot"]
 
 
 def test_size_alone_does_not_change_the_shape() -> None:

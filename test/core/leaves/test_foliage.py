@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.growth import builtin
-from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.leaves.foliage import (
     MAX_LEAF_AREA_INDEX,
     foliage_of,
@@ -18,10 +17,10 @@ from tree_sway_ros.core.leaves.foliage import (
     leafy_length,
     no_clusters,
 )
-from tree_sway_ros.core.leaves.traits import LeafTraits, leaf_traits
 from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.species import species_keys
+from tree_sway_ros.core.tree.leaf_traits import LeafTraits
+from tree_sway_ros.core.tree.species import leaf_traits, species_keys
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
@@ -77,15 +76,6 @@ def test_few_leaves_hide_nothing_and_many_hide_each_other() -> None:
     points = np.vstack([tree.start, tree.end])
     outline = 0.25 * np.pi * np.sqrt(np.ptp(points[:, 0]) * np.ptp(points[:, 1])) * crown
     assert 0.85 < dense.drag_area.sum() / outline <= 1.0
-
-
-def test_winter_takes_the_leaves_of_an_oak_and_not_of_a_spruce() -> None:
-    oak, spruce = grow("oak", 8.0, rng=rng()), grow("spruce", 8.0, rng=rng())
-    assert foliage_of(oak, leaf_on=False).mass.sum() == 0.0
-    assert foliage_of(oak, leaf_on=False).drag_area.shape == (oak.n_branches,)
-    np.testing.assert_array_equal(
-        foliage_of(spruce, leaf_on=False).mass, foliage_of(spruce, leaf_on=True).mass
-    )
 
 
 def test_a_pole_has_leaves_too() -> None:

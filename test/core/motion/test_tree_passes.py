@@ -1,5 +1,5 @@
 """
-How branches ride and hand on loads: virtual work, balance of forces, and momentum of a rigid ride.
+How branches move on each other and hand on loads: virtual work, balance of forces, rigid motion.
 
 """
 
@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.motion.tree_passes import air_records, blow, gather, generalised, ride
+from tree_sway_ros.core.motion.fill_records import load_records
+from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
 from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
@@ -24,19 +25,24 @@ class Loaded:
         bank = build_bank(tree, species_named("broadleaf"), chosen)
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
+        self.loads = load_records(self.branches)
         self.n = len(bank.oscillators.rotations())
 
     def handed(self, force):
         """Moments on the key rotations, and pulls, of forces at the load centres, at rest."""
         self.work["rotation"] = 0.0
-        self.work["force"] = self.work["met"] = force
+        self.work["force"] = force
+        self.loads["turned_force"][0, :, : len(force)] = np.transpose(force)
         moment, pull = np.zeros(self.n), np.zeros(len(self.branches))
-        gather(self.branches, self.work)
-        generalised(self.branches, self.work, True, moment, pull)
+        generalised_loads(self.branches, self.work, self.loads, True, moment, pull)
         return moment, pull
 
+    def blow(self, wind):
+        """Find the forces of a wind on branches at rest, whose bases may move."""
+        wind_forces(self.branches, self.work, self.loads, True, *wind, DRAG)
+
     def velocity_of_centres(self, v):
-        ride(self.branches, self.work, np.zeros(self.n), v)
+        outward_pass(self.branches, self.work, np.zeros(self.n), v)
         out = []
         for branch, work in zip(self.branches, self.work, strict=True):
             base = work["velocity"]
@@ -73,7 +79,7 @@ def test_the_stem_feels_all_force_and_moment(loaded):
 def test_a_child_takes_over_the_turn_of_its_parent(loaded):
     v = np.zeros(loaded.n)
     v[:2] = 0.3, -0.2
-    ride(loaded.branches, loaded.work, v, v)
+    outward_pass(loaded.branches, loaded.work, v, v)
     for child in (1, 3):
         twist = loaded.branches["twist"][child, :2, 3:]
         assert loaded.work["rotation"][child] == pytest.approx(v[:2] @ twist)
@@ -108,9 +114,7 @@ def test_what_is_carried_pulls_at_its_own_height(sketch):
 
 def test_still_branches_feel_the_wind_of_the_books(loaded):
     loaded.work["velocity"], loaded.work["rotation"] = 0.0, 0.0
-    rest, branches = np.zeros(loaded.n), loaded.branches.copy()
-    branches["compliance"] = 0.0
-    blow(branches, loaded.work, air_records(branches), rest, rest, 6.0, 2.0, 1.0, DRAG)
+    loaded.blow((6.0, 2.0, 1.0))
     wind = np.array([6.0, 2.0, 1.0])
     tree = loaded.tree
     for b in (3,):
@@ -125,8 +129,7 @@ def test_still_branches_feel_the_wind_of_the_books(loaded):
 def test_a_branch_that_goes_with_the_wind_feels_none(stem):
     tree = Loaded(stem())
     tree.work["velocity"][0] = [6.0, 2.0, 0.0, 0.0, 0.0, 0.0]
-    rest = np.zeros(tree.n)
-    blow(tree.branches, tree.work, air_records(tree.branches), rest, rest, 6.0, 2.0, 0.0, DRAG)
+    tree.blow((6.0, 2.0, 0.0))
     assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
@@ -135,6 +138,5 @@ def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
     tree = Loaded(stem())
     # Cayley's map turns by twice the arc tangent of half the vector.
     tree.work["rotation"][0] = [0.0, 2.0 * np.tan(np.pi / 4), 0.0]
-    rest = np.zeros(tree.n)
-    blow(tree.branches, tree.work, air_records(tree.branches), rest, rest, 6.0, 0.0, 0.0, DRAG)
+    tree.blow((6.0, 0.0, 0.0))
     assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)

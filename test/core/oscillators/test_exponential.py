@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-import mpmath
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -18,6 +17,7 @@ from tree_sway_ros.core.oscillators.exponential import (
     two_product,
 )
 
+mpmath = pytest.importorskip("mpmath", reason="needs mpmath, an oracle of many digits")
 NAMES = ("g", "d", "s", "p", "q", "p - q")
 
 

@@ -13,12 +13,12 @@ import pytest
 
 from tree_sway_ros.core.branch.model import branch_models
 from tree_sway_ros.core.motion.fill_records import (
-    fill_branch_geometry,
+    branch_records,
     head_records,
     segment_records,
 )
 from tree_sway_ros.core.motion.placing import place
-from tree_sway_ros.core.motion.records import BRANCH, WORK
+from tree_sway_ros.core.motion.records import WORK
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 
 MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0
@@ -34,10 +34,8 @@ class Reduced:
             tree, DENSITY, carries=carries, enriched=frozenset(enriched), **leaves
         )
         self.reduction = reduce_tree(tree, self.models, MODULUS, SHEAR, gravity, carries=carries)
-        self.branches = np.zeros(tree.n_branches, dtype=BRANCH)
-        fill_branch_geometry(tree, self.models, self.branches)
-        self.branches["coordinate"] = self.reduction.first[:-1]
-        self.branches["twist"] = self.reduction.twist
+        even = np.ones(tree.n_segments)
+        self.branches = branch_records(tree, self.models, self.reduction, even)
         self.segments = segment_records(tree, self.models)
         self.heads = head_records(self.branches, self.segments)
 

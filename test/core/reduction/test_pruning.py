@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tree_sway_ros.core.motion.fill_records import moving_records
 from tree_sway_ros.core.motion.tree_passes import even_wind_moments
 from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
@@ -63,7 +64,7 @@ def test_an_even_wind_pushes_as_hard_as_before(whole):
 
     """
     pruning, full = Pruning(whole.tree, twigs_of(whole.tree)), whole.coupled
-    records = pruning.branches(full.branches)
+    records = moving_records(pruning, full.branches)
     n, keep = full.reduction.n_coordinates, pruning.coordinates(full.reduction)
     before = even_wind_moments(full.branches, n)[keep]
     after = even_wind_moments(records, len(keep))
@@ -75,5 +76,5 @@ def test_an_even_wind_pushes_as_hard_as_before(whole):
 def test_no_wind_area_no_load(whole):
     bare = whole.coupled.branches.copy()
     bare["area"] = 0.0
-    records = Pruning(whole.tree, twigs_of(whole.tree)).branches(bare)
+    records = moving_records(Pruning(whole.tree, twigs_of(whole.tree)), bare)
     np.testing.assert_array_equal(records["push"], bare["push"][~twigs_of(whole.tree)])

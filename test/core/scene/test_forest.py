@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
-from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
@@ -158,9 +157,9 @@ def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
         PlacedTree("green", tree, leaf_on=True),
         PlacedTree("as asked", tree),
     ]
-    forest = Forest(trees, leaf_on=True, convection_ratio=np.inf)
+    forest = Forest(trees, in_leaf=True, convection_ratio=np.inf)
     assert [sim.settings.in_leaf for sim in forest.simulators] == [False, True, True]
-    alone = SwaySimulator(tree, settings=in_season(tree, leaf_on=True))
+    alone = SwaySimulator(tree, in_leaf=True)
     for wind in gusts(60):
         forest.step(wind, DT)
         alone.step(wind, DT)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.resegment import resegment
+from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 
@@ -60,8 +60,33 @@ def test_long_steps_of_every_segment_are_cut():
 def test_what_a_model_does_not_know_is_refused(stem):
     with pytest.raises(ParameterError, match=r"unknown fidelity 'best'.*auto"):
         make_simulator(stem, WOOD, fidelity="best")
-    leaves = Settings(leaf_mass=np.ones(1))
-    with pytest.raises(ParameterError, match="leaves on model 'segments'"):
-        make_simulator(stem, WOOD, leaves, fidelity="segments")
     with pytest.raises(ParameterError, match="volume_rule"):
         make_simulator(stem, WOOD, fidelity="segments", stiffness="volume_rule")
+
+
+def test_every_segment_bears_the_leaves_that_the_reduced_tree_does():
+    """Twelve segments per branch, whose slowest sway agrees with the coupled model's, in leaf."""
+    tree = resegment(forked_tree(0.5, 0.6), 12)
+    wood = species_named("spruce")
+    model = {"gravity": 9.81, "damping_ratio": 0.1}
+    leafy, bare = (
+        [
+            make_simulator(tree, wood, fidelity=name, in_leaf=each, **model).frequencies(1)[0]
+            for name in ("coupled", "segments")
+        ]
+        for each in (True, False)
+    )
+    assert leafy[0] < 0.97 * bare[0]
+    assert leafy[1] / leafy[0] == pytest.approx(bare[1] / bare[0], rel=0.005)
+
+
+def test_every_segment_is_pushed_by_the_leaves_too():
+    tree, wood = forked_tree(0.5, 0.6), species_named("spruce")
+    ways = []
+    for name in ("coupled", "segments"):
+        sim = make_simulator(tree, wood, fidelity=name, gravity=0.0, damping_ratio=0.7)
+        for _ in range(600):
+            sim.step((2.0, 0.0, 0.0), DT)
+        sim.place()
+        ways.append(sim.tip_displacement[0])
+    assert ways[1] == pytest.approx(ways[0], rel=0.05)

@@ -15,13 +15,18 @@ import pytest
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.leaves.foliage import foliage_of
-from tree_sway_ros.core.leaves.traits import leaf_traits
+from tree_sway_ros.core.scene.forest import Forest
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_keys, species_named
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.trees.source import open_tree
 
+OAK = species_named("oak")
 SPEEDS = np.geomspace(2.0, 20.0, 7)
 GROWN = {"oak": 12.0, "birch": 9.0, "spruce": 12.0, "pine": 14.0}
 _long = pytest.mark.long
@@ -51,7 +56,7 @@ def test_leaves_weigh_catch_and_damp(fork):
     tree = replace(fork(), species="oak")
     foliage = foliage_of(tree)
     usual = Settings(model="branch", gravity=0.0)
-    leafy = in_season(tree, usual, leaf_on=True)
+    leafy = in_season(tree, OAK, replace(usual, in_leaf=True))
     assert (leafy.leaf_mass == foliage.mass).all()
     assert (leafy.leaf_area == foliage.drag_area).all()
     assert leafy == replace(
@@ -61,17 +66,65 @@ def test_leaves_weigh_catch_and_damp(fork):
     assert full.mass - bare.mass == pytest.approx(foliage.mass.sum())
 
 
-def test_in_winter_an_oak_is_bare_and_a_spruce_is_not(fork):
-    oak, spruce = (replace(fork(), species=key) for key in ("oak", "spruce"))
-    leafy = in_season(oak, leaf_on=True)
-    assert in_season(oak, leafy, leaf_on=False) == Settings()
-    assert in_season(spruce, leaf_on=False).in_leaf
+def test_untold_an_oak_is_bare_and_a_spruce_is_not(fork):
+    spruce = species_named("spruce")
+    assert in_season(fork(), OAK, Settings()) == Settings(in_leaf=False)
+    leafy = in_season(fork(), spruce, Settings())
+    assert leafy.in_leaf
+    assert leafy.leaf_mass == pytest.approx(foliage_of(fork(), traits=spruce.leaves).mass)
+    assert in_season(fork(), spruce, leafy) is leafy
+    assert in_season(fork(), spruce, Settings(in_leaf=False)) == Settings(in_leaf=False)
 
 
 def test_leaves_may_be_given(fork):
-    heavy = replace(leaf_traits("oak"), fresh_mass=1.0)
-    settings = in_season(fork(), leaf_on=True, traits=heavy)
+    heavy = replace(OAK.leaves, fresh_mass=1.0)
+    settings = in_season(fork(), replace(OAK, leaves=heavy), Settings(in_leaf=True))
     assert settings.leaf_mass == pytest.approx(foliage_of(fork(), traits=heavy).mass)
+    given = in_season(fork(), OAK, Settings(leaf_mass=np.ones(4)))
+    assert (given.leaf_mass == 1.0).all()
+    assert given.in_leaf
+    assert given.leaf_area is None
+
+
+def test_leaves_on_a_bare_tree_are_refused():
+    with pytest.raises(ParameterError, match="leaves on a bare tree"):
+        Settings(in_leaf=False, leaf_mass=np.ones(1))
+
+
+@pytest.mark.parametrize("key", species_keys())
+def test_needles_stay(key):
+    wood = species_named(key)
+    assert wood.leaves.is_evergreen == (wood.habit != "broadleaf")
+
+
+DOORS = {
+    "SwaySimulator": lambda **how: SwaySimulator(builtin_tree("goldcrest"), model="modes", **how),
+    "make_simulator": lambda **how: make_simulator(
+        builtin_tree("goldcrest"), species_named("goldcrest"), fidelity="modes", **how
+    ),
+    "open_tree": lambda **how: open_tree("goldcrest").simulator(fidelity="modes", **how),
+    "auto": lambda **how: open_tree("goldcrest").simulator(fidelity="auto", **how),
+    "segments": lambda **how: open_tree("goldcrest").simulator(fidelity="segments", **how),
+    "Forest": lambda **how: Forest(
+        [PlacedTree("tree", builtin_tree("goldcrest"))], fidelity="modes", **how
+    ).simulators[0],
+}
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door):
+    assert DOORS[door]().settings.in_leaf is True
+    assert DOORS[door](in_leaf=False).settings.in_leaf is False
+
+
+def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():
+    tree = builtin_tree("goldcrest")
+    leafy, bare = (
+        SwaySimulator(tree, model="modes", n_modes=1, mode_choice="slowest", **how).frequencies(1)
+        for how in ({}, {"in_leaf": False})
+    )
+    assert leafy == pytest.approx(3.49, abs=0.02)
+    assert bare == pytest.approx(6.69, abs=0.02)
 
 
 #: What is missed, and by how much, is in the reason.
@@ -103,9 +156,9 @@ def test_leaves_lower_the_first_frequency(name, shares):
 
     """
     tree = tree_named(name)
-    leafy = in_season(tree, leaf_on=True)
+    leafy = in_season(tree, species_named(tree.species), Settings(in_leaf=True))
     mass = leafy.leaf_mass / leafy.leaf_mass.sum() * branch_wood(tree)
-    bare = first_frequency(tree, Settings())
+    bare = first_frequency(tree, Settings(in_leaf=False))
     most, least = (
         first_frequency(tree, replace(leafy, leaf_mass=mass * share)) / bare for share in shares
     )
@@ -139,8 +192,8 @@ def growth_of_load(tree, settings):
 )
 def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
     tree, usual = tree_named(name), Settings(model="subtree")
-    assert 1.90 <= growth_of_load(tree, usual) <= 2.05
-    assert 1.05 <= growth_of_load(tree, in_season(tree, usual, leaf_on=True)) <= 1.70
+    assert 1.90 <= growth_of_load(tree, replace(usual, in_leaf=False)) <= 2.05
+    assert 1.05 <= growth_of_load(tree, replace(usual, in_leaf=True)) <= 1.70
 
 
 def test_the_base_moment_is_that_of_drag(stem):

@@ -1,5 +1,5 @@
 """
-Make the golden poses: every built-in tree in 60 s of simulated wind, in each reduced model.
+Make the golden poses: every built-in tree, bare, in 60 s of simulated wind, in each reduced model.
 
     python test/golden/poses/make_golden.py            # write golden.npz and digests.json beside
     this file python test/golden/poses/make_golden.py --check    # exit 1 where a digest differs
@@ -33,14 +33,14 @@ SAMPLED = 40
 """Segments sampled per tree, evenly over their order."""
 
 
-def run(tree_name: str, model: str) -> tuple[str, np.ndarray]:
+def run(tree_name: str, model: str, seconds: int = SECONDS) -> tuple[str, np.ndarray]:
     """Return the digest of all frames of a run, and the sampled poses, (frames, segments, 7)."""
     tree = builtin_tree(tree_name)
     wind = simulate_turbulence(6.0, rate=RATE, duration=SECONDS, rng=np.random.default_rng(1))
-    sim = SwaySimulator(tree, model=model)
+    sim = SwaySimulator(tree, model=model, in_leaf=False)
     chosen = np.linspace(0, tree.n_segments - 1, SAMPLED).astype(int)
     digest, sampled = hashlib.blake2b(digest_size=16), []
-    for count, sample in enumerate(wind[: RATE * SECONDS], 1):
+    for count, sample in enumerate(wind[: RATE * seconds], 1):
         sim.step(sample, 1.0 / RATE)
         poses = sim.place()
         digest.update(poses.tobytes())

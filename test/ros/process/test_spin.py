@@ -1,4 +1,6 @@
+import signal
 import sys
+import time
 import types
 
 import pytest
@@ -18,12 +20,12 @@ class FakeRclpy(types.ModuleType):
         executors = types.ModuleType("rclpy.executors")
         executors.ExternalShutdownException = type("ExternalShutdownException", (Exception,), {})
         executors.SingleThreadedExecutor = lambda: self
+        self.signals = types.SimpleNamespace(SignalHandlerOptions=types.SimpleNamespace(NO=0))
         self.shutdown_error = executors.ExternalShutdownException
         monkeypatch.setitem(sys.modules, "rclpy", self)
         monkeypatch.setitem(sys.modules, "rclpy.executors", executors)
-        monkeypatch.setattr(spin.signal, "signal", lambda *_: self.calls.append("ignore"))
 
-    def init(self, args=None):
+    def init(self, args=None, signal_handler_options=None):
         self.calls.append("init")
 
     def ok(self):
@@ -50,6 +52,15 @@ class FakeNode:
         self.closed += 1
 
 
+@pytest.fixture(autouse=True)
+def handlers():
+    """Whoever was told to end stays deaf; the next test is not."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
 @pytest.fixture
 def rclpy(monkeypatch):
     return FakeRclpy(monkeypatch)
@@ -65,6 +76,20 @@ def node(monkeypatch):
     return made
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_ends_amid_the_making_of_its_node(rclpy, node, monkeypatch, number):
+    def make():
+        signal.raise_signal(number)
+        time.sleep(10.0)
+
+    monkeypatch.setattr(sys.modules["fake_nodes"], "Node", make)
+    begin = time.monotonic()
+    assert spin.run("fake_nodes", "Node") == 0
+    assert time.monotonic() - begin < 2.0
+    assert rclpy.calls == ["init", "shutdown"]
+    assert signal.getsignal(number) is signal.SIG_IGN
+
+
 def raises(error):
     def act():
         raise error
@@ -75,24 +100,16 @@ def raises(error):
 def test_it_ends_when_the_node_is_done(rclpy, node):
     rclpy.on_spin = lambda: setattr(node, "is_done", True)
     assert spin.run("fake_nodes", "Node") == 0
-    assert rclpy.calls == ["init", "add", "spin", "ignore", "shutdown"]
+    assert rclpy.calls == ["init", "add", "spin", "shutdown"]
     assert node.closed == 1
 
 
-@pytest.mark.parametrize("kind", [KeyboardInterrupt, None])
-def test_it_ends_well_when_told_to(rclpy, node, kind):
-    rclpy.on_spin = raises((kind or rclpy.shutdown_error)())
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, None])
+def test_it_ends_well_when_told_to(rclpy, node, number):
+    gone = raises(rclpy.shutdown_error())
+    rclpy.on_spin = gone if number is None else lambda: signal.raise_signal(number)
     assert spin.run("fake_nodes", "Node") == 0
     assert node.closed == 1
-
-
-def test_an_error_while_it_is_told_to_end_is_no_error(rclpy, node):
-    def act():
-        rclpy.is_ok = False
-        raise RuntimeError("publisher is gone")
-
-    rclpy.on_spin = act
-    assert spin.run("fake_nodes", "Node") == 0
 
 
 def test_any_other_error_comes_out(rclpy, node):
@@ -129,7 +146,9 @@ def test_a_domain_that_is_none_is_named(rclpy, monkeypatch, domain):
 
 
 def test_a_start_that_fails_is_one_line(rclpy, monkeypatch):
-    monkeypatch.setattr(rclpy, "init", lambda args: raises(RuntimeError("no rmw\nat line 3"))())
+    monkeypatch.setattr(
+        rclpy, "init", lambda args, **_: raises(RuntimeError("no rmw\nat line 3"))()
+    )
     with pytest.raises(TransportError, match=r"ROS 2 cannot start: no rmw$"):
         spin.init(rclpy)
 
@@ -141,3 +160,18 @@ def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
         spin.create(raises(error))
     with pytest.raises(RuntimeError, match="a bug"):
         spin.create(raises(RuntimeError("a bug")))
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        type("InvalidNamespaceException", (ValueError,), {})("Invalid namespace: no:\n  'a b'"),
+        type("RCLError", (RuntimeError,), {})("error creating node: invalid node namespace: no"),
+    ],
+)
+def test_a_bad_namespace_is_one_line(error):
+    with pytest.raises(
+        TransportError, match=r"namespace 'a b': .*use letters, digits and _"
+    ) as told:
+        spin.create(lambda **_: raises(error)(), namespace="a b")
+    assert len(str(told.value).splitlines()) == 1

@@ -10,7 +10,8 @@ pytestmark = pytest.mark.ros
 from rclpy.clock import ROSClock  # noqa: E402
 from rclpy.time import Time  # noqa: E402
 
-from tree_sway_ros.ros.timing.pacer import LONGEST_STEP, Pacer  # noqa: E402
+from tree_sway_ros.ros.timing import pacer  # noqa: E402
+from tree_sway_ros.ros.timing.pacer import LONGEST_STEP, PATIENCE, Pacer  # noqa: E402
 
 DEADLINE = 10.0
 PERIOD = 20_000_000  # of 50 Hz
@@ -22,10 +23,10 @@ class Ticks:
     def __init__(self, rate=50.0, work=None):
         self.clock = ROSClock()
         self.seen = []
-        self.errors = []
+        self.errors, self.slips = [], []
         self._more = threading.Condition()
         self._work = work
-        self.pacer = Pacer(self.clock, rate, self._take, self.errors.append)
+        self.pacer = Pacer(self.clock, rate, self._take, self.errors.append, self.slips.append)
 
     def _take(self, tick):
         if self._work is not None:
@@ -141,16 +142,66 @@ def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):
     assert pace.late_p50 < 0.01  # of the newest period: nothing queues up
 
 
-def test_an_error_in_the_work_is_handed_on(ticks):
+def test_one_tick_that_fails_is_told_and_the_next_comes(ticks):
+    failing = iter([True, False, True] + [False] * 100)
+
+    def fail():
+        if next(failing):
+            raise ValueError("no")
+
+    paced = ticks(rate=200.0, work=fail)
+    paced.pacer.start()
+    paced.wait(5)
+    assert [str(error) for error in paced.slips] == ["no", "no"]
+    assert paced.errors == []
+
+
+def test_an_error_in_tick_after_tick_ends_the_thread(ticks):
     def fail():
         raise ValueError("no")
 
-    paced = ticks(work=fail)
+    paced = ticks(rate=200.0, work=fail)
     paced.pacer.start()
-    deadline = time.monotonic() + DEADLINE
-    while not paced.errors and time.monotonic() < deadline:
-        paced.pacer._thread.join(0.01)
+    paced.pacer._thread.join(DEADLINE)
     assert [str(error) for error in paced.errors] == ["no"]
+    assert len(paced.slips) == PATIENCE - 1
+
+
+class Wall:
+    """The wall's clock and the steady one, in the hand of the test."""
+
+    ros_time_is_active = False
+
+    def __init__(self, monkeypatch):
+        self.wall, self.steady = 10**18, 10**9
+        monkeypatch.setattr(pacer.time, "monotonic_ns", lambda: self.steady)
+
+    def go(self, seconds, wall=None):
+        self.steady += round(seconds * 1e9)
+        self.wall += round((seconds if wall is None else wall) * 1e9)
+        return self.wall
+
+
+def test_what_is_skipped_is_counted_whatever_its_length(monkeypatch):
+    """1.2 frames in a second where 60 were asked for: 98 of 100 are skipped."""
+    wall = Wall(monkeypatch)
+    paced = Pacer(wall, 60.0, print, print)
+    paced._due(wall.wall)
+    seen = [paced._due(wall.go(1.0 / 1.2)) for _ in range(12)]
+    assert paced.pace().skipped == pytest.approx(600 - 12, abs=1)
+    assert paced.pace().clamped == 0
+    assert all(tick.periods * paced.period <= LONGEST_STEP for tick in seen)
+    assert paced.pace().silence == 0.0
+    wall.go(3.0)
+    assert paced.pace().silence == pytest.approx(3.0)
+
+
+def test_a_wall_clock_set_forward_skips_nothing(monkeypatch):
+    wall = Wall(monkeypatch)
+    paced = Pacer(wall, 50.0, print, print)
+    paced._due(wall.wall)
+    paced._due(wall.go(0.02, wall=3600.0))
+    assert (paced.pace().skipped, paced.pace().clamped) == (0, 1)
 
 
 def test_stopping_twice_or_before_the_start_is_harmless(ticks):
@@ -164,4 +215,4 @@ def test_stopping_twice_or_before_the_start_is_harmless(ticks):
 
 
 def test_a_pace_of_nothing_is_zero(ticks):
-    assert ticks().pacer.pace() == (0.0,) * 5 + (0,) * 4
+    assert ticks().pacer.pace() == (0.0,) * 5 + (0,) * 4 + (0.0,)

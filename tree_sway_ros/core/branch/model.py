@@ -195,6 +195,7 @@ def enriched_branches(tree: Tree, choice: str) -> frozenset[int]:
     carriers = {0, *tree.branch_parent[1:].tolist()}
     limbs = {0, *(int(tree.branch_parent[branch]) for branch in carriers if branch > 0)}
     chosen: dict[str, Iterable[int]] = {
-        "none": (), "stem": (0,), "limbs": limbs, "carriers": carriers, "all": range(tree.n_branches)
+        "none": (), "stem": (0,), "limbs": limbs, "carriers": carriers,
+        "all": range(tree.n_branches)
     }  # fmt: skip
     return frozenset(chosen[choice])

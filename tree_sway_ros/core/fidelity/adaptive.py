@@ -5,9 +5,9 @@ The error and the cost of every model in the wind of the last minute are known b
 (`fidelity_ladder`); the cheapest that stays within the tolerance is used, or, where none that can
 be afforded does, the most accurate of those. When wind or camera ask for another, the new one first
 sways along unseen until it has forgotten that it started at rest, then the picture goes over to it
-within a second: every pose is a mix of two that agree but for the tolerance. A model is left upwards
-as soon as it must be, downwards only when a lesser one would do with a third to spare, so that a
-wind on the border does not flicker.
+within a second: every pose is a mix of two that agree but for the tolerance. A model is left
+upwards as soon as it must be, downwards only when a lesser one would do with a third to spare, so
+that a wind on the border does not flicker.
 
 """
 
@@ -23,6 +23,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway_ros.core.tree.species import Species, species_named
@@ -71,7 +72,7 @@ class AdaptiveSimulator:
         """Judge all models once, and start on the one that the expected wind asks for."""
         self.tree = tree
         self.species = species if species is not None else species_named(tree.species)
-        self.settings = settings or Settings()
+        self.settings = in_season(tree, self.species, settings or Settings())
         self.ladder = FidelityLadder(tree, self.species, self.settings)
         self.tolerance, self.budget = tolerance, budget
         self.pace = 1.0

@@ -117,7 +117,8 @@ def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> 
     """
     if not (pixels > 0.0 and distance > 0.0 and focal_length > 0.0):
         raise ParameterError(
-            f"tolerance of {pixels:g} px at {distance:g} m with a focal length of {focal_length:g} px",
+            f"tolerance of {pixels:g} px at {distance:g} m with a focal length of "
+            f"{focal_length:g} px",
             cure="give three numbers above 0",
         )
     return pixels * distance / focal_length

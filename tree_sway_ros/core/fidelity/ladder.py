@@ -1,5 +1,5 @@
 """
-The ladder of models of one tree: the error of every model in any wind, known before a step is taken.
+The ladder of models of one tree: the error of every model in any wind, known before a step.
 
 The coupled tree is linear to first order, so the error of a lesser model need not be tried: it is
 the difference of the two responses, summed over the frequencies of the wind's load. That
@@ -43,7 +43,8 @@ FLOOR = 0.03
 
 LADDER: tuple[tuple[str, int, float], ...] = (
     ("coupled", 0, 0.0), ("coupled", 0, 0.01),
-    ("modes", 12, 0.0), ("modes", 12, 0.003), ("modes", 12, 0.01), ("modes", 12, 0.03), ("modes", 12, 0.1),
+    ("modes", 12, 0.0), ("modes", 12, 0.003), ("modes", 12, 0.01), ("modes", 12, 0.03),
+    ("modes", 12, 0.1),
     ("modes", 6, 0.0), ("modes", 3, 0.0),
     ("subtree", 0, 0.0), ("subtree", 0, 0.1), ("branch", 0, 0.0), ("frozen", 0, math.inf),
 )  # fmt: skip
@@ -76,8 +77,8 @@ class FidelityLadder:
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Find the response of every model."""
         self.tree, self.species = tree, species
-        self._coefficient = species.drag_law(settings.in_leaf)
         whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
+        self._coefficient = species.drag_law(bool(whole.settings.in_leaf))
         best, best_modes = _best(tree)
         bank = whole.bank(best, best_modes)
         rotations = key_response(bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES)

@@ -31,9 +31,6 @@ _HEIGHTS: dict[Habit, tuple[float, float]] = {
     "broadleaf": (1.0, 50.0),
     "pot": (0.2, 4.0),
 }
-_CONIFERS = ("spruce", "sitka", "pine", "douglas_fir")
-_POT_PLANTS = ("benjamina", "goldcrest")
-_CLEAR_BOLE = {"pine": 0.45, "douglas_fir": 0.2}
 _GRAVITY = 9.81
 
 
@@ -79,7 +76,7 @@ def grow(
 
     """
     wood = species_named(species)
-    kind = habit if habit is not None else habit_of(species)
+    kind = habit if habit is not None else wood.habit
     if kind not in HABITS:
         raise ParameterError(
             f"unknown habit '{kind}'", where="habit", cure=f"use one of: {', '.join(HABITS)}"
@@ -100,7 +97,7 @@ def grow(
             rng,
             height=height,
             diameter=diameter,
-            crown_base=_CLEAR_BOLE.get(species, 0.1),
+            crown_base=wood.clear_bole,
             name=called,
             species=species,
         )
@@ -109,13 +106,6 @@ def grow(
     else:
         generator = grow_goldcrest if species == "goldcrest" else grow_benjamina
     return generator(rng, height=height, diameter=diameter, name=called, species=species)
-
-
-def habit_of(species: str) -> Habit:
-    """Habit of a species that the table knows."""
-    if species in _POT_PLANTS:
-        return "pot"
-    return "conifer" if species in _CONIFERS else "broadleaf"
 
 
 def greenhill_length(modulus: float, density: float, diameter: float) -> float:

@@ -20,6 +20,7 @@ from tree_sway_ros.core.branch.model import branch_models, enriched_branches
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -98,13 +99,14 @@ def calibrate(
 
     """
     within("frequency", frequency, 0.0, 1e3, "Hz", above=True)
-    settings = settings or Settings()
+    settings = in_season(tree, species, settings or Settings())
     model = _ScaledTree(tree, species, settings)
     found = model.swaying_at((2.0 * math.pi * frequency) ** 2)
     if found is None:
         weakest, limit = model.weakest, model.sway(model.least)
         raise TreeError(
-            f"{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz when branch "
+            f"{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz "
+            f"when branch "
             f"'{weakest}' is about to buckle under its own weight",
             where=tree.name,
             cure="check the measured frequency, the density and the diameters",

@@ -69,7 +69,8 @@ class Spectrum:
         low, high = max(low, 0.8 / self.duration), min(high, 0.9 * float(self.frequency[-1]))
         if low >= high:
             raise FormatError(
-                f"{self.duration:.3g} s sampled up to {self.frequency[-1]:.3g} Hz hold nothing in the band",
+                f"{self.duration:.3g} s sampled up to {self.frequency[-1]:.3g} Hz hold nothing "
+                f"in the band",
                 cure="record longer, sample faster, or name another band",
             )
         grid = np.geomspace(low, high, 2 + int(np.log(high / low) / (0.25 * width)))

@@ -18,8 +18,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.leaves.traits import LeafTraits, leaf_traits
 from tree_sway_ros.core.rotation import quaternions_from_x
+from tree_sway_ros.core.tree.leaf_traits import LeafTraits
+from tree_sway_ros.core.tree.species import leaf_traits
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
@@ -94,24 +95,19 @@ def leafy_length(tree: Tree) -> Floats:
     return np.where(is_leafy, tree.length, 0.0)
 
 
-def foliage_of(tree: Tree, *, leaf_on: bool = True, traits: LeafTraits | None = None) -> Foliage:
+def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
     """
-    Find mass and area of the leaves on each branch.
+    Find mass and area of the leaves on each branch, when there are any.
 
     Parameters
     ----------
     tree
         The tree.
-    leaf_on
-        Whether it is the season of leaves; evergreens have theirs always.
     traits
         Its leaves; those of its species if None.
 
     """
     leaf = traits if traits is not None else leaf_traits(tree.species)
-    if not (leaf_on or leaf.is_evergreen):
-        nothing = np.zeros(tree.n_branches)
-        return Foliage(nothing, nothing, nothing)
     points = np.vstack([tree.start, tree.end])
     wide, deep, _ = np.ptp(points, axis=0)
     leafy = leafy_length(tree)

@@ -1,20 +1,33 @@
 """
-What placing knows of a tree, laid out for it: shapes of its branches, segments in lanes.
+The one place where records are filled: what stepping and placing know of a tree, laid out for them.
+
+`branch_records` writes all of a branch, `moving_records` what is left when some are frozen,
+`copy_twigs` which of them copy; `segment_records`, `head_records` and `load_records` lay the same
+out in lanes.
 
 """
 
 from __future__ import annotations
 
+import math
 from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.branch.beam import SlopeShape
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.branch.beam import SlopeShape, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
 from tree_sway_ros.core.branch.shapes import N_SHAPES
-from tree_sway_ros.core.motion.records import LANES, head_layout, segment_layout
+from tree_sway_ros.core.motion.records import (
+    LANES,
+    branch_layout,
+    head_layout,
+    load_layout,
+    segment_layout,
+)
+from tree_sway_ros.core.reduction.matrices import Reduction
+from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.rotation import quaternions_from_x, rotated
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -67,10 +80,12 @@ def head_records(branches: Any, segments: Any) -> Any:
     heads["is_plain"] = 1
     heads["is_plain"][block[branches["n_coordinates"] > 2]] = 0
     heads["branch"][block, lane] = np.arange(len(branches))
-    heads["rides_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
-    for name in ("parent", "coordinate", "seat", "first", "frame", "skew", "tip_skew", "offset"):
+    heads["is_parent_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
+    for name in ("parent", "coordinate", "base_segment", "first"):
+        heads[name][block, lane] = branches[name]
+    for name in ("frame", "skew", "tip_skew", "offset"):
         heads[name][block, ..., lane] = branches[name]
-    for name in ("steepest", "seat_slope"):
+    for name in ("steepest", "base_slope"):
         heads[name][block, lane] = branches[name][:, 0]
     return heads
 
@@ -103,34 +118,233 @@ def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
     return block, lane, first
 
 
-def fill_branch_geometry(tree: Tree, models: list[BranchModel], records: Any) -> None:
-    """Fill the fields of `BRANCH` records that placing reads."""
+def branch_records(
+    tree: Tree,
+    models: list[BranchModel],
+    reduction: Reduction,
+    speed_profile: Floats,
+    layout: np.dtype[np.void] | None = None,
+) -> Any:
+    """
+    All that stepping and placing know of the branches.
+
+    Parameters
+    ----------
+    tree, models, reduction
+        The tree, its branches and their reduction.
+    speed_profile
+        Wind speed at each segment over that at the anemometer, (n,).
+    layout
+        Of the records; `branch_layout` if None.
+
+    Returns
+    -------
+    ndarray
+        Of `BRANCH`, (b,).
+
+    """
+    records = np.zeros(tree.n_branches, dtype=branch_layout() if layout is None else layout)
     rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
     records["block"], records["lane"], _ = lanes(tree, models)
+    records["parent"], records["source"] = tree.branch_parent, np.arange(tree.n_branches)
+    records["first"], records["end"] = tree.branch_first[:-1], tree.branch_first[1:]
+    records["base_segment"] = tree.segment_parent[tree.branch_first[:-1]]
+    records["coordinate"] = reduction.first[:-1]
+    records["twist"] = reduction.twist[:, : records["twist"].shape[1]]
     for branch, model in enumerate(models):
-        record, here = records[branch], tree.segments_of(branch)
-        record["parent"] = tree.branch_parent[branch]
-        record["seat"] = tree.segment_parent[here.start]
-        record["first"], record["end"] = here.start, here.stop
-        record["n_coordinates"] = len(model.coordinates)
-        record["n_pairs"] = sum(not way.is_twist for way in model.coordinates) // 2
-        record["source"] = branch
-        for i, way in enumerate(model.coordinates):
-            record["reach"][i] = way.shape.displacement(way.axis)[1][-1]
-        record["tip"] = tree.end[here.stop - 1] - tree.start[0]
-        record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
+        here = tree.segments_of(branch)
+        _fill_shapes(model, records[branch])
         for column, shape in _distinct_shapes(model):
-            records["seat_slope"][model.children, column] = shape.child_slope
-            record["steepest"][column] = np.square(shape.segment_slope).max()
-        tip_load = _tip_load_slope(model)
-        record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
-        length = model.beam.length
-        record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
-        record["tip_skew"] = _skew(tip_load, length)
-        if record["seat"] >= 0:
-            w, x, y, z = rest[record["seat"]]
-            offset = tree.start[here.start] - tree.start[record["seat"]]
-            record["offset"] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
+            records["base_slope"][model.children, column] = shape.child_slope
+        records["tip"][branch] = tree.end[here.stop - 1] - tree.start[0]
+        base = int(tree.segment_parent[here.start])
+        if base >= 0:
+            w, x, y, z = rest[base]
+            offset = tree.start[here.start] - tree.start[base]
+            records["offset"][branch] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
+        _fill_load(model, speed_profile[here], records[branch])
+    _fill_axial_levers(records)
+    return records
+
+
+def _fill_shapes(model: BranchModel, record: Any) -> None:
+    """Fill what bends."""
+    record["n_coordinates"] = len(model.coordinates)
+    record["n_pairs"] = sum(not one.is_twist for one in model.coordinates) // 2
+    for i, one in enumerate(model.coordinates):
+        record["reach"][i] = one.shape.displacement(one.axis)[1][-1]
+    record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
+    for column, shape in _distinct_shapes(model):
+        record["steepest"][column] = np.square(shape.segment_slope).max()
+    tip_load = _tip_load_slope(model)
+    record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
+    length = model.beam.length
+    record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
+    record["tip_skew"] = _skew(tip_load, length)
+
+
+def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
+    """Fill what the wind load reads; wind speed at its segments over that at the anemometer."""
+    beam = model.beam
+    weight = model.drag_area * beam.weight
+    total = weight.sum()
+    share = weight / total
+    record["centre"] = np.einsum("sg,sgk->k", share, beam.point)
+    speed = float((share * speed_profile[:, None]).sum())
+    record["speed"] = speed
+    record["area"] = total / speed**2 if speed > 0.0 else 0.0
+    along = np.einsum("sg,si,sj->ij", share, beam.tangent, beam.tangent)
+    across = np.eye(3) - along
+    record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    square = 0.0
+    for i, one in enumerate(model.coordinates):
+        field = one.shape.displacement(one.axis)[0]
+        record["push"][i] = np.einsum("sg,sgk->k", share, field)
+        record["turn"][i] = float((share * one.shape.slope).sum()) * one.axis
+        square += float((share[..., None] * field**2).sum()) if i < 2 else 0.0
+    _fill_flow(record, square)
+
+
+def _fill_flow(record: Any, square: float) -> None:
+    """
+    Scale the displacement at which drag damps, so that push times flow is the mean square of the
+    displacement: both axes of the first shape as one, so that it does not matter how they are laid.
+
+    """
+    push = float(np.square(record["push"][:2]).sum())
+    record["flow"] = record["push"]
+    record["flow"][:2] *= square / push if push > 0.0 else 1.0
+    record["lever"] = math.sqrt(0.5 * push)
+
+
+def _fill_axial_levers(records: Any) -> None:
+    """
+    Find how far up the parent's chord each subtree's centre of load swings: its displacement across
+    per unit of rotation.
+
+    """
+    area = records["area"].copy()
+    moment = records["centre"] * area[:, None]
+    for b in range(len(records) - 1, 0, -1):
+        parent = records["parent"][b]
+        twist, across = records[b]["twist"][:2], records[parent]["frame"][1:]
+        centre = moment[b] / area[b] if area[b] > 0.0 else records[b]["centre"]
+        moved = twist[:, :3] + twist[:, 3:] @ cross_matrix(centre)
+        records[b]["axial_lever"] = 0.5 * float((moved * across).sum())
+        area[parent] += area[b]
+        moment[parent] += moment[b]
+
+
+def copy_twigs(records: Any, source: Ints) -> None:
+    """
+    Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
+
+    Parameters
+    ----------
+    records
+        Of `BRANCH`, (b,), written.
+    source
+        Branch that each copies, itself if it is solved, (b,).
+
+    """
+    records["source"] = source
+    records["frame"] = records["frame"][source]
+
+
+def moving_records(pruning: Pruning, whole: Any) -> Any:
+    """
+    Keep the records of the moving branches, with the load of what they now carry as part of
+    themselves.
+
+    Parameters
+    ----------
+    pruning
+        What is frozen.
+    whole
+        Records of `BRANCH` of the whole tree, (b,).
+
+    Returns
+    -------
+    ndarray
+        Of `BRANCH`, (m,), for the tree of the moving branches but for their place in blocks, which
+        `segment_records` shares.
+
+    """
+    moving, place = pruning.moving, pruning.place_among_moving
+    records = whole[moving].copy()
+    carrier, top = pruning.carriers(), pruning.top_of()
+    for at in np.unique(carrier[pruning.frozen]):
+        load = np.flatnonzero(pruning.frozen & (carrier == at))
+        _join_loads(records[place[at]], whole[at], whole[load], whole["twist"][top[load]])
+    records["parent"] = place[records["parent"]]
+    records["source"] = np.arange(len(records))
+    counts = records["n_coordinates"]
+    records["coordinate"] = np.cumsum(counts) - counts
+    return records
+
+
+def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
+    """
+    Make loads that a branch carries part of its own.
+
+    Drag on a slanted piece is not linear in its projector P, but it is the slope of ``c (u . P
+    u)^1.5 / 3`` in the wind u. The projector of all is the one that comes nearest to the sum of
+    these.
+
+    Parameters
+    ----------
+    record
+        Of the branch, written.
+    own
+        The same before.
+    loads, twists
+        Records of what it carries, (k,), and how a unit of its coordinates moves each, (k, c, 6).
+
+    """
+    area = np.append(own["area"], loads["area"])
+    speed = np.append(own["speed"], loads["speed"])
+    pressed = area * speed**2
+    if not pressed.any():
+        return
+    projectors = np.vstack([own["projector"], loads["projector"]])
+    drag = np.maximum(_WINDS @ projectors.T, 0.0) ** 1.5 * pressed
+    share = drag.sum(axis=0) / drag.sum()
+    both = (drag.sum(axis=1) / pressed.sum()) ** (2.0 / 3.0)
+    record["projector"] = _NEAREST @ both
+    record["speed"] = share @ speed
+    record["area"] = pressed.sum() / record["speed"] ** 2
+    centre = loads["centre"]
+    moved = twists[:, :, :3] + np.cross(twists[:, :, 3:], centre[:, None])
+    record["centre"] = share[0] * own["centre"] + share[1:] @ centre
+    record["push"] = share[0] * own["push"] + np.tensordot(share[1:], moved, axes=1)
+    record["turn"] = share[0] * own["turn"] + np.tensordot(share[1:], twists[:, :, 3:], axes=1)
+    square = share[0] * (own["push"][:2] * own["flow"][:2]).sum()
+    square += share[1:] @ np.square(moved[:, :2]).sum(axis=(1, 2))
+    _fill_flow(record, float(square))
+
+
+def _squares(directions: Floats) -> Floats:
+    """
+    Weights of xx, yy, zz, xy, xz, yz of a projector P in ``u . P u``, for winds u (d, 3), (d, 6).
+
+    """
+    x, y, z = directions.T
+    return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
+
+
+_WINDS = _squares(
+    np.array(
+        [
+            (np.cos(rise) * np.cos(bearing), np.cos(rise) * np.sin(bearing), np.sin(rise))
+            for rise in np.deg2rad([-20.0, 0.0, 20.0])
+            for bearing in np.arange(16) * np.pi / 8.0
+        ]
+    )
+)
+"""Winds from all sides, along the ground and, as branches bend, aslant."""
+
+_NEAREST = np.linalg.pinv(_WINDS)
+"""From squares in those winds to the projector that fits them best, (6, d)."""
 
 
 def _distinct_shapes(model: BranchModel) -> list[tuple[int, SlopeShape]]:
@@ -138,8 +352,8 @@ def _distinct_shapes(model: BranchModel) -> list[tuple[int, SlopeShape]]:
     Shapes of a branch with the column of each: pairs share theirs, twists come after all shapes.
 
     """
-    pairs = [way.shape for way in model.coordinates if not way.is_twist][::2]
-    twists = [way.shape for way in model.coordinates if way.is_twist]
+    pairs = [one.shape for one in model.coordinates if not one.is_twist][::2]
+    twists = [one.shape for one in model.coordinates if one.is_twist]
     return [*enumerate(pairs), *enumerate(twists, start=N_SHAPES)]
 
 
@@ -163,3 +377,36 @@ def _tip_load_slope(model: BranchModel) -> Floats:
     mean = float(first.segment_slope @ model.beam.length) / float(model.beam.node[-1])
     slope: Floats = mean * np.diff(primitive) / np.diff(u)
     return slope
+
+
+def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
+    """
+    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time.
+
+    Parameters
+    ----------
+    branches
+        The records.
+    layout
+        Of `load_fields`, or with further fields, which are left zeros; with as many rows as the
+        branches have if None.
+
+    Returns
+    -------
+    ndarray
+        Of the layout, (ceil(b / 16),), at rest and with no force so far.
+
+    """
+    if layout is None:
+        layout = load_layout(branches.dtype["push"].shape[0])
+    records = np.zeros(-(-len(branches) // LANES), dtype=layout)
+    block, lane = np.divmod(np.arange(len(branches)), LANES)
+    for name in ("speed", "area", "projector", "centre"):
+        records[name][block, ..., lane] = branches[name]
+    for name in ("flow", "turn", "push"):
+        rows = records.dtype[name].shape[0]
+        records[name][block, ..., lane] = branches[name][:, :rows]
+    records["along"][block, :, lane] = branches["lever"][:, None] * branches["frame"][:, 0]
+    records["is_solved"][block, lane] = branches["source"] == np.arange(len(branches))
+    np.maximum.at(records["n_rows"], block, branches["n_coordinates"])
+    return records

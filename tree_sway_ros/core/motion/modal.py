@@ -1,10 +1,10 @@
 """
 Models 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
 
-Model 3, `modes`, steps the m slowest modes and takes what is left of the motion as static, ``x = D Q
-+ Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what the modes
-already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and 2 the load is
-found once a step, at the state half a step on.
+Model 3, `modes`, steps the m slowest modes and takes what is left of the motion as static,
+``x = D Q + Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what
+the modes already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and 2
+the load is found once per step, at the state half a step on.
 
 Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -21,15 +21,9 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.beam import cross_matrix
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.records import WORK
-from tree_sway_ros.core.motion.tree_passes import (
-    air_records,
-    blow,
-    gather,
-    generalised,
-    refit,
-    ride,
-)
+from tree_sway_ros.core.motion.fill_records import load_records
+from tree_sway_ros.core.motion.records import LANES, WORK
+from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
 from tree_sway_ros.core.oscillators.step_rules import DEFAULT, fill_steps
 from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, true_force
@@ -44,7 +38,7 @@ class ModalBank:
     Parameters
     ----------
     branches
-        Records of `BRANCH`, (b,); their compliance is set with the time step.
+        Records of `BRANCH`, (b,).
     reduction
         Matrices of the tree.
     modes
@@ -81,7 +75,7 @@ class ModalBank:
         self._limit = LOAD_MAX * diagonal
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
-        self._air = air_records(branches)
+        self._loads = load_records(branches)
         self.modal = np.zeros((6, m))
         self.state = np.zeros((4, n))
         self._pull = np.zeros(len(branches))
@@ -92,8 +86,9 @@ class ModalBank:
         one = np.ones(len(self.stiffness))
         fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self._whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
-        self.branches["compliance"] = self._participation @ (self._half[:, 6] + self._half[:, 7])
-        refit(self._air, self.branches)
+        block, lane = np.divmod(np.arange(len(self.branches)), LANES)
+        velocity = self._half[:, 6] + self._half[:, 7]
+        self._loads["compliance"][block, lane] = self._participation @ velocity
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -104,7 +99,7 @@ class ModalBank:
         wx, wy, wz
             Mean wind over the step in [m/s].
         per_speed_squared
-            `wind_load.pressure` in [kg/m^3].
+            `drag.pressure` in [kg/m^3].
 
         Returns
         -------
@@ -114,7 +109,8 @@ class ModalBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self._air, self.modal, self.state, self._shapes, self._held,
+                self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
+                self._held,
                 self._flexibility, self._limit, self._whole, self._half, self._pull,
                 wx, wy, wz, per_speed_squared,
             )
@@ -144,7 +140,7 @@ class ModalBank:
         self.modal[:] = 0.0
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._air["slip"] = 0.0
+        self._loads["slip"] = 0.0
 
 
 def _participation(branches: Any, shapes: Floats) -> Floats:
@@ -157,8 +153,8 @@ def _participation(branches: Any, shapes: Floats) -> Floats:
         if b > 0:
             parent = branches[branch["parent"]]
             k = parent["n_coordinates"]
-            ways = shapes[parent["coordinate"] : parent["coordinate"] + k]
-            motion[b] = motion[branch["parent"]] + branch["twist"][:k].T @ ways
+            moved = shapes[parent["coordinate"] : parent["coordinate"] + k]
+            motion[b] = motion[branch["parent"]] + branch["twist"][:k].T @ moved
         at = motion[b, :3] - cross_matrix(branch["centre"]) @ motion[b, 3:]
         at += branch["flow"][: branch["n_coordinates"]].T @ shapes[own]
         out[b] = np.square(at).sum(axis=0) / 2.0
@@ -201,17 +197,20 @@ def _to_middle(
 
 @fused
 def _advance(
-    branches: Any, work: Any, air: Any, modal: Floats, state: Floats, shapes: Floats, held: Floats,
-    flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
+    branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats,
+    held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     _to_middle(modal, state, shapes, half, flexibility)
     eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
     moment, x, v = state[0], state[1], state[2]
-    ride(branches, work, x, v)
-    blow(branches, work, air, x, v, wx, wy, wz, per_speed_squared)
-    gather(branches, work)
-    generalised(branches, work, True, moment, pull)
+    outward_pass(branches, work, x, v)
+    for b in range(len(branches)):
+        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        for c in range(branches[b].n_coordinates):
+            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
+    wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
+    generalised_loads(branches, work, loads, True, moment, pull)
     over = 0
     for b in range(len(branches)):
         i = branches[b].coordinate

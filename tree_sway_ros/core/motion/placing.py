@@ -61,23 +61,23 @@ def place(
         Pose block to write, (n, 7).
 
     """
-    room = heads[len(heads) - 1]
-    at, pose = room.at, room.pose
+    scratch = heads[len(heads) - 1]
+    at, pose = scratch.at, scratch.pose
     for block in range(len(heads) - 1):
         head = heads[block]
-        _meet_parents(branches, head, room, work, x, origin, out)
-        _turn_bases(head, room)
-        is_far = _leave_bases(head, room, work)
+        _read_parents(branches, head, scratch, work, x, origin, out)
+        _turn_bases(head, scratch)
+        is_far = _write_bases(head, scratch, work)
         if not head.is_plain:
-            is_far = _set_further_ways(branches, head, room, x) or is_far
+            is_far = _set_further_turns(branches, head, scratch, x) or is_far
         for rank in range(head.n_records):
             segment = segments[head.block + rank]
             if is_far:
-                _bend_far(segment, room)
+                _bend_far(segment, scratch)
             elif head.is_plain:
-                _bend_in_plane(segment, room)
+                _bend_in_plane(segment, scratch)
             else:
-                _bend(segment, room)
+                _bend(segment, scratch)
             for j in range(segment.n_lanes):
                 row = head.first[j] + rank
                 out[row, 0], out[row, 1], out[row, 2] = at[0, j], at[1, j], at[2, j]
@@ -86,7 +86,7 @@ def place(
 
 
 @fused
-def seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float, float]:
+def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
     Rotation of a place on a branch.
 
@@ -105,13 +105,13 @@ def seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, floa
         Quaternion w x y z, from rest.
 
     """
-    hx, hy, hz = _half_seat_turn(parent, slope, x)
+    hx, hy, hz = _half_turn_at(parent, slope, x)
     return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
 
 
 @inlined
-def _half_seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float]:
-    """Half the rotation vector of a place on a branch, as `seat_turn`."""
+def _half_turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float]:
+    """Half the rotation vector of a place on a branch, as `turn_at`."""
     i, pairs, frame = parent.coordinate, parent.n_pairs, parent.frame
     first = slope[0] * (1.0 + min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew)
     ux, uy, spin = first * x[i], first * x[i + 1], 0.0
@@ -129,55 +129,57 @@ def _half_seat_turn(parent: Any, slope: Floats, x: Floats) -> tuple[float, float
 
 
 @fused
-def _meet_parents(
-    branches: Any, head: Any, room: Any, work: Any, x: Floats, origin: Floats, out: Floats
+def _read_parents(
+    branches: Any, head: Any, scratch: Any, work: Any, x: Floats, origin: Floats, out: Floats
 ) -> None:
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
+    turned, base, carrier = scratch.carrier_turn, scratch.parent_base, scratch.carrier
     for j in range(head.n_lanes):
         i = head.coordinate[j]
-        room.key[0, j], room.key[1, j] = x[i], x[i + 1]
+        scratch.key[0, j], scratch.key[1, j] = x[i], x[i + 1]
         if head.parent[j] < 0:
             hx, hy, hz = 0.0, 0.0, 0.0
             bw, bx, by, bz = 1.0, 0.0, 0.0, 0.0
             px, py, pz = origin[0], origin[1], origin[2]
             sx, sy, sz, sw = 0.0, 0.0, 0.0, 1.0
         else:
-            below, seat = work[head.parent[j]], head.seat[j]
-            if head.rides_plain[j]:
-                slope = head.seat_slope[j]
+            below, on = work[head.parent[j]], head.base_segment[j]
+            if head.is_parent_plain[j]:
+                slope = head.base_slope[j]
                 hx, hy, hz = slope * below.turn[0], slope * below.turn[1], slope * below.turn[2]
             else:
-                slopes = branches[head.branch[j]].seat_slope
-                hx, hy, hz = _half_seat_turn(branches[head.parent[j]], slopes, x)
+                slopes = branches[head.branch[j]].base_slope
+                hx, hy, hz = _half_turn_at(branches[head.parent[j]], slopes, x)
             bw, bx, by, bz = below.base[0], below.base[1], below.base[2], below.base[3]
             if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:
                 qw, qx, qy, qz = quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
                 bw, bx, by, bz = product(bw, bx, by, bz, qw, qx, qy, qz)
                 hx, hy, hz = 0.0, 0.0, 0.0
-            px, py, pz = out[seat, 0], out[seat, 1], out[seat, 2]
-            sx, sy, sz, sw = out[seat, 3], out[seat, 4], out[seat, 5], out[seat, 6]
-        room.seat_turn[0, j], room.seat_turn[1, j], room.seat_turn[2, j] = hx, hy, hz
-        room.below[0, j], room.below[1, j], room.below[2, j], room.below[3, j] = bw, bx, by, bz
-        room.under[0, j], room.under[1, j], room.under[2, j] = px, py, pz
-        room.under[3, j], room.under[4, j], room.under[5, j], room.under[6, j] = sx, sy, sz, sw
+            px, py, pz = out[on, 0], out[on, 1], out[on, 2]
+            sx, sy, sz, sw = out[on, 3], out[on, 4], out[on, 5], out[on, 6]
+        turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
+        base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
+        carrier[0, j], carrier[1, j], carrier[2, j] = px, py, pz
+        carrier[3, j], carrier[4, j], carrier[5, j], carrier[6, j] = sx, sy, sz, sw
 
 
 @fused
-def _turn_bases(head: Any, room: Any) -> None:
+def _turn_bases(head: Any, scratch: Any) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
 
     """
-    key, below, under, seat = room.key, room.below, room.under, room.seat_turn
+    key, below = scratch.key, scratch.parent_base
+    carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
-    turn, base, way, swing, at, ahead = (
-        room.turn,
-        room.base,
-        room.way,
-        room.swing,
-        room.at,
-        room.ahead,
+    turn, base, half_turn, swing, at, ahead = (
+        scratch.turn,
+        scratch.base,
+        scratch.half_turn,
+        scratch.swing,
+        scratch.at,
+        scratch.ahead,
     )
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
@@ -191,10 +193,11 @@ def _turn_bases(head: Any, room: Any) -> None:
         uz = x * frame[2, 2, j] - y * frame[1, 2, j]
         turn[0, j], turn[1, j], turn[2, j] = own * ux, own * uy, own * uz
         wx, wy, wz = half * ux, half * uy, half * uz
-        way[0, 0, j], way[0, 1, j], way[0, 2, j] = wx, wy, wz
+        half_turn[0, 0, j], half_turn[0, 1, j], half_turn[0, 2, j] = wx, wy, wz
         square = half * half * t
-        room.blend[j], room.square[j], room.half_angle[j] = blend, square, square * head.steepest[j]
-        hx, hy, hz = seat[0, j], seat[1, j], seat[2, j]
+        scratch.blend[j], scratch.square[j] = blend, square
+        scratch.half_angle[j] = square * head.steepest[j]
+        hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
         c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = product(
             below[0, j], below[1, j], below[2, j], below[3, j], c, s * hx, s * hy, s * hz
@@ -204,15 +207,15 @@ def _turn_bases(head: Any, room: Any) -> None:
             bw, bx, by, bz, 0.0, wx, wy, wz
         )
         ox, oy, oz = rotated(
-            under[6, j], under[3, j], under[4, j], under[5, j],
+            carrier[6, j], carrier[3, j], carrier[4, j], carrier[5, j],
             offset[0, j], offset[1, j], offset[2, j],
         )  # fmt: skip
-        at[0, j], at[1, j], at[2, j] = under[0, j] + ox, under[1, j] + oy, under[2, j] + oz
+        at[0, j], at[1, j], at[2, j] = carrier[0, j] + ox, carrier[1, j] + oy, carrier[2, j] + oz
         ahead[0, j], ahead[1, j], ahead[2, j] = 0.0, 0.0, 0.0
 
 
 @fused
-def _leave_bases(head: Any, room: Any, work: Any) -> bool:
+def _write_bases(head: Any, scratch: Any, work: Any) -> bool:
     """
     Leave for the children how their parents are turned; return whether any of these bends beyond
     the series.
@@ -222,22 +225,22 @@ def _leave_bases(head: Any, room: Any, work: Any) -> bool:
     for j in range(head.n_lanes):
         here = work[head.branch[j]]
         for k in range(4):
-            here.base[k] = room.base[k, j]
+            here.base[k] = scratch.base[k, j]
         for k in range(3):
-            here.turn[k] = room.turn[k, j]
-        is_far |= not room.half_angle[j] <= SERIES_LIMIT
+            here.turn[k] = scratch.turn[k, j]
+        is_far |= not scratch.half_angle[j] <= SERIES_LIMIT
     return is_far
 
 
 @fused
-def _set_further_ways(branches: Any, head: Any, room: Any, x: Floats) -> bool:
+def _set_further_turns(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
     """
     Set how further shapes and twists bend; return whether any branch with them bends beyond the
     series.
 
     """
-    is_far, way = False, room.way
-    way[1:] = 0.0
+    is_far, half_turn = False, scratch.half_turn
+    half_turn[1:] = 0.0
     for j in range(head.n_lanes):
         branch = branches[head.branch[j]]
         if branch.n_coordinates == 2:
@@ -247,35 +250,36 @@ def _set_further_ways(branches: Any, head: Any, room: Any, x: Floats) -> bool:
         for p in range(1, pairs):
             ux, uy = 0.5 * x[i + 2 * p], 0.5 * x[i + 2 * p + 1]
             for k in range(3):
-                way[p, k, j] = ux * frame[2, k] - uy * frame[1, k]
+                half_turn[p, k, j] = ux * frame[2, k] - uy * frame[1, k]
             further += (ux * ux + uy * uy) * branch.steepest[p]
         for p in range(branch.n_coordinates - 2 * pairs):
             spin = 0.5 * x[i + 2 * pairs + p]
             for k in range(3):
-                way[N_SHAPES + p, k, j] = spin * frame[0, k]
+                half_turn[N_SHAPES + p, k, j] = spin * frame[0, k]
             further += spin * spin * branch.steepest[N_SHAPES + p]
         # The square of a sum is at most twice the square of its first and twice that of the others.
-        is_far |= not 2.0 * (room.half_angle[j] + 5.0 * further) <= SERIES_LIMIT
+        is_far |= not 2.0 * (scratch.half_angle[j] + 5.0 * further) <= SERIES_LIMIT
     return is_far
 
 
 @inlined
-def _half_vector(segment: Any, room: Any, j: int) -> tuple[float, float, float]:
+def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, of all its shapes and twists."""
-    slope, way = segment.slope, room.way
-    first = slope[0, j] + room.blend[j] * (segment.tip_slope[j] - slope[0, j])
-    hx, hy, hz = first * way[0, 0, j], first * way[0, 1, j], first * way[0, 2, j]
+    slope, half_turn = segment.slope, scratch.half_turn
+    first = slope[0, j] + scratch.blend[j] * (segment.tip_slope[j] - slope[0, j])
+    hx, hy, hz = first * half_turn[0, 0, j], first * half_turn[0, 1, j], first * half_turn[0, 2, j]
     for c in range(1, slope.shape[0]):
-        hx += slope[c, j] * way[c, 0, j]
-        hy += slope[c, j] * way[c, 1, j]
-        hz += slope[c, j] * way[c, 2, j]
+        hx += slope[c, j] * half_turn[c, 0, j]
+        hy += slope[c, j] * half_turn[c, 1, j]
+        hz += slope[c, j] * half_turn[c, 2, j]
     return hx, hy, hz
 
 
 @inlined
-def _turn(segment: Any, room: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
+def _turn(segment: Any, scratch: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
     """Turn the segment of the lane j from rest, at the end of the one before."""
-    rest, chord, pose, at, ahead = segment.rest, segment.chord, room.pose, room.at, room.ahead
+    rest, chord = segment.rest, segment.chord
+    pose, at, ahead = scratch.pose, scratch.at, scratch.ahead
     at[0, j], at[1, j], at[2, j] = (
         at[0, j] + ahead[0, j],
         at[1, j] + ahead[1, j],
@@ -290,39 +294,39 @@ def _turn(segment: Any, room: Any, j: int, qw: float, qx: float, qy: float, qz: 
 
 
 @fused
-def _bend_in_plane(segment: Any, room: Any) -> None:
+def _bend_in_plane(segment: Any, scratch: Any) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
-    slope, base, swing = segment.slope, room.base, room.swing
+    slope, base, swing = segment.slope, scratch.base, scratch.swing
     for j in range(LANES):
-        first = slope[0, j] + room.blend[j] * (segment.tip_slope[j] - slope[0, j])
-        c, s = half_angle_series(first * first * room.square[j])
+        first = slope[0, j] + scratch.blend[j] * (segment.tip_slope[j] - slope[0, j])
+        c, s = half_angle_series(first * first * scratch.square[j])
         s *= first
         _turn(
-            segment, room, j,
+            segment, scratch, j,
             c * base[0, j] + s * swing[0, j], c * base[1, j] + s * swing[1, j],
             c * base[2, j] + s * swing[2, j], c * base[3, j] + s * swing[3, j],
         )  # fmt: skip
 
 
 @fused
-def _bend(segment: Any, room: Any) -> None:
+def _bend(segment: Any, scratch: Any) -> None:
     """Turn sixteen segments of branches with further shapes or twists."""
-    base = room.base
+    base = scratch.base
     for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, room, j)
+        hx, hy, hz = _half_vector(segment, scratch, j)
         c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
-        _turn(segment, room, j, qw, qx, qy, qz)
+        _turn(segment, scratch, j, qw, qx, qy, qz)
 
 
 @fused
-def _bend_far(segment: Any, room: Any) -> None:
+def _bend_far(segment: Any, scratch: Any) -> None:
     """Turn sixteen segments, some of a branch that bends beyond the series."""
-    base = room.base
+    base = scratch.base
     for j in range(segment.n_lanes):
-        hx, hy, hz = _half_vector(segment, room, j)
+        hx, hy, hz = _half_vector(segment, scratch, j)
         c, s = half_angle(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
-        _turn(segment, room, j, qw, qx, qy, qz)
+        _turn(segment, scratch, j, qw, qx, qy, qz)

@@ -1,15 +1,15 @@
 """
-Memory of the hot path: one record a branch, one record of work a branch, one record of sixteen
-segments.
+Memory of the hot path: one record and one record of work per branch, one per sixteen segments.
 
 A step visits every branch once and needs all that is known of it, so what belongs to a branch lies
 together; a kernel takes a record array as one argument, where each plain array costs a call about
-.2 us.
+0.2 us. `fill_records` is the one that writes what stays.
 
 Segments follow their branch and not each other, so those at the same place in sixteen branches are
-computed at once: a record holds sixteen lanes, one a branch, and distances within it are constants
-that let the compiler use vectors. The records of sixteen branches, from base to tip, make a block;
-parents are in earlier blocks than their children.
+computed at once: a record holds sixteen lanes, one per branch, and distances within it are
+constants that let the compiler use vectors. The records of sixteen branches, from base to tip, make
+a block; parents are in earlier blocks than their children. The wind load is found for sixteen
+branches at once too, in the order of the branches.
 
 Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations
 in [rad].
@@ -19,6 +19,7 @@ in [rad].
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ def branch_layout(
     return np.dtype(
         [
             ("parent", "i8"),  # branch it sits on, -1 for the stem
-            ("seat", "i8"),  # segment it sits on, -1 for the stem
+            ("base_segment", "i8"),  # segment it sits on, -1 for the stem
             ("first", "i8"),  # its first segment
             ("end", "i8"),  # one past its last segment
             ("coordinate", "i8"),  # its first coordinate
@@ -68,7 +69,6 @@ def branch_layout(
             ("axial_lever", "f8"),  # of what it carries on its parent's rotation [m]
             ("area", "f8"),  # drag area [m^2]
             ("speed", "f8"),  # wind here over wind at the anemometer
-            ("compliance", "f8"),  # velocity half a step after a unit of force [s/kg]
             ("centre", "f8", (3,)),  # centre of the wind load
             ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
             ("block", "i8"),  # record of its first segment
@@ -76,8 +76,8 @@ def branch_layout(
             ("steepest", "f8", (n_slopes,)),  # square of the largest slope of each shape and twist
             ("skew", "f8"),  # third cumulant of its slope shape, over 6
             ("tip_skew", "f8"),  # the same of the tip-load shape
-            ("seat_slope", "f8", (n_slopes,)),  # of the parent's shapes and twists at its base
-            ("offset", "f8", (3,)),  # base, from its seat's start, in the seat's frame
+            ("base_slope", "f8", (n_slopes,)),  # of the parent's shapes and twists at its base
+            ("offset", "f8", (3,)),  # base, from its base segment's start, in that one's frame
         ]
     )
 
@@ -119,33 +119,33 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
             # As in `BRANCH`:
             ("branch", "i8", (LANES,)),
             ("parent", "i8", (LANES,)),
-            ("rides_plain", "i8", (LANES,)),  # whether its parent has one shape
+            ("is_parent_plain", "i8", (LANES,)),  # whether its parent has one shape
             ("coordinate", "i8", (LANES,)),
-            ("seat", "i8", (LANES,)),
+            ("base_segment", "i8", (LANES,)),
             ("first", "i8", (LANES,)),
             ("frame", "f8", (3, 3, LANES)),
             ("skew", "f8", (LANES,)),
             ("tip_skew", "f8", (LANES,)),
             ("steepest", "f8", (LANES,)),
-            ("seat_slope", "f8", (LANES,)),
+            ("base_slope", "f8", (LANES,)),
             ("offset", "f8", (3, LANES)),
-            # Room to work in:
+            # Scratch:
             ("key", "f8", (2, LANES)),  # key rotation
-            ("below", "f8", (4, LANES)),  # orientation of the parent's base, from rest, w x y z
-            ("under", "f8", (7, LANES)),  # pose of the seat
+            ("parent_base", "f8", (4, LANES)),  # orientation, from rest, w x y z
+            ("carrier", "f8", (7, LANES)),  # pose of the base segment
             (
-                "seat_turn",
+                "carrier_turn",
                 "f8",
                 (3, LANES),
-            ),  # half the rotation vector of the seat, from the parent's base
+            ),  # half the rotation vector at the base, from the parent's base
             (
                 "turn",
                 "f8",
                 (3, LANES),
-            ),  # half the rotation vector a unit of slope, as children see it
+            ),  # half the rotation vector per unit of slope, as children see it
             ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
-            ("way", "f8", (n_slopes, 3, LANES)),  # half the rotation vector a unit of each slope
+            ("half_turn", "f8", (n_slopes, 3, LANES)),  # half the rotation vector per unit of slope
             ("square", "f8", (LANES,)),  # of the length of the first of these
             (
                 "swing",
@@ -172,56 +172,65 @@ WORK = np.dtype(
         ("velocity", "f8", (6,)),  # of the base (v, w), about the root, in rest geometry
         ("rotation", "f8", (3,)),  # of the base, from rest
         ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
-        ("met", "f8", (3,)),  # the same, where the base has turned the branch to [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
-        (
-            "turn",
-            "f8",
-            (3,),
-        ),  # half the rotation vector a unit of slope, for who sits on a branch of one shape
+        # Half the rotation vector per unit of slope, for who sits on a branch of one shape:
+        ("turn", "f8", (3,)),
     ]
 )
 """What a step computes on the way, kept from one step to the next."""
 
-AIR = np.dtype(
-    [
-        ("speed", "f8", (LANES,)),  # as in `BRANCH`, as are the next three
-        ("compliance", "f8", (LANES,)),
+
+def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
+    """
+    What the wind load knows of sixteen branches that follow each other, and finds.
+
+    Rows are coordinates, those that a branch does not have zeros.
+
+    """
+    return [
+        ("n_rows", "i8"),  # the most coordinates that one of them has
+        ("is_solved", "i8", (LANES,)),  # whether it copies no other
+        # As in `BRANCH`:
+        ("speed", "f8", (LANES,)),
         ("area", "f8", (LANES,)),
         ("projector", "f8", (6, LANES)),
-        ("motion", "f8", (3, LANES)),  # of what the wind sees [m/s]
-        ("base", "f8", (3, LANES)),  # rotation of the base
-        ("turn", "f8", (3, LANES)),  # rotation of what the wind sees
-        (
-            "slip",
-            "f8",
-            (3, LANES),
-        ),  # what the last force took off the relative wind, over the compliance [N]
-        ("force", "f8", (3, LANES)),
-        ("met", "f8", (3, LANES)),
-    ]
-)
-"""What the wind meets on each of sixteen branches that follow each other, and its force."""
-
-SWAY = np.dtype(
-    [
-        *((name, *AIR.fields[name][0].subdtype) for name in AIR.names or ()),  # type: ignore[index, misc]
-        ("centre", "f8", (3, LANES)),  # as in `BRANCH`, as are the next three, of the first shape
-        ("flow", "f8", (2, 3, LANES)),
-        ("lean", "f8", (2, 3, LANES)),  # its turn
-        ("push", "f8", (2, 3, LANES)),
+        ("centre", "f8", (3, LANES)),
+        ("flow", "f8", (n_coordinates, 3, LANES)),
+        ("turn", "f8", (n_coordinates, 3, LANES)),
+        ("push", "f8", (n_coordinates, 3, LANES)),
         ("along", "f8", (3, LANES)),  # its chord times its lever
+        # Set with the time step:
+        ("compliance", "f8", (LANES,)),  # velocity half a step after a unit of force [s/kg]
+        # State half a step on, and what follows from it:
+        ("x", "f8", (n_coordinates, LANES)),
+        ("v", "f8", (n_coordinates, LANES)),
         ("velocity", "f8", (6, LANES)),  # of the base
-        ("x", "f8", (2, LANES)),
-        ("v", "f8", (2, LANES)),
-        ("load", "f8", (3, LANES)),  # along b, e1, e2 [N m]
-        ("middle_x", "f8", (2, LANES)),  # half a step on
-        ("middle_v", "f8", (2, LANES)),
+        ("base", "f8", (3, LANES)),  # rotation of the base
+        ("motion", "f8", (3, LANES)),  # of what the wind sees [m/s]
+        ("turned", "f8", (3, LANES)),  # rotation of what the wind sees
+        # What the last force took off the relative wind, over the compliance [N]:
+        ("slip", "f8", (3, LANES)),
+        ("force", "f8", (3, LANES)),
+        ("turned_force", "f8", (3, LANES)),  # the same in the frame of the turned base
+        ("load", "f8", (1 + n_coordinates, LANES)),  # along b, then on each coordinate [N m]
+    ]
+
+
+@cache
+def load_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+    """Records of `load_fields`."""
+    return np.dtype(load_fields(n_coordinates))
+
+
+OSCILLATORS = np.dtype(
+    [
+        *load_fields(2),
+        ("now_x", "f8", (2, LANES)),
+        ("now_v", "f8", (2, LANES)),
         ("whole", "f8", (8, LANES)),  # rows of the propagator of a step
         ("half", "f8", (6, LANES)),  # of half a step under a constant load
         ("guard", "f8", (3, LANES)),  # rows of `two_axis.guards`
-        ("is_solved", "i8", (LANES,)),  # whether it copies no other
     ]
 )
-"""Oscillators of sixteen branches that follow each other, and what the wind meets on them."""
+"""Oscillators of sixteen branches that follow each other, and the wind load on them."""

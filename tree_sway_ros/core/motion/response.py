@@ -102,8 +102,8 @@ def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
         if branch["parent"] >= 0:
             parent = branches[branch["parent"]]
             k = int(parent["n_coordinates"])
-            ways = rotations[parent["coordinate"] : parent["coordinate"] + k]
-            base[b] = base[branch["parent"]] + np.tensordot(branch["twist"][:k], ways, axes=(0, 0))
+            moved = rotations[parent["coordinate"] : parent["coordinate"] + k]
+            base[b] = base[branch["parent"]] + np.tensordot(branch["twist"][:k], moved, axes=(0, 0))
     return base
 
 

@@ -1,8 +1,8 @@
 """
 Placing what is frozen: a subtree that moves with its parent as one body.
 
-Its base turns and goes with its seat, as that of any branch; from there on every segment keeps its
-place and orientation relative to the base.
+Its base turns and goes with the segment it sits on, as that of any branch; from there on every
+segment keeps its place and orientation relative to the base.
 
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.placing import seat_turn
+from tree_sway_ros.core.motion.placing import turn_at
 from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.rotation import product, quaternions_from_x, rotated
 from tree_sway_ros.core.tree.tree import Tree
@@ -31,10 +31,10 @@ class RigidParts:
     parent
         Moving branch that each one sits on, its index among the moving ones, (t,).
     rows
-        Its seat, its first segment and one past its last, rows of the pose block, (t, 3).
-    seat_slope, offset
-        Slopes of the parent's shapes at its base, (t, c), and its base from the seat's start in the
-        seat's frame in [m], (t, 3).
+        Its base segment, its first segment and one past its last, rows of the pose block, (t, 3).
+    base_slope, offset
+        Slopes of the parent's shapes at its base, (t, c), and its base from that segment's start in
+        its frame in [m], (t, 3).
     arm, rest
         Start of each segment of the tree from the base it moves with, at rest, in [m], (n, 3), and
         orientation at rest, w x y z, (n, 4); those of moving segments are not read.
@@ -43,7 +43,7 @@ class RigidParts:
 
     parent: Ints
     rows: Ints
-    seat_slope: Floats
+    base_slope: Floats
     offset: Floats
     arm: Floats
     rest: Floats
@@ -70,7 +70,7 @@ class RigidParts:
         return RigidParts(
             pruning.place_among_moving[tree.branch_parent[tops]],
             np.stack([tree.segment_parent[first], first, end], axis=1),
-            branches["seat_slope"][tops].copy(),
+            branches["base_slope"][tops].copy(),
             branches["offset"][tops].copy(),
             tree.start - base,
             _orientations(tree),
@@ -91,7 +91,7 @@ class RigidParts:
 
         """
         _place(
-            self.parent, self.rows, self.seat_slope, self.offset, self.arm, self.rest,
+            self.parent, self.rows, self.base_slope, self.offset, self.arm, self.rest,
             branches, work, x, out,
         )  # fmt: skip
 
@@ -102,18 +102,18 @@ def _orientations(tree: Tree) -> Floats:
 
 @fused
 def _place(
-    parents: Ints, rows: Ints, seat_slope: Floats, offset: Floats, arm: Floats, rest: Floats,
+    parents: Ints, rows: Ints, base_slope: Floats, offset: Floats, arm: Floats, rest: Floats,
     branches: Any, work: Any, x: Floats, out: Floats,
 ) -> None:  # fmt: skip
     for t in range(len(parents)):
-        seat, below = rows[t, 0], work[parents[t]].base
-        w, i, j, k = seat_turn(branches[parents[t]], seat_slope[t], x)
+        on, below = rows[t, 0], work[parents[t]].base
+        w, i, j, k = turn_at(branches[parents[t]], base_slope[t], x)
         w, i, j, k = product(below[0], below[1], below[2], below[3], w, i, j, k)
         px, py, pz = rotated(
-            out[seat, 6], out[seat, 3], out[seat, 4], out[seat, 5],
+            out[on, 6], out[on, 3], out[on, 4], out[on, 5],
             offset[t, 0], offset[t, 1], offset[t, 2],
         )  # fmt: skip
-        px, py, pz = px + out[seat, 0], py + out[seat, 1], pz + out[seat, 2]
+        px, py, pz = px + out[on, 0], py + out[on, 1], pz + out[on, 2]
         # The rotation as a matrix: three products a row, many rows.
         xx, xy, xz = 1.0 - 2.0 * (j * j + k * k), 2.0 * (i * j - w * k), 2.0 * (i * k + w * j)
         yx, yy, yz = 2.0 * (i * j + w * k), 1.0 - 2.0 * (i * i + k * k), 2.0 * (j * k - w * i)

@@ -1,9 +1,9 @@
 """
-One pass out and one pass home: how branches ride on each other, and what they hand to each other.
+One pass outward and one inward: how branches move on each other, and what they hand to each other.
 
-Out, from the stem to the twigs: each base takes over the motion of its parent. On the way the
-wind's force on each branch is found, in the air that passes it. Home, from the twigs to the stem:
-each branch adds up force and moment of all it carries.
+Outward, from the stem to the twigs: each base takes over the motion of its parent, and the wind's
+force on each branch is found in the air that passes it. Inward, from the twigs to the stem: each
+branch adds up force and moment of all it carries.
 
 """
 
@@ -14,14 +14,15 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.kernel import fused, inlined
+from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.drag import drag
-from tree_sway_ros.core.motion.records import AIR, LANES, WORK
+from tree_sway_ros.core.motion.fill_records import load_records
+from tree_sway_ros.core.motion.records import LANES, WORK
 from tree_sway_ros.core.rotation import turned
 
 
 @fused
-def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
+def outward_pass(branches: Any, work: Any, x: Floats, v: Floats) -> None:
     """
     Hand rotation and velocity of every parent to the bases of its children.
 
@@ -51,31 +52,9 @@ def ride(branches: Any, work: Any, x: Floats, v: Floats) -> None:
                 here.rotation[k] += twist[c, 3 + k] * angle
 
 
-def air_records(branches: Any) -> Any:
-    """
-    Lay out what `blow` knows of `BRANCH` records, (b,), sixteen at a time.
-
-    Returns
-    -------
-    ndarray
-        Of dtype `AIR`, (ceil(b / 16),), with no force so far.
-
-    """
-    air = np.zeros(-(-len(branches) // LANES), dtype=AIR)
-    refit(air, branches)
-    return air
-
-
-def refit(air: Any, branches: Any) -> None:
-    """Take over into `AIR` what has changed in `BRANCH` records; the slip stays."""
-    block, lane = np.divmod(np.arange(len(branches)), LANES)
-    for name in ("speed", "area", "projector", "compliance"):
-        air[name][block, ..., lane] = branches[name]
-
-
 @fused
-def blow(
-    branches: Any, work: Any, air: Any, x: Floats, v: Floats,
+def wind_forces(
+    branches: Any, work: Any, loads: Any, carries: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """
@@ -83,11 +62,12 @@ def blow(
 
     Parameters
     ----------
-    branches, work, air
-        Records of `BRANCH` and `WORK`, (b,), and of `AIR`; the slip of the last is read as that of
-        the last step; forces and slip are written.
-    x, v
-        Key rotations and rates half a step on, under the last step's forces, (N,).
+    branches, work, loads
+        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`. The last hold key rotations and
+        rates half a step on, under the last step's forces, and the slip of the last step; forces
+        and slip are written.
+    carries
+        Whether bases move, as `outward_pass` found.
     wx, wy, wz
         Mean wind over the step in [m/s].
     per_speed_squared
@@ -97,71 +77,135 @@ def blow(
     # Each pass goes over all branches: what is written one by one and read as vectors at once would
     # have to wait.
     n = len(branches)
-    for block in range(len(air)):
-        for lane in range(min(LANES, n - LANES * block)):
-            b = LANES * block + lane
-            _expose(branches[b], work[b], air[block], lane, x, v)
-    for block in range(len(air)):
-        press(air[block], wx, wy, wz, per_speed_squared)
-    for block in range(len(air)):
-        for lane in range(min(LANES, n - LANES * block)):
-            here, pressed = work[LANES * block + lane], air[block]
+    if carries:
+        for b in range(n):
+            here, base, j = loads[b // LANES], work[b], b % LANES
+            for k in range(6):
+                here.velocity[k, j] = base.velocity[k]
             for k in range(3):
-                here.force[k], here.met[k] = pressed.force[k, lane], pressed.met[k, lane]
+                here.base[k, j] = base.rotation[k]
+    for block in range(len(loads)):
+        _move_loads(loads[block])
+        _drag_forces(loads[block], wx, wy, wz, per_speed_squared)
     for b in range(n):
-        source = branches[b].source
-        if source != b:
-            force, turn, met = work[b].force, work[b].rotation, work[b].met
-            for k in range(3):
-                force[k] = work[source].force[k]
-            met[0], met[1], met[2] = turned(
-                -turn[0], -turn[1], -turn[2], force[0], force[1], force[2]
-            )
-
-
-@inlined
-def _expose(branch: Any, work: Any, air: Any, lane: int, x: Floats, v: Floats) -> None:
-    """Set how the load of a branch moves and is turned."""
-    centre, velocity, rotation, i = branch.centre, work.velocity, work.rotation, branch.coordinate
-    flow, turn = branch.flow, branch.turn
-    mx = velocity[0] + velocity[4] * centre[2] - velocity[5] * centre[1]
-    my = velocity[1] + velocity[5] * centre[0] - velocity[3] * centre[2]
-    mz = velocity[2] + velocity[3] * centre[1] - velocity[4] * centre[0]
-    tx, ty, tz = rotation[0], rotation[1], rotation[2]
-    air.base[0, lane], air.base[1, lane], air.base[2, lane] = tx, ty, tz
-    for c in range(branch.n_coordinates):
-        rate, angle = v[i + c], x[i + c]
-        mx, my, mz = mx + flow[c, 0] * rate, my + flow[c, 1] * rate, mz + flow[c, 2] * rate
-        tx, ty, tz = tx + turn[c, 0] * angle, ty + turn[c, 1] * angle, tz + turn[c, 2] * angle
-    air.motion[0, lane], air.motion[1, lane], air.motion[2, lane] = mx, my, mz
-    air.turn[0, lane], air.turn[1, lane], air.turn[2, lane] = tx, ty, tz
+        here, j = loads[b // LANES], b % LANES
+        if not here.is_solved[j]:
+            _copy_force(here, j, loads, branches[b].source)
+        for k in range(3):
+            work[b].force[k] = here.force[k, j]
 
 
 @fused
-def press(air: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
+def _move_loads(loads: Any) -> None:
+    """Set how the loads of sixteen branches move and are turned, half a step on."""
+    velocity, centre, base, flow, lean = (
+        loads.velocity, loads.centre, loads.base, loads.flow, loads.turn,
+    )  # fmt: skip
+    x, v, motion, turn = loads.x, loads.v, loads.motion, loads.turned
+    for j in range(LANES):
+        cx, cy, cz = centre[0, j], centre[1, j], centre[2, j]
+        rx, ry, rz = velocity[3, j], velocity[4, j], velocity[5, j]
+        v0, v1, x0, x1 = v[0, j], v[1, j], x[0, j], x[1, j]
+        motion[0, j] = velocity[0, j] + ry * cz - rz * cy + flow[0, 0, j] * v0 + flow[1, 0, j] * v1
+        motion[1, j] = velocity[1, j] + rz * cx - rx * cz + flow[0, 1, j] * v0 + flow[1, 1, j] * v1
+        motion[2, j] = velocity[2, j] + rx * cy - ry * cx + flow[0, 2, j] * v0 + flow[1, 2, j] * v1
+        turn[0, j] = base[0, j] + lean[0, 0, j] * x0 + lean[1, 0, j] * x1
+        turn[1, j] = base[1, j] + lean[0, 1, j] * x0 + lean[1, 1, j] * x1
+        turn[2, j] = base[2, j] + lean[0, 2, j] * x0 + lean[1, 2, j] * x1
+    for c in range(2, loads.n_rows):
+        for k in range(3):
+            for j in range(LANES):
+                motion[k, j] += flow[c, k, j] * v[c, j]
+                turn[k, j] += lean[c, k, j] * x[c, j]
+
+
+@fused
+def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
     """Find the force on sixteen branches, drag in the frame of each as it is turned."""
-    speed, motion, turn, base, slip = air.speed, air.motion, air.turn, air.base, air.slip
-    force, met, p = air.force, air.met, air.projector
+    speed, motion, turn, base, slip = (
+        loads.speed, loads.motion, loads.turned, loads.base, loads.slip,
+    )  # fmt: skip
+    force, turned_force, p = loads.force, loads.turned_force, loads.projector
     for j in range(LANES):
         tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
         ux, uy, uz = turned(
             -tx, -ty, -tz,
-            speed[j] * wx - motion[0, j], speed[j] * wy - motion[1, j], speed[j] * wz - motion[2, j],
+            speed[j] * wx - motion[0, j], speed[j] * wy - motion[1, j],
+            speed[j] * wz - motion[2, j],
         )  # fmt: skip
-        beta = air.compliance[j]
+        beta = loads.compliance[j]
         ux, uy, uz = ux + beta * slip[0, j], uy + beta * slip[1, j], uz + beta * slip[2, j]
         fx, fy, fz, f = drag(
             p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
-            per_speed_squared * air.area[j], beta, ux, uy, uz,
+            per_speed_squared * loads.area[j], beta, ux, uy, uz,
         )  # fmt: skip
         slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
         fx, fy, fz = turned(tx, ty, tz, fx, fy, fz)
         force[0, j], force[1, j], force[2, j] = fx, fy, fz
-        met[0, j], met[1, j], met[2, j] = turned(-base[0, j], -base[1, j], -base[2, j], fx, fy, fz)
+        turned_force[0, j], turned_force[1, j], turned_force[2, j] = turned(
+            -base[0, j], -base[1, j], -base[2, j], fx, fy, fz
+        )
 
 
 @fused
-def gather(branches: Any, work: Any) -> None:
+def _copy_force(here: Any, j: int, loads: Any, source: int) -> None:
+    """Give a branch that copies the force on its source."""
+    force, base, into = loads[source // LANES].force, here.base, here.turned_force
+    fx, fy, fz = force[0, source % LANES], force[1, source % LANES], force[2, source % LANES]
+    here.force[0, j], here.force[1, j], here.force[2, j] = fx, fy, fz
+    into[0, j], into[1, j], into[2, j] = turned(-base[0, j], -base[1, j], -base[2, j], fx, fy, fz)
+
+
+@fused
+def generalised_loads(
+    branches: Any, work: Any, loads: Any, carries: bool, moment: Floats, pull: Floats
+) -> None:
+    """
+    Turn forces into moments on the key rotations.
+
+    Its own force meets a branch where the branch now points; what it carries acts at rest geometry.
+
+    Parameters
+    ----------
+    branches, work, loads
+        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`, after `wind_forces`.
+    carries
+        Whether what a branch carries pushes on it.
+    moment
+        Moments on the coordinates in [N m], (N,), written.
+    pull
+        Force along each chord times its lever in [N m], (b,), written.
+
+    """
+    for block in range(len(loads)):
+        _own_loads(loads[block])
+    for b in range(len(branches)):
+        load, j, i = loads[b // LANES].load, b % LANES, branches[b].coordinate
+        pull[b], moment[i], moment[i + 1] = load[0, j], load[1, j], load[2, j]
+        for c in range(2, branches[b].n_coordinates):
+            moment[i + c] = load[1 + c, j]
+    if carries:
+        inward_pass(branches, work)
+        _add_carried_loads(branches, work, moment, pull)
+
+
+@fused
+def _own_loads(loads: Any) -> None:
+    """Turn the wind's own forces on sixteen branches into loads on their coordinates."""
+    force, push, along, load = loads.turned_force, loads.push, loads.along, loads.load
+    for j in range(LANES):
+        fx, fy, fz = force[0, j], force[1, j], force[2, j]
+        load[0, j] = along[0, j] * fx + along[1, j] * fy + along[2, j] * fz
+        load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
+        load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
+    for c in range(2, loads.n_rows):
+        for j in range(LANES):
+            fx, fy, fz = force[0, j], force[1, j], force[2, j]
+            load[1 + c, j] = push[c, 0, j] * fx + push[c, 1, j] * fy + push[c, 2, j] * fz
+
+
+@fused
+def inward_pass(branches: Any, work: Any) -> None:
     """
     Add up, from the twigs to the stem, force and moment about the root of all that each branch
     carries.
@@ -181,48 +225,17 @@ def gather(branches: Any, work: Any) -> None:
 
 
 @fused
-def generalised(branches: Any, work: Any, carries: bool, moment: Floats, pull: Floats) -> None:
-    """
-    Turn forces into moments on the key rotations.
-
-    Its own force meets a branch where the branch now points; what it carries acts at rest geometry.
-
-    Parameters
-    ----------
-    branches, work
-        Records of `BRANCH` and `WORK`, (b,), after `blow` and, if anything is carried, `gather`.
-    carries
-        Whether what a branch carries pushes on it.
-    moment
-        Moments on the coordinates in [N m], (N,), written.
-    pull
-        Force along each chord times its lever in [N m], (b,), written.
-
-    """
-    for b in range(len(branches)):
-        branch, here = branches[b], work[b]
-        met, chord = here.met, branch.frame
-        fx, fy, fz = met[0], met[1], met[2]
-        i = branch.coordinate
-        for c in range(branch.n_coordinates):
-            moment[i + c] = branch.push[c, 0] * fx + branch.push[c, 1] * fy + branch.push[c, 2] * fz
-        pull[b] = branch.lever * (chord[0, 0] * fx + chord[0, 1] * fy + chord[0, 2] * fz)
-    if carries:
-        carried(branches, work, moment, pull)
-
-
-@fused
-def carried(branches: Any, work: Any, moment: Floats, pull: Floats) -> None:
-    """Add to moments and pulls, as of `generalised`, those of all that a branch carries."""
+def _add_carried_loads(branches: Any, work: Any, moment: Floats, pull: Floats) -> None:
+    """Add to moments and pulls, as of `generalised_loads`, those of all that a branch carries."""
     for b in range(1, len(branches)):
         branch, wrench = branches[b], work[b].wrench
         parent = branches[branch.parent]
         i, chord = parent.coordinate, parent.frame
         for c in range(parent.n_coordinates):
-            way = branch.twist[c]
+            twist = branch.twist[c]
             moment[i + c] += (
-                way[0] * wrench[0] + way[1] * wrench[1] + way[2] * wrench[2]
-                + way[3] * wrench[3] + way[4] * wrench[4] + way[5] * wrench[5]
+                twist[0] * wrench[0] + twist[1] * wrench[1] + twist[2] * wrench[2]
+                + twist[3] * wrench[3] + twist[4] * wrench[4] + twist[5] * wrench[5]
             )  # fmt: skip
         along = chord[0, 0] * wrench[0] + chord[0, 1] * wrench[1] + chord[0, 2] * wrench[2]
         pull[branch.parent] += branch.axial_lever * along
@@ -247,14 +260,9 @@ def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True
         In [N m], (N, 2).
 
     """
-    moments, pull, rest = (
-        np.zeros((2, n_coordinates)),
-        np.zeros(len(branches)),
-        np.zeros(n_coordinates),
-    )
+    moments, pull = np.zeros((2, n_coordinates)), np.zeros(len(branches))
     for moment, (wx, wy) in zip(moments, np.eye(2), strict=True):
-        work = np.zeros(len(branches), dtype=WORK)
-        blow(branches, work, air_records(branches), rest, rest, wx, wy, 0.0, 1.0)
-        gather(branches, work)
-        generalised(branches, work, carries, moment, pull)
+        work, loads = np.zeros(len(branches), dtype=WORK), load_records(branches)
+        wind_forces(branches, work, loads, False, wx, wy, 0.0, 1.0)
+        generalised_loads(branches, work, loads, carries, moment, pull)
     return moments.T

@@ -3,7 +3,7 @@ Models 1 and 2 of the ladder: every branch an oscillator of its own, on two axes
 
 Model 1, `branch`, is the paper's: a branch feels its own wind and its own inertia. Model 2,
 `subtree`, gives it the inertia of all it carries and the moment of all the wind on it, and lets it
-ride on its parent; it still swings at a pace of its own.
+move with its parent; it still swings at a pace of its own.
 
 The load is found once a step, at the state half a step on (exponential midpoint rule), and held
 over the step; what depends on the branch's own angle is corrected once within the step
@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.records import LANES, SWAY, WORK
-from tree_sway_ros.core.motion.tree_passes import carried, gather, press, refit, ride
+from tree_sway_ros.core.motion.fill_records import load_records
+from tree_sway_ros.core.motion.records import LANES, OSCILLATORS, WORK
+from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
 from tree_sway_ros.core.oscillators.step_rules import DEFAULT, fill_steps
 from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
-from tree_sway_ros.core.rotation import turned
 
 
 class UncoupledBank:
@@ -35,7 +35,7 @@ class UncoupledBank:
     Parameters
     ----------
     branches
-        Records of `BRANCH`, (b,); their compliance is set with the time step.
+        Records of `BRANCH`, (b,).
     inertia, damping, stiffness
         In [kg m^2], [N m s/rad] and [N m/rad], (b,).
     carries
@@ -63,17 +63,7 @@ class UncoupledBank:
         self.state = np.zeros((5, 2 * n))
         self.x, self.v, self.moment, _, _ = self.state
         self._pull = np.zeros(n)
-        self._sway = np.zeros(-(-n // LANES), dtype=SWAY)
-        block, lane = np.divmod(np.arange(n), LANES)
-        for name, of in (
-            ("centre", "centre"),
-            ("flow", "flow"),
-            ("lean", "turn"),
-            ("push", "push"),
-        ):
-            values = branches[of] if name == "centre" else branches[of][:, :2]
-            self._sway[name][block, ..., lane] = values
-        self._sway["along"][block, :, lane] = branches["lever"][:, None] * branches["frame"][:, 0]
+        self._banks = load_records(branches, OSCILLATORS)
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
@@ -85,12 +75,10 @@ class UncoupledBank:
         held = half[:, [0, 1, 2, 4, 5, 6]]
         held[:, [2, 5]] += half[:, [3, 7]]
         block, lane = np.divmod(np.arange(n), LANES)
-        for name, rows in (("whole", whole), ("half", held), ("guard", guard)):
-            self._sway[name][block, :, lane] = rows
-        self._sway["is_solved"][block, lane] = self.branches["source"] == np.arange(n)
         flow = np.square(self.branches["flow"][:, :2]).sum(axis=(1, 2)) / 2.0
-        self.branches["compliance"] = flow * held[:, 5]
-        refit(self._sway, self.branches)
+        for name, rows in (("whole", whole), ("half", held), ("guard", guard)):
+            self._banks[name][block, :, lane] = rows
+        self._banks["compliance"][block, lane] = flow * held[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -101,7 +89,7 @@ class UncoupledBank:
         wx, wy, wz
             Mean wind over the step in [m/s].
         per_speed_squared
-            `wind_load.pressure` in [kg/m^3].
+            `drag.pressure` in [kg/m^3].
 
         Returns
         -------
@@ -111,7 +99,7 @@ class UncoupledBank:
         """
         return int(
             _advance(
-                self.branches, self.work, self._sway, self.state, self._pull, self.carries,
+                self.branches, self.work, self._banks, self.state, self._pull, self.carries,
                 wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
@@ -138,108 +126,51 @@ class UncoupledBank:
         """Go back to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._sway["slip"] = self._sway["load"] = 0.0
+        self._banks["slip"] = self._banks["load"] = 0.0
 
 
 @fused
 def _advance(
-    branches: Any, work: Any, sway: Any, state: Floats, pull: Floats, carries: bool,
+    branches: Any, work: Any, banks: Any, state: Floats, pull: Floats, carries: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     x, v, moment, middle_x, middle_v = state[0], state[1], state[2], state[3], state[4]
     n = len(branches)
     for b in range(n):
-        here, j = sway[b // LANES], b % LANES
+        here, j = banks[b // LANES], b % LANES
         for k in range(2):
-            here.x[k, j], here.v[k, j] = x[2 * b + k], v[2 * b + k]
-    for block in range(len(sway)):
-        _to_middle(sway[block])
+            here.now_x[k, j], here.now_v[k, j] = x[2 * b + k], v[2 * b + k]
+    for block in range(len(banks)):
+        _to_middle(banks[block])
     if carries:
         for b in range(n):
-            here, j = sway[b // LANES], b % LANES
+            here, j = banks[b // LANES], b % LANES
             for k in range(2):
-                middle_x[2 * b + k], middle_v[2 * b + k] = here.middle_x[k, j], here.middle_v[k, j]
-        ride(branches, work, middle_x, middle_v)
-        for b in range(n):
-            here, base, j = sway[b // LANES], work[b], b % LANES
-            for k in range(6):
-                here.velocity[k, j] = base.velocity[k]
-            for k in range(3):
-                here.base[k, j] = base.rotation[k]
-    for block in range(len(sway)):
-        _expose(sway[block])
-        press(sway[block], wx, wy, wz, per_speed_squared)
-    for b in range(n):
-        here, j = sway[b // LANES], b % LANES
-        if not here.is_solved[j]:
-            _copy(here, j, sway, branches[b].source)
-        for k in range(3):
-            work[b].force[k] = here.force[k, j]
-    for block in range(len(sway)):
-        _meet(sway[block])
-    for b in range(n):
-        load, j = sway[b // LANES].load, b % LANES
-        pull[b], moment[2 * b], moment[2 * b + 1] = load[0, j], load[1, j], load[2, j]
+                middle_x[2 * b + k], middle_v[2 * b + k] = here.x[k, j], here.v[k, j]
+        outward_pass(branches, work, middle_x, middle_v)
+    wind_forces(branches, work, banks, carries, wx, wy, wz, per_speed_squared)
+    generalised_loads(branches, work, banks, carries, moment, pull)
     if carries:
-        gather(branches, work)
-        carried(branches, work, moment, pull)
         for b in range(n):
-            load, j = sway[b // LANES].load, b % LANES
+            load, j = banks[b // LANES].load, b % LANES
             load[0, j], load[1, j], load[2, j] = pull[b], moment[2 * b], moment[2 * b + 1]
     held = 0
-    for block in range(len(sway)):
-        held += _step(sway[block])
+    for block in range(len(banks)):
+        held += _step(banks[block])
     for b in range(n):
-        here, j = sway[b // LANES], b % LANES
+        here, j = banks[b // LANES], b % LANES
         if not here.is_solved[j]:
-            here, j = sway[branches[b].source // LANES], branches[b].source % LANES
+            here, j = banks[branches[b].source // LANES], branches[b].source % LANES
         for k in range(2):
-            x[2 * b + k], v[2 * b + k] = here.x[k, j], here.v[k, j]
+            x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
     return held
 
 
 @fused
-def _expose(sway: Any) -> None:
-    """Set how the loads of sixteen branches move and are turned, half a step on."""
-    velocity, centre, base, flow, lean = sway.velocity, sway.centre, sway.base, sway.flow, sway.lean
-    x, v, motion, turn = sway.middle_x, sway.middle_v, sway.motion, sway.turn
-    for j in range(LANES):
-        cx, cy, cz = centre[0, j], centre[1, j], centre[2, j]
-        rx, ry, rz = velocity[3, j], velocity[4, j], velocity[5, j]
-        v0, v1, x0, x1 = v[0, j], v[1, j], x[0, j], x[1, j]
-        motion[0, j] = velocity[0, j] + ry * cz - rz * cy + flow[0, 0, j] * v0 + flow[1, 0, j] * v1
-        motion[1, j] = velocity[1, j] + rz * cx - rx * cz + flow[0, 1, j] * v0 + flow[1, 1, j] * v1
-        motion[2, j] = velocity[2, j] + rx * cy - ry * cx + flow[0, 2, j] * v0 + flow[1, 2, j] * v1
-        turn[0, j] = base[0, j] + lean[0, 0, j] * x0 + lean[1, 0, j] * x1
-        turn[1, j] = base[1, j] + lean[0, 1, j] * x0 + lean[1, 1, j] * x1
-        turn[2, j] = base[2, j] + lean[0, 2, j] * x0 + lean[1, 2, j] * x1
-
-
-@fused
-def _copy(here: Any, j: int, sway: Any, source: int) -> None:
-    """Give a branch that copies the force on its source."""
-    force, base, met = sway[source // LANES].force, here.base, here.met
-    fx, fy, fz = force[0, source % LANES], force[1, source % LANES], force[2, source % LANES]
-    here.force[0, j], here.force[1, j], here.force[2, j] = fx, fy, fz
-    met[0, j], met[1, j], met[2, j] = turned(-base[0, j], -base[1, j], -base[2, j], fx, fy, fz)
-
-
-@fused
-def _meet(sway: Any) -> None:
-    """Turn the wind's own forces on sixteen branches into loads, as `generalised`."""
-    met, push, along, load = sway.met, sway.push, sway.along, sway.load
-    for j in range(LANES):
-        fx, fy, fz = met[0, j], met[1, j], met[2, j]
-        load[0, j] = along[0, j] * fx + along[1, j] * fy + along[2, j] * fz
-        load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
-        load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
-
-
-@fused
-def _to_middle(sway: Any) -> None:
+def _to_middle(bank: Any) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
-    x, v, load, h = sway.x, sway.v, sway.load, sway.half
-    middle_x, middle_v = sway.middle_x, sway.middle_v
+    x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
+    middle_x, middle_v = bank.x, bank.v
     for j in range(LANES):
         mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
         middle_x[0, j] = h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx
@@ -249,10 +180,10 @@ def _to_middle(sway: Any) -> None:
 
 
 @fused
-def _step(sway: Any) -> int:
+def _step(bank: Any) -> int:
     """Step sixteen branches; return how many loads were held."""
-    x, v, load, c, g, is_solved = sway.x, sway.v, sway.load, sway.whole, sway.guard, sway.is_solved
-    held = 0
+    x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
+    is_solved, held = bank.is_solved, 0
     for j in range(LANES):
         x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
             x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],

@@ -200,7 +200,8 @@ def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
         raise TreeError(
             f"buckles under its own weight: it could carry {100.0 * factor:.0f} % of it",
             where=_branch_name(tree, reduction, coordinate),
-            cure=f"give a modulus {1.05 / factor:.2f} times as high or diameters {factor**-0.5 * 1.03:.2f} "
+            cure=f"give a modulus {1.05 / factor:.2f} times as high or diameters "
+            f"{factor**-0.5 * 1.03:.2f} "
             "times as thick, or leave gravity out",
         )
 

@@ -13,12 +13,11 @@ Symbols: b branches, m moving ones, N and M their coordinates.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Ints
 from tree_sway_ros.core.reduction.matrices import Reduction
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -112,36 +111,6 @@ class Pruning:
             elastic=whole.elastic[keep],
         )
 
-    def branches(self, whole: Any) -> Any:
-        """
-        Keep the records of the moving branches, with the load of what they now carry as part of
-        themselves.
-
-        Parameters
-        ----------
-        whole
-            Records of `BRANCH`, (b,).
-
-        Returns
-        -------
-        ndarray
-            Of `BRANCH`, (m,); segments keep their rows in the whole tree.
-
-        """
-        moving, place = self.moving, self.place_among_moving
-        records = whole[moving].copy()
-        carrier = self.carriers()
-        for at in np.unique(carrier[self.frozen]):
-            load = np.flatnonzero(self.frozen & (carrier == at))
-            _join_loads(
-                records[place[at]], whole[at], whole[load], whole["twist"][self._top_of()[load]]
-            )
-        records["parent"] = place[records["parent"]]
-        records["source"] = np.arange(len(records))
-        counts = records["n_coordinates"]
-        records["coordinate"] = np.cumsum(counts) - counts
-        return records
-
     def carriers(self) -> Ints:
         """Moving branch that each branch moves with: its own, or the nearest below, (b,)."""
         carrier = np.arange(len(self.frozen))
@@ -149,78 +118,10 @@ class Pruning:
             carrier[branch] = carrier[self.whole.branch_parent[branch]]
         return carrier
 
-    def _top_of(self) -> Ints:
+    def top_of(self) -> Ints:
         """Frozen branch next to the moving ones that each frozen branch hangs on, (b,)."""
         top = np.arange(len(self.frozen))
         for branch in np.flatnonzero(self.frozen):
             parent = self.whole.branch_parent[branch]
             top[branch] = top[parent] if self.frozen[parent] else branch
         return top
-
-
-def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
-    """
-    Make loads that a branch carries part of its own.
-
-    Drag on a slanted piece is not linear in its projector P, but it is the slope of ``c (u . P
-    u)^1.5 / 3`` in the wind u. The projector of all is the one that comes nearest to the sum of
-    these.
-
-    Parameters
-    ----------
-    record
-        Of the branch, written.
-    own
-        The same before.
-    loads, twists
-        Records of what it carries, (k,), and how a unit of its coordinates moves each, (k, c, 6).
-
-    """
-    area = np.append(own["area"], loads["area"])
-    speed = np.append(own["speed"], loads["speed"])
-    pressed = area * speed**2
-    if not pressed.any():
-        return
-    projectors = np.vstack([own["projector"], loads["projector"]])
-    drag = np.maximum(_WINDS @ projectors.T, 0.0) ** 1.5 * pressed
-    share = drag.sum(axis=0) / drag.sum()
-    both = (drag.sum(axis=1) / pressed.sum()) ** (2.0 / 3.0)
-    record["projector"] = _NEAREST @ both
-    record["speed"] = share @ speed
-    record["area"] = pressed.sum() / record["speed"] ** 2
-    centre = loads["centre"]
-    ways = twists[:, :, :3] + np.cross(twists[:, :, 3:], centre[:, None])
-    record["centre"] = share[0] * own["centre"] + share[1:] @ centre
-    record["push"] = share[0] * own["push"] + np.tensordot(share[1:], ways, axes=1)
-    record["turn"] = share[0] * own["turn"] + np.tensordot(share[1:], twists[:, :, 3:], axes=1)
-    # As in `fill_branch_loads`: push times flow is the mean square of the way, both axes as one.
-    square = share[0] * (own["push"][:2] * own["flow"][:2]).sum()
-    square += share[1:] @ np.square(ways[:, :2]).sum(axis=(1, 2))
-    push = np.square(record["push"][:2]).sum()
-    record["flow"] = record["push"]
-    record["flow"][:2] *= square / push if push > 0.0 else 1.0
-    record["lever"] = np.sqrt(0.5 * push)
-
-
-def _squares(directions: Floats) -> Floats:
-    """
-    Weights of xx, yy, zz, xy, xz, yz of a projector P in ``u . P u``, for winds u (d, 3), (d, 6).
-
-    """
-    x, y, z = directions.T
-    return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
-
-
-_WINDS = _squares(
-    np.array(
-        [
-            (np.cos(rise) * np.cos(bearing), np.cos(rise) * np.sin(bearing), np.sin(rise))
-            for rise in np.deg2rad([-20.0, 0.0, 20.0])
-            for bearing in np.arange(16) * np.pi / 8.0
-        ]
-    )
-)
-"""Winds from all sides, along the ground and, as branches bend, aslant."""
-
-_NEAREST = np.linalg.pinv(_WINDS)
-"""From squares in those winds to the projector that fits them best, (6, d)."""

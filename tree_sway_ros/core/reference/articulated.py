@@ -69,6 +69,8 @@ class ArticulatedTree:
         Coefficients of damping by mass in [1/s] and by stiffness in [s].
     wind_factor
         Wind at each segment over the wind given to `step`, (n,); 1 if None.
+    leaf_mass, leaf_area
+        Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
 
     """
 
@@ -88,11 +90,14 @@ class ArticulatedTree:
         damped_modes: int = 40,
         rayleigh: tuple[float, float] | None = None,
         wind_factor: ArrayLike | None = None,
+        leaf_mass: Floats | None = None,
+        leaf_area: Floats | None = None,
     ) -> None:
         self.tree = tree
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)
-        self.bodies = articulated_bodies(cut, modulus, density, gravity, twist_ratio)
+        leaves = (self._along(leaf_mass), self._along(leaf_area))
+        self.bodies = articulated_bodies(cut, modulus, density, gravity, twist_ratio, *leaves)
         n = cut.n_segments
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
         self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
@@ -121,6 +126,13 @@ class ArticulatedTree:
             STREAMLINING_TO,
         )
         self.reset()
+
+    def _along(self, leaves: Floats | None) -> Floats:
+        """What leaves add per metre of each piece: that of a branch over its length."""
+        tree = self.tree
+        if leaves is None:
+            return np.zeros(tree.n_segments * self.subdivisions)
+        return np.repeat((leaves / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
 
     def reset(self) -> None:
         """Go back to rest."""

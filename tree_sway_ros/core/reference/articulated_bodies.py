@@ -15,6 +15,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.reference.refinement import place_on_parent
@@ -60,7 +61,13 @@ class Bodies(NamedTuple):
 
 
 def articulated_bodies(
-    tree: Tree, modulus: float, density: float, gravity: float, twist_ratio: float
+    tree: Tree,
+    modulus: float,
+    density: float,
+    gravity: float,
+    twist_ratio: float,
+    leaf_mass: ArrayLike = 0.0,
+    leaf_width: ArrayLike = 0.0,
 ) -> Bodies:
     """
     Part a tree into bodies.
@@ -75,6 +82,8 @@ def articulated_bodies(
         In [m/s^2]; the springs are set to hold the rest shape against it.
     twist_ratio
         Stiffness in twist over that in bending, GJ/EI, in [-].
+    leaf_mass, leaf_width
+        Mass and area of leaves per length of each segment in [kg/m] and [m], (n,).
 
     """
     n = tree.n_segments
@@ -89,7 +98,7 @@ def articulated_bodies(
         parent = tree.segment_parent[i]
         carrier[i] = parent if place[i] >= hinge[parent] else carrier[parent]
 
-    mass, first, second = _part_moments(tree, axis, hinge, density)
+    mass, first, second = _part_moments(tree, axis, hinge, density, np.asarray(leaf_mass))
     total, moment, tensor = mass[:, 1].copy(), first[:, 1].copy(), second[:, 1].copy()
     held = carrier >= 0
     arm = joint - np.where(held[:, None], joint[carrier], 0.0)
@@ -114,12 +123,13 @@ def articulated_bodies(
         bend=bend,
         twist=twist_ratio * bend,
         rest_torque=_holding_torque(carrier, arm, total, moment, gravity),
-        area=0.5 * reach * np.stack([d0 + middle, middle + d1], axis=1),
+        area=reach
+        * (0.5 * np.stack([d0 + middle, middle + d1], axis=1) + np.reshape(leaf_width, (-1, 1))),
     )
 
 
 def _part_moments(
-    tree: Tree, axis: Floats, hinge: Floats, density: float
+    tree: Tree, axis: Floats, hinge: Floats, density: float, leaf_mass: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Mass, first and second moment about the joint of both parts of each segment."""
     point, weight = np.polynomial.legendre.leggauss(4)
@@ -131,8 +141,10 @@ def _part_moments(
     span = tree.length[:, None, None]
     line = density * np.pi / 4.0 * diameter**2 * span * half * weight
     reach = (place - hinge[:, None, None]) * span
+    disc = (line * diameter**2 / 16.0).sum(axis=2)
+    line += leaf_mass.reshape(-1, 1, 1) * span * half * weight
     mass, first = line.sum(axis=2), (line * reach).sum(axis=2)
-    second, disc = (line * reach**2).sum(axis=2), (line * diameter**2 / 16.0).sum(axis=2)
+    second = (line * reach**2).sum(axis=2)
     along = np.einsum("ni,nj->nij", axis, axis)[:, None]
     tensor = second[..., None, None] * (np.eye(3) - along) + disc[..., None, None] * (
         np.eye(3) + along

@@ -44,8 +44,6 @@ class Forest:
     tolerance
         Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on
         its own.
-    leaf_on
-        Whether trees that do not say bear leaves.
     anemometer
         Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind
         reaches first if None (`GustHistory`).
@@ -80,7 +78,6 @@ class Forest:
         *,
         fidelity: str | None = None,
         tolerance: float = 0.005,
-        leaf_on: bool = False,
         anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
         **changes: Any,
@@ -96,7 +93,7 @@ class Forest:
         self.simulators = tuple(
             _simulator(
                 tree,
-                tree.settings_where_it_stands(self.settings, leaf_on),
+                tree.settings_where_it_stands(self.settings),
                 None if tree.settings is not None else fidelity,
                 tolerance,
             )

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.simulator.season import in_season
+from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
 
@@ -39,7 +39,7 @@ class PlacedTree:
     settings
         How it is modelled; as the forest if None.
     leaf_on
-        Whether it bears leaves; as the forest if None.
+        Whether it bears leaves; as the forest, or as its species, if None.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class PlacedTree:
             self.tree, start=moved(self.tree.start), end=moved(self.tree.end), name=self.name
         )
 
-    def settings_where_it_stands(self, forest: Settings, leaf_on: bool = False) -> Settings:
+    def settings_where_it_stands(self, forest: Settings) -> Settings:
         """
         Return its settings, the ground of the wind profile raised to where it stands.
 
@@ -92,21 +92,20 @@ class PlacedTree:
         ----------
         forest
             Settings of trees that have none of their own.
-        leaf_on
-            Whether trees that do not say bear leaves.
 
         """
         settings = self.settings if self.settings is not None else forest
-        if self.bears_leaves(leaf_on):
-            settings = in_season(self.tree, settings, leaf_on=True)
+        if self.leaf_on is not None:
+            settings = replace(settings, in_leaf=self.leaf_on, leaf_mass=None, leaf_area=None)
         raised = self.z - float(self.tree.start[0, 2])
         return replace(
             settings, profile=replace(settings.profile, ground=settings.profile.ground + raised)
         )
 
-    def bears_leaves(self, leaf_on: bool) -> bool:
-        """Whether it bears leaves where those that do not say bear them, or not."""
-        return leaf_on if self.leaf_on is None else self.leaf_on
+    def bears_leaves(self, told: bool | None = None) -> bool:
+        """Whether it bears leaves, where trees that do not say are told to or not."""
+        species = self.species if self.species is not None else species_named(self.tree.species)
+        return is_in_leaf(species, told if self.leaf_on is None else self.leaf_on)
 
 
 def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
-from tree_sway_ros.core.motion.drag import fill_branch_loads
 from tree_sway_ros.core.motion.fill_records import (
-    fill_branch_geometry,
+    branch_records,
+    copy_twigs,
     head_records,
     segment_records,
 )
@@ -29,6 +29,7 @@ from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
 from tree_sway_ros.core.tree.species import Species
@@ -154,7 +155,8 @@ class CalibratedTree:
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Wait to be asked."""
-        self.tree, self.species, self.settings = tree, species, settings
+        self.tree, self.species = tree, species
+        self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
 
     @property
@@ -163,7 +165,7 @@ class CalibratedTree:
         settings, species = self.settings, self.species
         if settings.damping_ratio is not None:
             return settings.damping_ratio
-        return species.damping_in_leaf if settings.in_leaf else species.damping_bare
+        return species.damping(bool(settings.in_leaf))
 
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
@@ -197,8 +199,7 @@ class CalibratedTree:
             frequencies = modes.frequencies
         else:
             refuse_buckling(self.tree, layer.reduction)
-            branches["source"] = twig_sources(self.tree, self.settings.twig_tolerance)
-            _share_frames(branches)
+            copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
             bank = self._uncoupled(layer, branches, carries=model == "subtree")
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
@@ -247,13 +248,10 @@ class CalibratedTree:
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
         layout = branch_layout() if enriched else branch_layout(2, 1)
-        branches = np.zeros(tree.n_branches, dtype=layout)
-        fill_branch_geometry(tree, models, branches)
-        fill_branch_loads(tree, models, reduction, speed, branches)
         return Layer(
             models,
             reduction,
-            branches,
+            branch_records(tree, models, reduction, speed, layout),
             segment_records(tree, models),
             float(sum(model.beam.integral(model.mass) for model in models)),
         )
@@ -287,9 +285,3 @@ class CalibratedTree:
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
         return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
-
-
-def _share_frames(branches: Any) -> None:
-    """Let a twig that copies turn about the axes of its source, so that it moves the same way."""
-    for b in np.flatnonzero(branches["source"] != np.arange(len(branches))):
-        branches["frame"][b] = branches["frame"][branches["source"][b]]

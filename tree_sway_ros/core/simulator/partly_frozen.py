@@ -1,6 +1,6 @@
 """
-A calibrated tree some of whose branches move with their parents: the models between one model and the
-next.
+A calibrated tree some of whose branches move with their parents: the models between one model and
+the next.
 
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cached_property
 
-from tree_sway_ros.core.motion.fill_records import lanes, segment_records
+from tree_sway_ros.core.motion.fill_records import lanes, moving_records, segment_records
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
 from tree_sway_ros.core.reduction.pruning import Bools, Pruning
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Layer
@@ -36,7 +36,7 @@ class PartlyFrozenTree(CalibratedTree):
         self._whole = whole
 
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
-        """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out what is frozen."""
+        """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out the frozen."""
         return replace(
             super().bank(model, n_modes),
             frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),
@@ -60,7 +60,7 @@ class PartlyFrozenTree(CalibratedTree):
 
     def _pruned(self, layer: Layer) -> Layer:
         models = [layer.models[branch] for branch in self.pruning.moving]
-        branches = self.pruning.branches(layer.branches)
+        branches = moving_records(self.pruning, layer.branches)
         branches["block"], branches["lane"], _ = lanes(self.tree, models)
         segments = segment_records(self.tree, models)
         return Layer(

@@ -1,5 +1,5 @@
 """
-The season of a tree: what its leaves weigh, catch and damp, as settings of its model.
+Whether a tree bears leaves, decided in one place, and what they weigh, catch and damp.
 
 """
 
@@ -8,38 +8,53 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tree_sway_ros.core.leaves.foliage import foliage_of
-from tree_sway_ros.core.leaves.traits import LeafTraits
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
+LEAVES: dict[str, bool | None] = {"auto": None, "on": True, "off": False}
+"""What a user may say of leaves; ``auto`` leaves it to the species: evergreens bear them."""
 
-def in_season(
-    tree: Tree,
-    settings: Settings | None = None,
-    *,
-    leaf_on: bool,
-    traits: LeafTraits | None = None,
-) -> Settings:
+
+def is_in_leaf(species: Species, told: bool | None = None) -> bool:
     """
-    Return settings for a tree with its leaves on or off.
+    Whether a tree bears leaves.
+
+    Parameters
+    ----------
+    species
+        Its species.
+    told
+        Whether it does; None leaves it to the species, of which evergreens do.
+
+    """
+    return species.leaves.is_evergreen if told is None else told
+
+
+def in_season(tree: Tree, species: Species, settings: Settings) -> Settings:
+    """
+    Return the settings with the leaves that the tree bears.
 
     Leaves add mass and area to their branches, damp them as the species in leaf, and let the crown
     streamline.
 
     Parameters
     ----------
-    tree
-        The tree.
+    tree, species
+        The tree, and the species whose leaves it bears.
     settings
-        What else is set; the usual settings if None.
-    leaf_on
-        Whether it is the season of leaves; evergreens have theirs always.
-    traits
-        Its leaves; those of its species if None.
+        Whether it is in leaf, or None; leaves that are given stay as they are.
+
+    Returns
+    -------
+    Settings
+        ``in_leaf`` is true or false, and leaf mass and area are there if it is true. What this
+        function has returned it returns again as it is.
 
     """
-    given = settings if settings is not None else Settings()
-    foliage = foliage_of(tree, leaf_on=leaf_on, traits=traits)
-    if not foliage.area.any():
-        return replace(given, in_leaf=False, leaf_mass=None, leaf_area=None)
-    return replace(given, in_leaf=True, leaf_mass=foliage.mass, leaf_area=foliage.drag_area)
+    are_given = settings.leaf_mass is not None or settings.leaf_area is not None
+    in_leaf = are_given or is_in_leaf(species, settings.in_leaf)
+    if are_given or not in_leaf:
+        return settings if settings.in_leaf == in_leaf else replace(settings, in_leaf=in_leaf)
+    leaves = foliage_of(tree, traits=species.leaves)
+    return replace(settings, in_leaf=True, leaf_mass=leaves.mass, leaf_area=leaves.drag_area)

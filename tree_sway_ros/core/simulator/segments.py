@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
 from tree_sway_ros.core.tree.species import Species
@@ -39,7 +40,7 @@ class SegmentsSimulator:
     Raises
     ------
     ParameterError
-        Leaves or the volume rule, which this model does not know.
+        The volume rule, which this model does not know.
 
     """
 
@@ -47,22 +48,17 @@ class SegmentsSimulator:
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
-        if settings.leaf_mass is not None or settings.leaf_area is not None:
-            raise ParameterError(
-                "leaves on model 'segments'",
-                where="fidelity",
-                cure="leave them out or use 'coupled'",
-            )
         if settings.stiffness != "beam":
             raise ParameterError(
                 f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
+        settings = in_season(tree, species, settings)
         self.tree, self.species, self.settings = tree, species, settings
         self.counts = Counts()
         damping = settings.damping_ratio
         if damping is None:
-            damping = species.damping_in_leaf if settings.in_leaf else species.damping_bare
-        coefficient, exponent = species.drag_law(settings.in_leaf)
+            damping = species.damping(bool(settings.in_leaf))
+        coefficient, exponent = species.drag_law(bool(settings.in_leaf))
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
             tree,
@@ -74,6 +70,8 @@ class SegmentsSimulator:
             gravity=settings.gravity,
             twist_ratio=2.0 * species.shear_ratio,
             wind_factor=settings.profile.over_anemometer(middle),
+            leaf_mass=settings.leaf_mass,
+            leaf_area=settings.leaf_area,
         )
         self.wind = np.zeros(3)
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0

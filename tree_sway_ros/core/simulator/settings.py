@@ -40,7 +40,7 @@ class Settings:
     damping_ratio
         In [-]; that of the species if None.
     in_leaf
-        Whether the species' damping is that of the tree in leaf.
+        Whether the tree bears leaves; None leaves it to the species, of which evergreens do.
     gravity
         In [m/s^2]; 0 leaves weight out.
     profile
@@ -55,7 +55,8 @@ class Settings:
         ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
         branches), all ``carriers`` of others, or ``all``.
     leaf_mass, leaf_area
-        Leaves of each branch in [kg] and [m^2], (b,).
+        Leaves of each branch in [kg] and [m^2], (b,); those of the species in leaf if both are
+        None.
     max_wind
         Wind speed in [m/s] above which a sample is refused.
 
@@ -68,7 +69,7 @@ class Settings:
     volume_stiffness: float = 2.0e5
     volume_damping: float = 2.0e3
     damping_ratio: float | None = None
-    in_leaf: bool = False
+    in_leaf: bool | None = None
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
     integrator: str = DEFAULT
@@ -90,6 +91,10 @@ class Settings:
                 f"the volume rule on model '{self.model}'",
                 where="stiffness",
                 cure="use it on 'branch' or 'subtree', or stiffness 'beam'",
+            )
+        if self.in_leaf is False and (self.leaf_mass is not None or self.leaf_area is not None):
+            raise ParameterError(
+                "leaves on a bare tree", where="in_leaf", cure="leave in_leaf out, or the leaves"
             )
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
             raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")

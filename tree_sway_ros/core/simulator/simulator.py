@@ -16,6 +16,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
@@ -93,12 +94,12 @@ class SwaySimulator:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
         self.tree = tree
         self.species = species if species is not None else species_named(tree.species)
-        self.settings = replace(settings or Settings(), **changes)
+        self.settings = in_season(tree, self.species, replace(settings or Settings(), **changes))
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self._bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
-        self._drag_law = self.species.drag_law(self.settings.in_leaf)
+        self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
         self._advance = self._bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt = 0.0

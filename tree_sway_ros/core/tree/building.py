@@ -184,7 +184,8 @@ def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
         raise TreeError(
             f"{len(roots)} roots: a forest of trees that are not connected, or orphans",
             where=_label(int(roots[1]), labels),
-            cure=f"give it a parent, as only {_label(int(roots[0]), labels)} may stand on the ground, "
+            cure=f"give it a parent, as only {_label(int(roots[0]), labels)} may stand on the "
+            f"ground, "
             "or make each tree its own",
         )
     children: list[list[int]] = [[] for _ in range(n)]

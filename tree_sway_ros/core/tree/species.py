@@ -1,11 +1,14 @@
 """
-What a tree is made of: wood, damping and drag of each species, with the sources.
+What a tree is made of: wood, damping, drag and leaves of each species, with the sources.
+
+A new species is one entry of the table here; every part of the program reads it from it.
 
 Modulus and density are of green wood: ForestGALES species tables, the BIOMASS wood density table
 and the field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 and 20 m/s: Mayhead
 (1973) for conifers, Vollsinger et al. (2005) for broadleaves. Ash, sycamore, walnut, Ficus and a
 broadleaf of no known species take the mean of the three measured broadleaves, Goldcrest takes
-spruce's. Entries marked as estimates have no measurement behind them.
+spruce's. Entries marked as estimates have no measurement behind them. Where leaves come from stands
+in `leaf_traits`.
 
 """
 
@@ -14,13 +17,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
+from tree_sway_ros.core.tree.leaf_traits import BROAD_LEAVES, NEEDLES, LeafTraits
 from tree_sway_ros.errors import SpeciesError
 
 
 @dataclass(frozen=True)
 class Species:
     """
-    Wood, damping and drag of a species.
+    Wood, damping, drag, leaves and habit of a species.
 
     Parameters
     ----------
@@ -43,6 +47,12 @@ class Species:
         Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
         is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the twist
         of stems alone.
+    leaves
+        Its leaves; evergreen ones are there unless a simulator is told otherwise.
+    habit
+        How `grow` shapes it: ``conifer``, ``broadleaf`` or ``pot``.
+    clear_bole
+        Height of the lowest whorl of a grown conifer over that of the tree in [-].
     is_estimate
         True where modulus or density is a guess to be calibrated.
 
@@ -58,7 +68,14 @@ class Species:
     drag_exponent: float = 0.0
     bare_drag_coefficient: float = 1.2
     shear_ratio: float = 1.0 / 2.6
+    leaves: LeafTraits = BROAD_LEAVES
+    habit: str = "broadleaf"
+    clear_bole: float = 0.1
     is_estimate: bool = False
+
+    def damping(self, in_leaf: bool) -> float:
+        """Return the damping ratio with or without leaves in [-]."""
+        return self.damping_in_leaf if in_leaf else self.damping_bare
 
     def drag_law(self, in_leaf: bool) -> tuple[float, float]:
         """Return C and N of ``Cd = C U^-N``; bare branches do not streamline."""
@@ -69,28 +86,86 @@ class Species:
 
 _GOLDCREST = "Cupressus macrocarpa 'Goldcrest'"
 _with_broadleaf_drag = partial(Species, drag_coefficient=2.345, drag_exponent=0.877)
-_with_spruce_drag = partial(Species, drag_coefficient=2.35, drag_exponent=0.51)
+_conifer = partial(Species, habit="conifer", leaves=NEEDLES)
+_with_spruce_drag = partial(_conifer, drag_coefficient=2.35, drag_exponent=0.51)
 
 _TABLE = {
     s.key: s
     for s in (
-        _with_broadleaf_drag("benjamina", "Ficus benjamina", 8.3e9, 950.0, is_estimate=True),
-        _with_spruce_drag("goldcrest", _GOLDCREST, 6.0e9, 950.0, is_estimate=True),
+        _with_broadleaf_drag(
+            "benjamina",
+            "Ficus benjamina",
+            8.3e9,
+            950.0,
+            leaves=LeafTraits(0.05, 2500.0, 0.22, 5.0, is_evergreen=True),
+            habit="pot",
+            is_estimate=True,
+        ),
+        _with_spruce_drag(
+            "goldcrest",
+            _GOLDCREST,
+            6.0e9,
+            950.0,
+            leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, is_evergreen=True),
+            habit="pot",
+            is_estimate=True,
+        ),
         _with_broadleaf_drag(
             "broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True
         ),
         _with_spruce_drag("spruce", "Norway spruce", 6.3e9, 850.0),
         _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0),
-        Species("pine", "Scots pine", 7.3e9, 850.0, drag_coefficient=3.07, drag_exponent=0.75),
-        Species(
-            "douglas_fir", "Douglas-fir", 8.3e9, 850.0, drag_coefficient=2.40, drag_exponent=0.70
+        _conifer(
+            "pine",
+            "Scots pine",
+            7.3e9,
+            850.0,
+            drag_coefficient=3.07,
+            drag_exponent=0.75,
+            leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, is_evergreen=True),
+            clear_bole=0.45,
         ),
-        Species("birch", "birch", 9.9e9, 900.0, drag_coefficient=1.9627, drag_exponent=0.881),
-        Species("oak", "oak", 9.4e9, 1010.0, drag_coefficient=2.6575, drag_exponent=0.846),
-        Species("beech", "beech", 9.8e9, 1158.0, drag_coefficient=2.4141, drag_exponent=0.904),
+        _conifer(
+            "douglas_fir",
+            "Douglas-fir",
+            8.3e9,
+            850.0,
+            drag_coefficient=2.40,
+            drag_exponent=0.70,
+            clear_bole=0.2,
+        ),
+        Species(
+            "birch",
+            "birch",
+            9.9e9,
+            900.0,
+            drag_coefficient=1.9627,
+            drag_exponent=0.881,
+            leaves=LeafTraits(0.045, 2500.0, 0.18, 5.0),
+        ),
+        Species(
+            "oak",
+            "oak",
+            9.4e9,
+            1010.0,
+            drag_coefficient=2.6575,
+            drag_exponent=0.846,
+            leaves=LeafTraits(0.09, 2500.0, 0.21, 3.5),
+        ),
+        Species(
+            "beech",
+            "beech",
+            9.8e9,
+            1158.0,
+            drag_coefficient=2.4141,
+            drag_exponent=0.904,
+            leaves=LeafTraits(0.065, 3000.0, 0.17, 4.5),
+        ),
         _with_broadleaf_drag("ash", "ash", 9.5e9, 801.0),
         _with_broadleaf_drag("sycamore", "sycamore", 8.4e9, 721.0),
-        _with_broadleaf_drag("walnut", "walnut", 11.3e9, 805.0),
+        _with_broadleaf_drag(
+            "walnut", "walnut", 11.3e9, 805.0, leaves=LeafTraits(0.10, 2500.0, 0.21, 3.0)
+        ),
     )
 }
 
@@ -115,3 +190,8 @@ def species_named(key: str) -> Species:
 def species_keys() -> tuple[str, ...]:
     """Keys of every species in the table."""
     return tuple(_TABLE)
+
+
+def leaf_traits(key: str) -> LeafTraits:
+    """Leaves of a species; those of an average broadleaf if the table does not have it."""
+    return _TABLE[key].leaves if key in _TABLE else BROAD_LEAVES

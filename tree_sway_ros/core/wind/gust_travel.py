@@ -143,7 +143,8 @@ class GustHistory:
         _remember(self._run, self._at, x, y, z, dt)
         _follow_mean(self._mean, x, y, dt, self._averaging)
         _feel(
-            self._run, self._at, self._along, self._from_first, self._mean, self._ratio, self._memory,
+            self._run, self._at, self._along, self._from_first, self._mean, self._ratio,
+            self._memory,
             x, y, z, dt, self._wanted, self._delay, self._felt,
         )  # fmt: skip
         return self._felt
@@ -194,7 +195,8 @@ def _follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) 
 @kernel
 def _feel(
     run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats, ratio: float,
-    memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats, felt: Floats,
+    memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats,
+    felt: Floats,
 ) -> None:  # fmt: skip
     """
     Let delays follow the mean wind, and take the mean of the history over each place's own step.

@@ -56,7 +56,8 @@ class WindProfile:
             )
         if self.kind == "log" and not 0.0 < self.roughness < self.anemometer_height:
             raise ParameterError(
-                f"roughness length {self.roughness} m with an anemometer at {self.anemometer_height} m",
+                f"roughness length {self.roughness} m with an anemometer at "
+                f"{self.anemometer_height} m",
                 cure="give one above 0 and below the anemometer",
             )
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
-from tree_sway_ros.core.simulator.season import in_season
+from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -52,7 +52,6 @@ class TreeFile:
         *,
         fidelity: str = "auto",
         tolerance: float = 0.005,
-        leaf_on: bool = False,
         **changes: Any,
     ) -> Simulator:
         """
@@ -62,8 +61,6 @@ class TreeFile:
         ----------
         settings, fidelity, tolerance, **changes
             As for `make_simulator`.
-        leaf_on
-            Whether the tree bears leaves.
 
         Raises
         ------
@@ -72,14 +69,24 @@ class TreeFile:
 
         """
         model = replace(settings or Settings(), **changes)
-        if leaf_on:
-            model = in_season(self.tree, model, leaf_on=True)
         return make_simulator(
             self.tree, self.species, model, fidelity=fidelity, tolerance=tolerance
         )
 
-    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
-        """Place clusters of leaves on it, always the same ones; None without leaves."""
-        if not leaf_on or count < 1:
+    def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
+        """
+        Place clusters of leaves on it, always the same ones; None without leaves.
+
+        Parameters
+        ----------
+        told
+            Whether the tree bears leaves; None leaves it to the species.
+        count
+            How many clusters.
+
+        """
+        if not is_in_leaf(self.species, told) or count < 1:
             return None
-        return leaf_clusters(self.tree, np.random.default_rng(0), count=count)
+        return leaf_clusters(
+            self.tree, np.random.default_rng(0), count=count, traits=self.species.leaves
+        )

@@ -1,11 +1,12 @@
 """
 NMEA 0183: the sentences MWV and MWD of a wind instrument, on a mast or a boat.
 
-- ``$--MWV,angle,R|T,speed,K|M|N|S,A|V``: where the wind comes from, clockwise from the bow in degrees.
-  R is the apparent wind, as the instrument feels it; T is the true wind, less the motion of the
-  boat, and still counted from the bow. On a mast that stands still the two are one.
-- ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from magnetic
-  north.
+- ``$--MWV,angle,R|T,speed,K|M|N|S,A|V``: where the wind comes from, clockwise from the bow in
+  degrees. R is the apparent wind, as the instrument feels it; T is the true wind, less
+  the motion of the boat, and still counted from the bow. On a mast that stands still the
+  two are one.
+- ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from
+  magnetic north.
 
 The bow has to be told: option ``heading``. A mast instrument aligned to north has 0. The sentences
 carry no time: they are taken as evenly spaced, at option ``rate``. A wrong checksum, a status that

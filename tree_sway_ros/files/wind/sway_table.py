@@ -100,7 +100,8 @@ def read_csv_sway(path: Path) -> SwayRecord:
         raise FormatError(
             f"no {'time' if clock is None else 'motion'} among {', '.join(table.columns[:20])}",
             where=f"{source}:1",
-            cure="name the columns time, x, y or time, tilt_x, tilt_y or time, ax, ay in the header",
+            cure="name the columns time, x, y or time, tilt_x, tilt_y or time, ax, ay in the "
+            "header",
         )
     quantities = sorted({quantity for _, quantity in motion})
     if len(quantities) > 1:

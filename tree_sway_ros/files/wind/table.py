@@ -88,7 +88,8 @@ def read_csv_wind(
     direction = _column(table, _DIRECTION, ANGLE_UNITS, pi / 180.0)
     if time is None or ((u is None or v is None) and (speed is None or direction is None)):
         raise FormatError(
-            f"no time with u and v, or with speed and direction, among {', '.join(table.columns[:20])}",
+            f"no time with u and v, or with speed and direction, among "
+            f"{', '.join(table.columns[:20])}",
             where=f"{source}:1",
             cure="name the columns so in the header",
         )

@@ -20,7 +20,7 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.errors import ParameterError, TreeSwayError
 from tree_sway_ros.ros.parameters.parameter import (
     Parameter,
     Table,
@@ -45,6 +45,9 @@ class ParameterValues:
         The node's parameters.
     on_change
         Called with the new values by name after a live change.
+    check
+        Called with all values by name, as they would be, before they are taken, at the start and at
+        each change; raises where they do not go together.
 
     Raises
     ------
@@ -58,10 +61,12 @@ class ParameterValues:
         node: Any,
         table: Table,
         on_change: Callable[[dict[str, Value]], None] | None = None,
+        check: Callable[[dict[str, Value]], None] | None = None,
     ) -> None:
         self._by_name = {parameter.name: parameter for parameter in table}
         self._values: dict[str, Value] = {}
         self._on_change = on_change
+        self._check_all = check or (lambda _values: None)
         given = {name: item.value for name, item in node.get_parameters_by_prefix("").items()}
         name = node.get_name()
         for unknown in unknown_names(table, given):
@@ -75,6 +80,7 @@ class ParameterValues:
             node.declare_parameter(
                 parameter.name, shown, _descriptor(parameter), ignore_override=True
             )
+        self._check_all(dict(self._values))
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
 
@@ -87,28 +93,31 @@ class ParameterValues:
         return {name: self._values[name] for name in names}
 
     def _check(self, changes: list[Any]) -> SetParametersResult:
+        try:
+            self._check_all(self._values | self._checked(changes))
+        except TreeSwayError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        except Exception as error:  # the caller gets an answer, whatever a rule stumbles over
+            reason = f"cannot be checked: {type(error).__name__}: {error}"
+            return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _checked(self, changes: list[Any]) -> dict[str, Value]:
+        new: dict[str, Value] = {}
         for change in changes:
             parameter = self._by_name.get(change.name)
             if parameter is None:
                 continue
-            try:
-                new = parameter.checked(change.value)
-            except ParameterError as error:
-                return SetParametersResult(successful=False, reason=str(error))
-            if not parameter.live and new != self._values[change.name]:
-                reason = (
-                    f"parameter '{change.name}' is read at start only; "
-                    f"restart with -p {change.name}:={change.value}"
+            new[change.name] = parameter.checked(change.value)
+            if not parameter.live and new[change.name] != self._values[change.name]:
+                raise ParameterError(
+                    f"parameter '{change.name}' is read at start only",
+                    cure=f"restart with -p {change.name}:={change.value}",
                 )
-                return SetParametersResult(successful=False, reason=reason)
-        return SetParametersResult(successful=True)
+        return new
 
     def _apply(self, changes: list[Any]) -> None:
-        new = {
-            change.name: self._by_name[change.name].checked(change.value)
-            for change in changes
-            if change.name in self._by_name
-        }
+        new = self._checked(changes)
         self._values.update(new)
         if new and self._on_change is not None:
             self._on_change(new)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
 from tree_sway_ros.core.scene.make import FIDELITIES
+from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
@@ -155,7 +156,8 @@ SOLVER: Table = (
     Parameter(
         "fidelity",
         "modes",
-        "Model of the sway, from the least to the most; `auto` takes the least within tolerance and budget.",
+        "Model of the sway, from the least to the most; `auto` takes the least within tolerance "
+        "and budget.",
         choices=FIDELITIES,
         source="`branch` is the paper's, `segments` its predecessors'",
     ),
@@ -205,9 +207,11 @@ SOLVER: Table = (
         source="doc/choosing_a_method.md",
     ),
     Parameter(
-        "leaf_on",
-        False,
-        "Leaves, with their mass, drag and damping; in a forest, of trees that do not say.",
+        "leaves",
+        "auto",
+        "Leaves, with their mass, drag and damping: `auto` where the species is evergreen; in a "
+        "forest, of trees that do not say.",
+        choices=tuple(LEAVES),
     ),
     Parameter(
         "leaf_clusters",
@@ -258,7 +262,8 @@ SOLVER: Table = (
     Parameter(
         "wind_delay",
         0.02,
-        "The wind is felt so much later; samples that arrive within it give the same motion in every run.",
+        "The wind is felt so much later; samples that arrive within it give the same motion in "
+        "every run.",
         "s",
         0.0,
         2.0,

@@ -111,8 +111,13 @@ class Composition:
         """A node by its name, with its namespace if it has one: ``solver``, ``oak/solver``."""
         return self._nodes[name]
 
+    @property
+    def nodes(self) -> tuple[Any, ...]:
+        """The nodes, in the order of their start."""
+        return tuple(self._nodes.values())
+
     def check(self) -> None:
-        """Raise what a callback or the thread of a node died of."""
+        """Raise what the executor or the thread of a node died of; callbacks end neither."""
         if self._failure is not None:
             raise self._failure
         for node in self._nodes.values():

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import importlib
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
+from tree_sway_ros.ros.process.ending import Ending
 
+_BAD_NAMES = ("InvalidNamespaceException", "InvalidNodeNameException")
 _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 
@@ -104,12 +105,19 @@ def create(make: Any, **options: Any) -> Any:
     """
     try:
         return make(**options)
-    except RuntimeError as error:
-        if type(error).__name__ != "RCLError":
+    except Exception as error:
+        kind, text = type(error).__name__, _first_line(error)
+        if kind in _BAD_NAMES or "invalid node name" in text:
+            raise TransportError(
+                text.split(", at /")[0].rstrip(":"),
+                where=f"namespace '{options['namespace']}'" if options.get("namespace") else "",
+                cure="use letters, digits and _, levels parted by one /, no digit first",
+            ) from None
+        if kind != "RCLError":
             raise
         domain = os.environ.get("ROS_DOMAIN_ID", "0")
         raise TransportError(
-            f"cannot join domain {domain}: {_first_line(error)}",
+            f"cannot join domain {domain}: {text}",
             cure="too many processes may be in it, or no network is up: try another ROS_DOMAIN_ID",
         ) from error
 
@@ -118,28 +126,23 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
     node = None
-    init(rclpy, args)
-    try:
-        # Made before anything can tell us to end: rclpy's own, made later, would say so with a
-        # trace.
-        executor = SingleThreadedExecutor()
-        node = create(getattr(importlib.import_module(module), node_class))
-        executor.add_node(node)
-        while rclpy.ok() and node.failure is None and not node.is_done:
-            executor.spin_once(timeout_sec=_CHECK_PERIOD)
-        if node.failure is not None:
-            raise node.failure
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except Exception:
-        if rclpy.ok():  # otherwise told to end, amid whatever it was doing
-            raise
-    finally:
-        # A second Ctrl-C while things close would end the process with an error.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        if node is not None:
-            node.close()
-        rclpy.try_shutdown()
+    with Ending() as ending:
+        init(rclpy, args, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+        try:
+            node = create(getattr(importlib.import_module(module), node_class))
+            ending.look()
+            executor = SingleThreadedExecutor()
+            executor.add_node(node)
+            while not (ending.is_asked or node.is_done or node.failure) and rclpy.ok():
+                executor.spin_once(timeout_sec=_CHECK_PERIOD)
+            if node.failure is not None:
+                raise node.failure
+        except ExternalShutdownException:
+            pass
+        finally:
+            if node is not None:
+                node.close()
+            rclpy.try_shutdown()
 
 
 def _first_line(error: Exception) -> str:

@@ -94,7 +94,8 @@ DIAGNOSTICS = Topic(
 CAMERA = Topic(
     "camera",
     "geometry_msgs/msg/PoseStamped",
-    "Where the tree is seen from, in the tree's frame: `auto` keeps its error below `tolerance_pixels`.",
+    "Where the tree is seen from, in the tree's frame: `auto` keeps its error below "
+    "`tolerance_pixels`.",
     reliable=False,
 )
 CLOCK = Topic(

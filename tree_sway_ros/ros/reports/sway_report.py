@@ -19,6 +19,9 @@ _WIND = {
     "stale": (STALE, "no wind: nothing is left of its force"),
 }
 
+_SILENCE = 1.0
+"""Without a frame for so long [s], by a clock that goes on, the stream is told to stand."""
+
 
 class SwayReport:
     """Compares each report with the one before."""
@@ -40,12 +43,12 @@ class SwayReport:
             Pose arrays published so far.
 
         """
-        output = self._output(pacer.pace(), 1e9 / pacer.period, frames)
+        output = self._output(pacer.pace(), 1e9 / pacer.period, frames, pacer.is_simulated)
         statuses = [_wind(stepper.wind_state), output, _model(stepper.simulator)]
         gusts = getattr(stepper.simulator, "gusts", None)
         return statuses if gusts is None else [*statuses, _gusts(gusts)]
 
-    def _output(self, pace: Pace, rate: float, frames: int) -> Status:
+    def _output(self, pace: Pace, rate: float, frames: int, is_simulated: bool) -> Status:
         now = time.monotonic()
         published = (frames - self._frames) / max(1e-9, now - self._time)
         skipped = pace.skipped - self._skipped
@@ -63,6 +66,8 @@ class SwayReport:
             "clock forward": pace.clamped,
             "clock back": pace.restarts,
         }
+        if pace.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
+            return Status("output", WARN, f"no frame for {pace.silence:.1f} s", values)
         if skipped > 0.01 * rate:
             late = f"{1e3 * pace.late_p95:.1f} ms late (p95)"
             return Status("output", WARN, f"{skipped} frames skipped, {late}", values)

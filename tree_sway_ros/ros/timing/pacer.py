@@ -22,6 +22,8 @@ import numpy as np
 
 LONGEST_STEP = 500_000_000
 """A tick never stands for more time than this [ns]: a clock that jumped forward is no long step."""
+PATIENCE = 10
+"""So many ticks may fail one after another before the thread gives up."""
 _BACK = 100_000_000
 _WINDOW = 600
 _log = logging.getLogger(__name__)
@@ -52,8 +54,8 @@ class Pace(NamedTuple):
     How well the pace was kept lately: rate [Hz], lateness [s], work [s], and counts since the
     start.
 
-    `skipped` are frames on the grid that never came, `clamped` jumps forward, `restarts` jumps
-    back.
+    `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
+    the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
 
     """
 
@@ -66,6 +68,7 @@ class Pace(NamedTuple):
     skipped: int
     clamped: int
     restarts: int
+    silence: float
 
 
 class Pacer:
@@ -81,7 +84,9 @@ class Pacer:
     work
         Called with each tick.
     on_error
-        Called with what `work` raised; the thread then ends.
+        Called with what `work` raised in `PATIENCE` ticks one after another; the thread then ends.
+    on_slip
+        Called with what `work` raised before that; the next tick comes as if nothing had been.
 
     """
 
@@ -91,11 +96,15 @@ class Pacer:
         rate: float,
         work: Callable[[Tick], None],
         on_error: Callable[[Exception], None],
+        on_slip: Callable[[Exception], None] = lambda _error: None,
     ) -> None:
         self.period = round(1e9 / rate)
         self._clock = clock
         self._work = work
         self._on_error = on_error
+        self._on_slip = on_slip
+        self._slips = 0
+        self._last_steady = 0
         self._last: int | None = None
         self._wake = threading.Event()
         self._stopping = False
@@ -129,10 +138,16 @@ class Pacer:
             self._jumps.unregister()
             self._jumps = None
 
+    @property
+    def is_simulated(self) -> bool:
+        """Whether the clock is simulated time, which may stand still."""
+        return bool(self._clock.ros_time_is_active)
+
     def pace(self) -> Pace:
         """How well the pace was kept over the last 600 ticks."""
         recent = list(self._recent)
-        counts = (self._ticks, self._skipped, self._clamped, self._restarts)
+        silence = 1e-9 * (time.monotonic_ns() - self._last_steady) if self._last_steady else 0.0
+        counts = (self._ticks, self._skipped, self._clamped, self._restarts, silence)
         if len(recent) < 2:
             return Pace(0.0, 0.0, 0.0, 0.0, 0.0, *counts)
         table = np.array(recent)
@@ -153,13 +168,23 @@ class Pacer:
                     self._wake.wait(self._until_next(now))
                     continue
                 begin = time.perf_counter()
-                self._work(tick)
+                self._do(tick)
                 self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
                 self._ticks += 1
         except Exception as error:
             _log.debug("pacer stopped", exc_info=True)
             if not self._stopping:
                 self._on_error(error)
+
+    def _do(self, tick: Tick) -> None:
+        try:
+            self._work(tick)
+            self._slips = 0
+        except Exception as error:
+            self._slips += 1
+            if self._stopping or self._slips >= PATIENCE:
+                raise
+            self._on_slip(error)
 
     def _due(self, now: int) -> Tick | None:
         """The tick that is due, if one is."""
@@ -168,21 +193,25 @@ class Pacer:
         index = now // self.period
         if self._last is None or now < self._last * self.period - _BACK:
             self._restarts += self._last is not None
-            self._last = index
+            self._last, self._last_steady = index, time.monotonic_ns()
             return Tick(index * self.period, 1, True)
         periods = index - self._last
         if periods <= 0:
             return None
-        self._last = index
+        steady = time.monotonic_ns()
+        passed = steady - self._last_steady
+        self._last, self._last_steady = index, steady
         most = max(1, LONGEST_STEP // self.period)
-        if periods > most:
+        if not self.is_simulated:
+            # A wall clock that was set forward skips nothing; one that went on as time does, does.
+            self._skipped += min(periods, max(1, round(passed / self.period))) - 1
+            self._clamped += periods * self.period > passed + LONGEST_STEP
+        elif periods > most:
             self._clamped += 1
-        elif not self._clock.ros_time_is_active:
-            self._skipped += periods - 1
         return Tick(index * self.period, min(periods, most), False)
 
     def _until_next(self, now: int) -> float | None:
         """Longest sleep in [s]; simulated time wakes the thread by itself."""
-        if self._clock.ros_time_is_active or self._last is None:
+        if self.is_simulated or self._last is None:
             return 0.5
         return max(0.0, ((self._last + 1) * self.period - now) * 1e-9)

@@ -18,6 +18,13 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.errors import FormatError
 
+LONGEST_CLOCK_STEP = 0.25
+"""Between two ticks of /clock in the record's time [s]; half of what a node takes for a jump."""
+_LAST_TIME = 2.0**31
+"""The first date after 1970 that a stamp cannot hold [s]."""
+_MARGIN = 86_400.0
+"""Loops go on after the end of a record [s]."""
+
 
 class Event(NamedTuple):
     """
@@ -34,6 +41,23 @@ class Event(NamedTuple):
 
     time: float
     row: int
+
+
+def is_ros_time(epoch: float | None, time: NDArray[np.float64]) -> bool:
+    """
+    Return whether a record can be played with its own dates.
+
+    Parameters
+    ----------
+    epoch
+        Date of the record's time 0 in [s] after 1970; None, which can, if it has none.
+    time
+        Of its samples in [s], (n,).
+
+    """
+    if epoch is None or not len(time):
+        return True
+    return bool(epoch + time[0] >= 1.0 and epoch + time[-1] < _LAST_TIME - _MARGIN)
 
 
 class Playback:

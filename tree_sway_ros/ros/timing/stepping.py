@@ -56,6 +56,8 @@ class Stepper:
         self._origin = 0
         self._felt = 0.0
         self._cost = 0.0
+        self.wind_state = "none"
+        """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
 
     def warm_up(self) -> float:
         """
@@ -116,11 +118,8 @@ class Stepper:
                 begin = time.perf_counter()
                 self.simulator.step(wind, dt)
                 self._cost += _NEWEST * (time.perf_counter() - begin - self._cost)
-
-    @property
-    def wind_state(self) -> str:
-        """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
-        return str(self._wind.state(self._felt))
+        # Asked for here, in the thread that changes it: reports come from another.
+        self.wind_state = str(self._wind.state(self._felt))
 
     def _mean_wind(self, end: float, dt: float) -> Any:
         samples = self._samples

@@ -41,7 +41,7 @@ class PoseStream:
         self.frames = 0
         self._template = pose_array_template(tree.n_segments, frame_id)
         self.poses = self._template.blocks[0]
-        self._pose_publisher = node.publisher(SEGMENT_POSES)
+        self._pose_publisher = node.publisher(SEGMENT_POSES, alone=True)
         self._pose_divider, self._marker_divider = Divider(), Divider()
         self._marker_every = 0
         if values["marker_rate"] > 0.0:
@@ -107,8 +107,10 @@ class _Transforms:
 
         self._publisher = node.publisher(TF)
         self._message = message_class()
+        # Frames are one space for all trees: what a namespace holds apart on topics, names do here.
+        prefix = "/".join(filter(None, (node.get_namespace().strip("/"), tree.name)))
         for name in tree.segment_names:
-            transform = TransformStamped(child_frame_id=f"{tree.name}/{name}")
+            transform = TransformStamped(child_frame_id=f"{prefix}/{name}")
             transform.header.frame_id = frame_id
             self._message.transforms.append(transform)
 

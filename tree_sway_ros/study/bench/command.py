@@ -21,8 +21,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "what",
         choices=("step", "cut", "forest", "setup"),
-        help="step: solve and place one step of a tree of 121 branches; cut: solve it cut in 3 to 24 segments a "
-        "branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees of 121 and 1,021 branches up",
+        help="step: solve and place one step of a tree of 121 branches; cut: solve it cut in 3 "
+        "to 24 segments a "
+        "branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees of 121 and 1,021 "
+        "branches up",
     )
     parser.add_argument("--rounds", type=int, default=20, help="of 200 steps each (%(default)s)")
     parser.add_argument("--segments", type=int, default=6, help="a branch, for step (%(default)s)")
@@ -56,7 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     print(f"{tree.n_branches} branches, {tree.n_segments} segments; one thread on {core_name()}")
     print(
-        "solve and place [us]   median      min   numpy twin: median      min   ratio   largest difference"
+        "solve and place [us]   median      min   numpy twin: median      min   ratio   largest "
+        "difference"
     )
     for timing in timings:
         print(_row(timing))

@@ -113,7 +113,8 @@ def forest_table(n_trees: int = N_TREES) -> str:
     timings = [time_forest(bench_forest(n_trees, model)) for model in ("branch", "subtree")]
     size = timings[0]
     lines = [
-        f"{size.n_trees} trees, {size.n_branches} branches, {size.n_segments} segments at {RATE:g} Hz",
+        f"{size.n_trees} trees, {size.n_branches} branches, {size.n_segments} segments at "
+        f"{RATE:g} Hz",
         "share of a core    solve    place      sum   median",
     ]
     for timing in timings:

@@ -50,7 +50,7 @@ class NumpyTwin:
         """Take over what the simulator knows of its tree."""
         tree = sim.tree
         bank = build_bank(tree, sim.species, sim.settings)
-        self._drag_law = sim.species.drag_law(sim.settings.in_leaf)
+        self._drag_law = sim.species.drag_law(bool(sim.settings.in_leaf))
         self._oscillators = bank.oscillators
         branches, segments = bank.branches, bank.segments
         self._branch: dict[str, Any] = {n: branches[n].copy() for n in branches.dtype.names}
@@ -158,7 +158,7 @@ class NumpyTwin:
         base[0, 0] = 1.0
         for level in self._levels:
             parent = branch["parent"][level]
-            slope = np.take_along_axis(branch["seat_slope"][level], self._shape[parent], axis=1)
+            slope = np.take_along_axis(branch["base_slope"][level], self._shape[parent], axis=1)
             turn = np.einsum("bc,bck->bk", slope * seat_angles[parent], self._axis[parent])
             base[level] = quaternion_product(base[parent], quaternions_of(turn))
         turned = quaternion_product(base[owner], bend)
@@ -171,7 +171,7 @@ class NumpyTwin:
         start = np.zeros((len(t), 3))
         start[0] = self._origin
         for level in self._levels:
-            seat = branch["seat"][level]
+            seat = branch["base_segment"][level]
             offset = quaternion_rotated(pose[seat], branch["offset"][level])
             start[level] = start[owner[seat]] + within[seat] + offset
 

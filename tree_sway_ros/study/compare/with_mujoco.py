@@ -84,12 +84,14 @@ class Comparison:
         """Say it in a few lines."""
         return "\n".join(
             (
-                f"{self.n_branches} branches, {self.n_segments} segments, tips move up to {self.tip_motion:.3f} m",
+                f"{self.n_branches} branches, {self.n_segments} segments, tips move up to "
+                f"{self.tip_motion:.3f} m",
                 f"MuJoCo's f1 / the beam's {self.first_frequency:.4f}, static sway / the beam's "
                 f"{self.static_sway:.4f}, error at twice the truth's step {self.step_error:.4f}",
                 f"tip error over tip motion: {self.model} {self.error:.4f}, MuJoCo at 1/60 s "
                 f"{self.error_at_60:.4f}",
-                f"CPU time a simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, MuJoCo "
+                f"CPU time a simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, "
+                f"MuJoCo "
                 f"{1e3 * self.mujoco_cost:.1f} ms, {self.speed_up:.0f} times as much",
             )
         )
@@ -134,7 +136,9 @@ def compare_with_mujoco(
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
     quick = MujocoTree(tree, wood, damping_ratio, even=False)
-    settings = Settings(damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0)
+    settings = Settings(
+        damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0, in_leaf=False
+    )
     rest = tree.end[tree.branch_first[1:] - 1]
     ours: SwaySimulator | AdaptiveSimulator
     if model == "auto":

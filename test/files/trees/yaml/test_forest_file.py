@@ -61,7 +61,7 @@ def test_leaves_stand_on_their_own_trees():
 
 
 def test_a_tree_file_makes_its_simulator_too():
-    sim = FILE.simulator(fidelity="coupled", leaf_on=True)
+    sim = FILE.simulator(fidelity="coupled", in_leaf=True)
     assert sim.model == "coupled"
     assert sim.settings.leaf_area == pytest.approx(foliage_of(FILE.tree).drag_area)
     assert FILE.leaves(False, 40) is None

@@ -16,7 +16,8 @@ from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.numbering import positions_of_parents
 
-_COLUMNS = ("cyl_ID", "parent_ID", "extension_ID", "startX", "startY", "startZ", "endX", "endY", "endZ",
+_COLUMNS = ("cyl_ID", "parent_ID", "extension_ID", "startX", "startY", "startZ", "endX", "endY",
+            "endZ",
             "radius_cyl")  # fmt: skip
 
 

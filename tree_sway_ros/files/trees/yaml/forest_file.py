@@ -76,7 +76,6 @@ class ForestFile:
         *,
         fidelity: str = "auto",
         tolerance: float = 0.005,
-        leaf_on: bool = False,
         **changes: Any,
     ) -> Forest:
         """
@@ -86,8 +85,6 @@ class ForestFile:
         ----------
         settings, fidelity, tolerance, **changes
             As for `make_simulator`, for every tree.
-        leaf_on
-            Whether those trees bear leaves of which the file does not say.
 
         Raises
         ------
@@ -100,20 +97,26 @@ class ForestFile:
             settings,
             fidelity=fidelity,
             tolerance=tolerance,
-            leaf_on=leaf_on,
             anemometer=self.anemometer,
             convection_ratio=self.convection_ratio,
             **changes,
         )
 
-    def leaves(self, leaf_on: bool, count: int) -> LeafClusters | None:
+    def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """
         Place clusters of leaves, as many on a tree as its leaf area is of all; None without leaves.
+
+        Parameters
+        ----------
+        told
+            Whether trees bear leaves of which the file does not say; None leaves it to the species.
+        count
+            How many clusters on all trees.
 
         """
         area = np.array(
             [
-                foliage_of(each.tree).area.sum() if each.bears_leaves(leaf_on) else 0.0
+                foliage_of(each.tree).area.sum() if each.bears_leaves(told) else 0.0
                 for each in self.trees
             ]
         )

@@ -49,8 +49,10 @@ class Baumgarte(MultiplierMethod):
     nodes: ClassVar[tuple[float, ...]] = (0.0, 0.5, 1.0)
     limit: ClassVar[float] = 2.828
     notes: ClassVar[str] = (
-        "with alpha = beta the gain must stay below 2.785 / h on Runge-Kutta 4, .828 / h on semi-implicit "
-        "Euler; a gain that grows as 1 / h lowers the order from 4 to 2, seen once the error is small"
+        "with alpha = beta the gain must stay below 2.785 / h on Runge-Kutta 4, .828 / h on "
+        "semi-implicit "
+        "Euler; a gain that grows as 1 / h lowers the order from 4 to 2, seen once the error is "
+        "small"
     )
     source: ClassVar[str] = (
         "Baumgarte 1972, Comput. Methods Appl. Mech. Eng. 1, 1; Ascher et al. 1994"

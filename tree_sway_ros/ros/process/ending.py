@@ -1,0 +1,87 @@
+"""
+Told to end, a process ends soon, whatever it is doing.
+
+Ctrl-C and SIGTERM set a flag that a loop looks at, or break into what runs before there is a loop.
+Python looks at signals between two of its own instructions, and the compiler of the kernels may not
+come back to one for seconds; so a thread watches as well, and ends the process when the time is
+over.
+
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from types import FrameType, TracebackType
+
+LONGEST = 1.5
+"""From the signal to the end of the process [s], if it does not end by itself before."""
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Ending:
+    """
+    A context that hears SIGINT and SIGTERM; in the main thread only, elsewhere it does nothing.
+
+    Parameters
+    ----------
+    limit
+        Time from the signal to the end of the process in [s]; None for no limit.
+
+    """
+
+    def __init__(self, limit: float | None = LONGEST) -> None:
+        self.is_asked = False
+        self._limit = limit
+        self._breaks_in = True
+        self._over = threading.Event()
+        self._pipe: tuple[int, int] | None = None
+        self._before: list[object] = []
+
+    def look(self) -> None:
+        """From now on a loop looks at `is_asked`: break into nothing any more."""
+        self._breaks_in = False
+        if self.is_asked:
+            raise KeyboardInterrupt
+
+    def __enter__(self) -> Ending:
+        if threading.current_thread() is not threading.main_thread():
+            return self
+        self._before = [signal.signal(number, self._hear) for number in _SIGNALS]
+        if self._limit is not None:
+            self._pipe = os.pipe()
+            os.set_blocking(self._pipe[1], False)
+            signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
+            threading.Thread(target=self._watch, name="ending", daemon=True).start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if not self._before:
+            return
+        self._over.set()
+        for number, before in zip(_SIGNALS, self._before, strict=True):
+            # What was told to end stays deaf: a second Ctrl-C amid the last lines is no error.
+            signal.signal(number, signal.SIG_IGN if self.is_asked else before)  # type: ignore[arg-type]
+        if self._pipe is not None:
+            signal.set_wakeup_fd(-1)
+            os.close(self._pipe[1])
+
+    def _hear(self, _number: int, _frame: FrameType | None) -> None:
+        is_first, self.is_asked = not self.is_asked, True
+        if is_first and self._breaks_in:
+            raise KeyboardInterrupt
+
+    def _watch(self) -> None:
+        assert self._pipe is not None
+        while heard := os.read(self._pipe[0], 1):
+            if heard[0] in _SIGNALS and not self._over.wait(self._limit):
+                sys.stdout.flush()
+                os._exit(0)
+        os.close(self._pipe[0])
