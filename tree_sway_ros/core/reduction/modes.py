@@ -166,15 +166,25 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
 
     """
     n = reduction.n_coordinates
-    scale = 1.0 / np.sqrt(reduction.elastic)
-    softening = -(reduction.gravity.multiply(scale[:, None]).multiply(scale[None, :])).tocsc()
+    softening = -reduction.gravity
     if softening.nnz == 0 or abs(softening).max() == 0.0:
         return float("inf"), 0
     if n <= _DENSE_UP_TO:
-        values, vectors = linalg.eigh(softening.toarray(), subset_by_index=[n - 1, n - 1])
+        values, vectors = linalg.eigh(
+            softening.toarray(), reduction.elastic.toarray(), subset_by_index=[n - 1, n - 1]
+        )
     else:
-        values, vectors = sparse_linalg.eigsh(softening, k=1, which="LA", v0=np.ones(n))
-    worst = int(np.argmax(np.abs(vectors[:, 0] * scale)))
+        elastic = csc_matrix(reduction.elastic)
+        solve = sparse_linalg.splu(elastic)
+        values, vectors = sparse_linalg.eigsh(
+            softening,
+            k=1,
+            M=elastic,
+            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
+            which="LA",
+            v0=np.ones(n),
+        )
+    worst = int(np.argmax(np.abs(vectors[:, 0])))
     return (1.0 / float(values[0]) if values[0] > 0.0 else float("inf")), worst
 
 

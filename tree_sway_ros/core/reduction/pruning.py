@@ -108,7 +108,7 @@ class Pruning:
             twist=whole.twist[moving],
             mass=whole.mass[keep][:, keep],
             gravity=whole.gravity[keep][:, keep],
-            elastic=whole.elastic[keep],
+            elastic=whole.elastic[keep][:, keep],
         )
 
     def carriers(self) -> Ints:

@@ -238,6 +238,7 @@ class CalibratedTree:
             tree,
             species.density,
             carries=carries,
+            shear_ratio=species.shear_ratio,
             enriched=enriched,
             speed_profile=speed,
             leaf_mass=settings.leaf_mass,
