@@ -164,5 +164,7 @@ def _child(
     length = parent.length * rng.uniform(*habit.length)
     if parent.order == 0 and len(habit.children[0]) and habit.low < 0.25:
         length *= 1.2 - 0.8 * node / m
-    diameter = min(length / rng.uniform(*habit.slim), 0.85 * widths[node])
+    slim = rng.uniform(*habit.slim)
+    diameter = min(length / slim, 0.85 * widths[node])
+    length = min(length, 1.2 * slim * diameter)
     return _Shoot(nodes[node], way, length, diameter, parent.order + 1, first + node - 1)
