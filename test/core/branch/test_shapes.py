@@ -40,8 +40,7 @@ def test_an_enriched_branch_has_pairs_and_what_carries_twists(fork):
     for branch, model in enumerate(models):
         twists = [way for way in model.coordinates if way.is_twist]
         assert len(model.coordinates) - len(twists) == 2 * (FEWER if branch else N_SHAPES)
-        most = FEWER if branch else N_TWISTS
-        assert 0 < len(twists) <= most if len(model.children) else not twists
+        assert (0 if len(model.children) == 0 else 1) <= len(twists) <= N_TWISTS
         for way in twists:
             assert way.axis == pytest.approx(model.beam.chord)
 

@@ -162,11 +162,12 @@ def branch_models(
     return models[::-1]
 
 
-def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
-    """Shapes and twists of a branch."""
+def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int, int]:
+    """Shapes and twists of a branch, and how many of these are by the wind."""
     if branch not in enriched:
-        return 1, 0
-    return (N_SHAPES, N_TWISTS) if tree.branch_parent[branch] < 0 else (FEWER, FEWER)
+        return 1, 0, 0
+    is_stem = tree.branch_parent[branch] < 0
+    return (N_SHAPES, N_TWISTS, 1) if is_stem else (FEWER, N_TWISTS, 2)
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

@@ -23,14 +23,10 @@ N_SHAPES = 3
 """Bending shapes of an enriched stem, each about two axes."""
 
 N_TWISTS = 3
-"""Twists of an enriched stem."""
+"""Twists of an enriched branch: of a stem one by the wind, of any other two."""
 
 FEWER = 2
-"""
-Shapes, and twists, of any other enriched branch: a third gains .5 % of the motion and costs a half
-more.
-
-"""
+"""Shapes of any other enriched branch: a third gains 0.5 % of the motion and costs a half more."""
 
 MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
 
@@ -71,8 +67,8 @@ class Carried:
     area, area_moment
         Drag area in [m^2], (c,), and its first moment in [m^3], (c, 3).
     force, moment
-        Force of a wind of 1 m/s and 1 kg/m^3 along x, y and z, and its moment about the root of
-        the tree, both (c, 3, 3), the wind first.
+        Force of winds along x, y and z, as of `wind_load`, and its moment about the root of the
+        tree, both (c, 3, 3), the wind first.
     mass, mass_moment, mass_second
         Mass in [kg], (c,), its first moment in [kg m], (c, 3), and second in [kg m^2], (c, 3, 3).
 
@@ -136,6 +132,7 @@ def ways_to_move(
     shear_ratio: float,
     n_shapes: int = 1,
     n_twists: int = 0,
+    n_by_wind: int = 0,
 ) -> tuple[Coordinate, ...]:
     """
     Find the coordinates of a branch.
@@ -152,6 +149,8 @@ def ways_to_move(
         Shear modulus over Young's in [-].
     n_shapes, n_twists
         Shapes it bends in, each about two axes, and twists; fewer where there are no more.
+    n_by_wind
+        How many of the twists are those by the wind.
 
     Returns
     -------
@@ -178,7 +177,7 @@ def ways_to_move(
             if not _extend(shapes, beam, bending / beam.second_moment):
                 break
     if n_twists > 0:
-        twists = _twists(beam, carried, curvatures[:2], n_twists)
+        twists = _twists(beam, carried, curvatures[:2], n_twists, n_by_wind)
     if len(shapes) > 1 or twists or fields is None:
         fields = [RotationField.about(first, e2), RotationField.about(first, -e1)]
     ways = [Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)]
@@ -190,11 +189,24 @@ def ways_to_move(
 
 
 def wind_load(beam: BranchBeam, drag_area: Floats, wind: Floats) -> Floats:
-    """Force per length of a wind (3,) on the branch at rest, per kg/m^3, (m, 5, 3)."""
-    flow = wind - (beam.tangent @ wind)[:, None] * beam.tangent
-    flow *= np.linalg.norm(flow, axis=1)[:, None]
-    load: Floats = drag_area[..., None] * flow[:, None, :]
+    """
+    Force per length on the branch at rest, of winds from all sides along the ground, as far as it
+    is linear in the wind: per m/s of a wind (3,) and kg/m^3 in winds of 1 m/s, (m, 5, 3).
+
+    """
+    across = wind - (beam.tangent @ wind)[:, None] * beam.tangent
+    load: Floats = (drag_area * exposure(beam)[:, None])[..., None] * across[:, None, :]
     return load
+
+
+def exposure(beam: BranchBeam) -> Floats:
+    """Mean over winds from all sides of the share of the wind that goes across, (m,)."""
+    level = 1.0 - beam.tangent[:, 2:] ** 2
+    share: Floats = np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1)
+    return share
+
+
+_ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 
 def _static_pair(
@@ -226,7 +238,7 @@ def _drawn(beam: BranchBeam, curvature: Floats) -> SlopeShape:
 
 
 def _twists(
-    beam: BranchBeam, carried: Carried, curvatures: Floats, n_twists: int
+    beam: BranchBeam, carried: Carried, curvatures: Floats, n_twists: int, n_by_wind: int
 ) -> list[SlopeShape]:
     """
     Twists by what it carries turning as one, then by the wind on a crooked branch, then by what
@@ -241,9 +253,9 @@ def _twists(
     along = np.einsum("wsgk,sk->wsg", curvatures, beam.tangent) * (beam.tangent @ beam.chord)[:, None]
     left = [_rest(twists, beam, each) for each in along]
     gram = np.array([[one.stiffness(other, 1.0) for other in left] for one in left])
-    strongest = np.linalg.eigh(gram)[1][:, -1]
-    if len(twists) < n_twists:
-        _extend(twists, beam, np.einsum("w,wsg->sg", strongest, along))
+    strongest_first = np.linalg.eigh(gram)[1].T[::-1]
+    for mix in strongest_first[: min(n_by_wind, n_twists - len(twists))]:
+        _extend(twists, beam, np.einsum("w,wsg->sg", mix, along))
     while 0 < len(twists) < n_twists and len(spin):
         turn = twists[-1].child_slope
         if not _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment):

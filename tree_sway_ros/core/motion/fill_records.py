@@ -18,7 +18,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.beam import SlopeShape, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
-from tree_sway_ros.core.branch.shapes import N_SHAPES
+from tree_sway_ros.core.branch.shapes import N_SHAPES, exposure
 from tree_sway_ros.core.motion.records import (
     LANES,
     branch_layout,
@@ -172,7 +172,7 @@ def _fill_shapes(model: BranchModel, record: Any) -> None:
     record["n_coordinates"] = len(model.coordinates)
     record["n_pairs"] = sum(not one.is_twist for one in model.coordinates) // 2
     for i, one in enumerate(model.coordinates):
-        record["reach"][i] = one.shape.displacement(one.axis)[1][-1]
+        record["reach"][i] = one.field.nodes[-1]
     record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
     for column, shape in _distinct_shapes(model):
         record["steepest"][column] = np.square(shape.segment_slope).max()
@@ -181,6 +181,10 @@ def _fill_shapes(model: BranchModel, record: Any) -> None:
     length = model.beam.length
     record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
     record["tip_skew"] = _skew(tip_load, length)
+
+
+_STRAIGHT = 0.03
+"""Share of the wind that meets a branch from ahead, below which this is not told apart from none."""
 
 
 def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
@@ -193,18 +197,18 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     speed = float((share * speed_profile[:, None]).sum())
     record["speed"] = speed
     record["area"] = total / speed**2 if speed > 0.0 else 0.0
-    flows = _DIRECTIONS[:, None] - (_DIRECTIONS @ beam.tangent.T)[..., None] * beam.tangent
-    pieces = share.sum(axis=1)
-    across = np.linalg.norm(flows, axis=2)
-    projector = _NEAREST @ np.maximum(across**3 @ pieces, 0.0) ** (2.0 / 3.0)
-    record["projector"] = projector
-    forces = _pressed(projector)
+    along = np.einsum("sg,si,sj->ij", share, beam.tangent, beam.tangent)
+    across = np.eye(3) - along
+    record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    exposed = exposure(beam)
+    exposed /= float(share.sum(axis=1) @ exposed)
+    into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
     square = 0.0
     for i, one in enumerate(model.coordinates):
         field = one.field.points
-        mean = np.einsum("sg,sgk->sk", share, field)
-        moments = np.einsum("ds,dsk,sk->d", across, flows, mean)
-        record["push"][i] = np.linalg.lstsq(forces, moments, rcond=0.03)[0]
+        own = np.einsum("s,sg,sgk->sk", exposed, share, field)
+        own -= np.einsum("sk,sk->s", own, beam.tangent)[:, None] * beam.tangent
+        record["push"][i] = into_push @ own.sum(axis=0)
         record["turn"][i] = np.einsum("sg,sgk->k", share, one.field.slope)
         square += float((share[..., None] * field**2).sum()) if i < 2 else 0.0
     _fill_flow(record, square)
@@ -328,13 +332,6 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     _fill_flow(record, float(square))
 
 
-def _pressed(projector: Floats) -> Floats:
-    """Forces of the winds in `_DIRECTIONS` by a projector, (d, 3)."""
-    xx, yy, zz, xy, xz, yz = projector
-    flow: Floats = _DIRECTIONS @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return np.sqrt(np.maximum((_DIRECTIONS * flow).sum(axis=1), 0.0))[:, None] * flow
-
-
 def _squares(directions: Floats) -> Floats:
     """
     Weights of xx, yy, zz, xy, xz, yz of a projector P in ``u . P u``, for winds u (d, 3), (d, 6).
@@ -344,14 +341,15 @@ def _squares(directions: Floats) -> Floats:
     return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
 
 
-_DIRECTIONS = np.array(
-    [
-        (np.cos(rise) * np.cos(bearing), np.cos(rise) * np.sin(bearing), np.sin(rise))
-        for rise in np.deg2rad([-20.0, 0.0, 20.0])
-        for bearing in np.arange(16) * np.pi / 8.0
-    ]
+_WINDS = _squares(
+    np.array(
+        [
+            (np.cos(rise) * np.cos(bearing), np.cos(rise) * np.sin(bearing), np.sin(rise))
+            for rise in np.deg2rad([-20.0, 0.0, 20.0])
+            for bearing in np.arange(16) * np.pi / 8.0
+        ]
+    )
 )
-_WINDS = _squares(_DIRECTIONS)
 """Winds from all sides, along the ground and, as branches bend, aslant."""
 
 _NEAREST = np.linalg.pinv(_WINDS)

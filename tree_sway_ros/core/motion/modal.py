@@ -73,6 +73,7 @@ class ModalBank:
         held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
         self._held = np.ascontiguousarray(held.T)
         self._limit = LOAD_MAX * diagonal
+        self._momentum = (reduction.mass @ modes.shapes).T
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
         self._loads = load_records(branches)
@@ -134,6 +135,15 @@ class ModalBank:
         _expand(self._shapes, self._flexibility, self.modal, self.state)
         rotations: Floats = self.state[3]
         return rotations
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        return self.rotations().copy(), self.shapes @ self.modal[1]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
 
     def reset(self) -> None:
         """Go back to rest."""

@@ -50,6 +50,12 @@ class Oscillators(Responding, Protocol):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,)."""
+
     def reset(self) -> None:
         """Go back to rest."""
 
@@ -85,6 +91,13 @@ class Frozen:
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Zeros, both (N,)."""
+        return self._x, self._x
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Stay at rest."""
 
     def reset(self) -> None:
         """Stay at rest."""
