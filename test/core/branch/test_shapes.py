@@ -83,13 +83,14 @@ def test_stiffness_of_bending_and_of_twist(stem, sketch):
     (twist,) = (way for way in stem_model.coordinates if way.is_twist)
     # A shaft turned at its end: G J / L.
     polar = np.pi / 32.0 * 0.02**4
-    assert twist.stiffness(9e9, 3.5e9) == pytest.approx(3.5e9 * polar / 2.0)
+    assert twist.field.stiffness(twist.field, 9e9, 3.5e9) == pytest.approx(3.5e9 * polar / 2.0)
 
 
 def test_a_carried_crown_bends_the_branch_as_a_tip_load(sketch):
     drawn = sketch()
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.002, 0.002, 20)
-    drawn.add(0, 20, (1, 0, 0), 5.0, 0.1, 0.1, 1)
+    for way in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)):
+        drawn.add(0, 20, way, 2.0, 0.1, 0.1, 1)
     model = branch_models(drawn.tree(), 900.0, carries=True)[0]
     u = model.beam.place
     assert model.coordinates[0].shape.slope == pytest.approx(1.5 * (2 * u - u**2), abs=0.01)

@@ -32,6 +32,9 @@ MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
 
 _NEGLIGIBLE = 1e-8
 
+_NO_TWIST = 1e-6
+"""Share of the wind's bending energy below which a branch counts as straight."""
+
 
 @dataclass(frozen=True)
 class Coordinate:
@@ -178,7 +181,7 @@ def ways_to_move(
                 break
     if n_twists > 0:
         twists = _twists(beam, carried, curvatures[:2], n_twists, n_by_wind)
-    if len(shapes) > 1 or twists or fields is None:
+    if len(shapes) > 1 or twists or fields is None or len(carried.area):
         fields = [RotationField.about(first, e2), RotationField.about(first, -e1)]
     ways = [Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)]
     for shape in shapes[1:]:
@@ -225,10 +228,7 @@ def _static_pair(
     largest = np.linalg.svd(turns, compute_uv=False)
     if not largest[-1] > 0.02 * largest[0]:
         return None, None
-    # Each wind counts by how far it turns the chord, upward winds the less.
-    weight = np.array([1.0, 1.0, 0.5])
-    share = np.linalg.pinv(turns * weight[:, None]) * weight
-    pair = np.einsum("cw,wsgk->csgk", share, curvatures)
+    pair = np.einsum("cw,wsgk->csgk", np.linalg.pinv(turns), curvatures)
     return _drawn(beam, 0.5 * (pair[0] @ e2 - pair[1] @ e1)), [RotationField(beam, k) for k in pair]
 
 
@@ -253,9 +253,11 @@ def _twists(
     along = np.einsum("wsgk,sk->wsg", curvatures, beam.tangent) * (beam.tangent @ beam.chord)[:, None]
     left = [_rest(twists, beam, each) for each in along]
     gram = np.array([[one.stiffness(other, 1.0) for other in left] for one in left])
-    strongest_first = np.linalg.eigh(gram)[1].T[::-1]
-    for mix in strongest_first[: min(n_by_wind, n_twists - len(twists))]:
-        _extend(twists, beam, np.einsum("w,wsg->sg", mix, along))
+    whole = float(beam.integral(beam.second_moment * np.square(curvatures).sum(axis=(0, -1))))
+    energies, mixes = np.linalg.eigh(gram)
+    for energy, mix in zip(energies[::-1], mixes.T[::-1], strict=True):
+        if len(twists) < n_twists and n_by_wind > 0 and energy > _NO_TWIST * whole:
+            n_by_wind -= _extend(twists, beam, np.einsum("w,wsg->sg", mix, along))
     while 0 < len(twists) < n_twists and len(spin):
         turn = twists[-1].child_slope
         if not _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment):

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.fidelity.estimate import Estimate, model_name
 from tree_sway_ros.core.fidelity.frame_cost import frame_cost
 from tree_sway_ros.core.fidelity.quiet_branches import quiet_sets
@@ -97,11 +97,27 @@ class FidelityLadder:
             if model == "coupled":
                 model, n_modes = best, best_modes
             self._add(model, n_modes, share)
+        self._grams = np.stack([self._motion, *(each.error for each in self._models.values())])
         del self._truth
 
     def calibrated(self, estimate: Estimate) -> CalibratedTree:
         """Return the tree, calibrated and frozen as an estimate has it."""
         return self._trees[self._models[estimate.name].share]
+
+    def coordinates(self, estimate: Estimate) -> Ints:
+        """Where the coordinates of a model stand among those of the coupled tree, (N,)."""
+        calibrated, whole = self.calibrated(estimate), self._trees[0.0].coupled.reduction.first
+        counts = np.diff(calibrated.layer(estimate.model).reduction.first)
+        moving = np.arange(self.tree.n_branches)
+        if isinstance(calibrated, PartlyFrozenTree):
+            moving = calibrated.pruning.moving
+        ways = zip(moving, counts, strict=True)
+        return np.concatenate([whole[branch] + np.arange(count) for branch, count in ways])
+
+    @property
+    def n_coordinates(self) -> int:
+        """Coordinates of the coupled tree."""
+        return self._trees[0.0].coupled.reduction.n_coordinates
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """
@@ -119,12 +135,12 @@ class FidelityLadder:
 
         """
         load = pressure(climate.speed, *self._coefficient)
-        swing = _root(self._motion, climate, with_mean=False) * load
-        offset = _root(self._motion, climate, with_mean=True) * load
+        means, swings = _mean_squares(self._grams, climate)
+        swing, offset = load * math.sqrt(swings[0]), load * math.sqrt(means[0] + swings[0])
+        errors = MARGIN * load * np.sqrt(means[1:] + swings[1:])
         found = []
-        for each in self._models.values():
-            floor = FLOOR * offset if each.model != "frozen" else 0.0
-            bound = MARGIN * _root(each.error, climate, with_mean=True) * load + floor
+        for each, error in zip(self._models.values(), errors.tolist(), strict=True):
+            bound = error + (FLOOR * offset if each.model != "frozen" else 0.0)
             found.append(Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen))
         return sorted(found, key=lambda e: e.cost)
 
@@ -177,10 +193,18 @@ def _gram(response: Complexes) -> Floats:
     return np.asarray(gram, dtype=np.float64)
 
 
-def _root(gram: Floats, climate: WindClimate, *, with_mean: bool) -> float:
-    """Root mean square that a load makes of a response, per unit of drag pressure."""
-    density = np.einsum("fij,ij->f", gram, climate.covariance) * climate.spectrum(_FREQUENCIES)
-    square = float((0.5 * (density[1:] + density[:-1]) * np.diff(_FREQUENCIES)).sum())
-    if with_mean:
-        square += float(climate.mean @ gram[0] @ climate.mean)
-    return math.sqrt(max(square, 0.0))
+def _mean_squares(grams: Floats, climate: WindClimate) -> tuple[Floats, Floats]:
+    """
+    Mean squares that the mean of a load and its swings make of responses, per unit of drag
+    pressure, both (k,), for `_gram` of each, (k, f, 2, 2).
+
+    """
+    spectrum = climate.spectrum(_FREQUENCIES) * _SPANS
+    swings = np.einsum("kfij,f,ij->k", grams, spectrum, climate.covariance, optimize=True)
+    means = np.einsum("kij,i,j->k", grams[:, 0], climate.mean, climate.mean)
+    return np.maximum(means, 0.0), np.maximum(swings, 0.0)
+
+
+_SPANS = np.gradient(_FREQUENCIES)
+_SPANS[[0, -1]] *= 0.5
+"""Weights of the trapezoidal rule."""

@@ -69,7 +69,7 @@ class ModalBank:
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
-        self._flexibility = 1.0 / diagonal if m < n else np.zeros(n)
+        self._flexibility = reduction.flexibility if m < n else np.zeros(n)
         held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
         self._held = np.ascontiguousarray(held.T)
         self._limit = LOAD_MAX * diagonal

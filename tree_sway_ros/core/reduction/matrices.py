@@ -42,6 +42,8 @@ class Reduction:
     ----------
     first
         First coordinate of each branch, and N at the end, (b + 1,).
+    partner
+        Coordinate of the same shape about the other axis, itself for a twist, (N,).
     twist
         Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
         (b, 9, 6).
@@ -54,6 +56,7 @@ class Reduction:
     """
 
     first: Ints
+    partner: Ints
     twist: Floats
     mass: Any
     gravity: Any
@@ -68,6 +71,17 @@ class Reduction:
     def stiffness(self) -> Any:
         """Elastic and geometric stiffness, sparse (N, N), in [N m/rad]."""
         return (self.elastic + self.gravity).tocsc()
+
+    @property
+    def flexibility(self) -> Floats:
+        """
+        Of each coordinate alone in [rad/(N m)], (N,): both axes as one, so that it does not matter
+        how they are laid.
+
+        """
+        diagonal = np.asarray(self.stiffness.diagonal())
+        mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
+        return mean
 
 
 def reduce_tree(
@@ -103,6 +117,7 @@ def reduce_tree(
     """
     n_branches = tree.n_branches
     first = np.concatenate([[0], np.cumsum([len(m.coordinates) for m in models])]).astype(np.int64)
+    partner = np.arange(first[-1])
     momentum = np.zeros((first[-1], 6))
     twist = np.zeros((n_branches, MAX_COORDINATES, 6))
     body = np.zeros((n_branches, 6, 6))
@@ -110,6 +125,8 @@ def reduce_tree(
     for branch in range(n_branches - 1, -1, -1):
         model = models[branch]
         own = slice(int(first[branch]), int(first[branch + 1]))
+        paired = own.start + sum(not one.is_twist for one in model.coordinates)
+        partner[own.start : paired] = partner[own.start : paired].reshape(-1, 2)[:, ::-1].ravel()
         fields, twists = _motions(model)
         dm = model.mass * model.beam.weight
         moved = dm[..., None] * fields
@@ -137,7 +154,8 @@ def reduce_tree(
         if carries:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
-    return Reduction(first, twist, *(each.symmetric(shape) for each in (mass, weight, elastic)))
+    matrices = (each.symmetric(shape) for each in (mass, weight, elastic))
+    return Reduction(first, partner, twist, *matrices)
 
 
 class _Blocks:

@@ -24,11 +24,17 @@ from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.motion.response import Responding
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
-from tree_sway_ros.core.motion.tree_passes import even_wind_moments
+from tree_sway_ros.core.motion.tree_passes import even_wind_moments, mean_wind_moments
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
-from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.reduction.modes import (
+    Modes,
+    most_driven,
+    natural_modes,
+    refuse_buckling,
+    with_static,
+)
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
@@ -64,6 +70,9 @@ _COUPLED = ("modes", "coupled")
 
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
+
+_FEW_MODES = 6
+"""Of more modes than this, two are what the others lack of the static sway along x and y."""
 
 
 class Frozen:
@@ -271,7 +280,10 @@ class CalibratedTree:
         )
 
     def _modes(self, model: str, count: int | None) -> Modes:
-        """All modes, or those of the slowest that the wind drives most."""
+        """
+        All modes, or those of the slowest that the wind drives most and the static sway they lack.
+
+        """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
@@ -283,7 +295,12 @@ class CalibratedTree:
         modes = self._slowest.slowest(wanted)
         if not is_driven:
             return modes
-        return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+        loads = even_wind_moments(self.coupled.branches, n)
+        if not _FEW_MODES < n_modes < n - 1:
+            return most_driven(modes, loads, n_modes)
+        from_all_sides = mean_wind_moments(self.coupled.branches, n)
+        driven = most_driven(modes, from_all_sides, n_modes - from_all_sides.shape[1])
+        return with_static(driven, reduction, from_all_sides)
 
     def _uncoupled(self, layer: Layer, branches: Any, *, carries: bool) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
