@@ -20,6 +20,7 @@ from tree_sway_ros.core.motion.fill_records import (
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK
 from tree_sway_ros.core.reduction.matrices import reduce_tree
+from tree_sway_ros.study.example_trees import forked_tree
 
 MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(5)
@@ -88,7 +89,17 @@ def relative(one, other):
     return np.abs((one - other) / np.outer(scale, scale)).max()
 
 
-@pytest.mark.parametrize(("enriched", "bound"), [((), 2e-3), ((0, 1), 0.015)])
+def test_mass_of_straight_branches_is_kinetic_energy(differences):
+    error = []
+    for segments in (12, 24):
+        reduced = Reduced(forked_tree(0.5, 0.6, segments=segments, generations=2))
+        matrix = reduced.reduction.mass.toarray()
+        error.append(relative(matrix, mass_by_differences(reduced, differences)))
+    assert error[1] < 2e-3
+    assert np.log2(error[0] / error[1]) == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("enriched", "bound"), [((0, 1), 0.015), ((0, 1, 2, 3), 0.015)])
 def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences, enriched, bound):
     error = []
     for fine in (4, 8):
