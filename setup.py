@@ -9,7 +9,7 @@ from setuptools import find_packages, setup
 PACKAGE = "tree_sway_ros"
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
-NODES = ("anemometer", "wind", "solver", "player")
+NODES = ("anemometer", "wind", "solver", "player", "viewer")
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
@@ -62,7 +62,6 @@ extras = {
     ],
     "bag": ["rosbags>=0.10"],
     "plot": ["matplotlib>=3.6"],
-    "gltf": ["trimesh>=4.0"],
     "h5": ["h5py>=3.7"],
     "mujoco": ["mujoco>=3.2"],
     "battery": ["mpmath>=1.2"],
@@ -70,8 +69,11 @@ extras = {
     # colcon runs pytest only where an extra of this name asks for it.
     "test": [
         *("pytest>=7,<9", "pytest-xdist>=3", "pytest-cov>=4", "hypothesis>=6.60", "mpmath>=1.2"),
+        *("pygltflib>=1.16", "trimesh>=4.0"),
     ],
     "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML", "types-jsonschema"],
+    # Studies on a cluster, and their tables as Parquet.
+    "cluster": ["distributed>=2023.1", "pyarrow>=12"],
     "docs": ["sphinx>=7", "myst-parser>=2"],
 }
 
@@ -90,7 +92,10 @@ setup(
     package_data={"": ["py.typed", "*.json", "*.yaml", "*.csv", "static/*", "static/*/*"]},
     data_files=data_files,
     python_requires=">=3.10",
-    install_requires=["setuptools", "numpy>=1.26", "scipy>=1.11", "PyYAML>=6", "jsonschema>=4.10"],
+    install_requires=[
+        *("setuptools", "numpy>=1.26", "scipy>=1.11", "PyYAML>=6", "jsonschema>=4.10"),
+        "aiohttp>=3.8",
+    ],
     extras_require=extras,
     zip_safe=False,
     entry_points={

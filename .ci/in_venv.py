@@ -34,18 +34,20 @@ OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 ALWAYS = ("fast", "progress")
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
-    **dict.fromkeys(("anemometer", "wind", "solver", "player", "ros2"), ("ros",)),
+    **dict.fromkeys(("anemometer", "wind", "solver", "player", "viewer", "ros2"), ("ros",)),
     **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
-    **dict.fromkeys(("pytest", "py.test"), ("ros", "bag", "plot", "gltf", "h5", "mujoco", "test")),
+    **dict.fromkeys(
+        ("pytest", "py.test"), ("ros", "bag", "plot", "h5", "mujoco", "cluster", "test")
+    ),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
     "sphinx-build": ("docs",),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {".db3": "bag", ".mcap": "bag", ".glb": "gltf", ".gltf": "gltf", ".mat": "h5"}
+NEEDS_OF_FILES = {".db3": "bag", ".mcap": "bag", ".mat": "h5"}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     "AMENT_PREFIX_PATH",

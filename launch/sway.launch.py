@@ -22,10 +22,15 @@ ARGUMENTS = (
     ("file", "", "wind record for source:=player"),
     ("wind_topic", "wind", "topic of the wind for source:=live"),
     ("rate", "", "frames a second; as configured if empty"),
+    ("x", "", "where the tree stands in the frame, to the east [m]; as configured if empty"),
+    ("y", "", "the same to the north [m]"),
+    ("z", "", "the same upwards [m]"),
+    ("yaw", "", "turn of the tree, counterclockwise from above [rad]"),
+    ("frame_id", "", "frame of all that is published; as configured if empty"),
     ("namespace", "", "of all nodes and topics: one a tree"),
     ("params_file", "", "ROS parameter file whose values override those of config/"),
-    ("use_sim_time", "false", "follow /clock; with source:=player the player publishes it"),
-    ("rviz", "false", "start RViz", ["true", "false"]),
+    ("use_sim_time", "", "follow /clock; with source:=player the player publishes it"),
+    ("rviz", "false", "start RViz"),
 )
 
 
@@ -46,32 +51,53 @@ def start_nodes(context):
     config = os.path.join(get_package_share_directory(PACKAGE), "config")
     source = {"simulated": ["anemometer"], "player": ["player"], "live": []}[given["source"]]
     nodes = [make_node(name, given, config) for name in (*source, "wind", "solver")]
-    if given["rviz"] == "true":
-        arguments = ["-d", os.path.join(config, "tree_sway.rviz")]
+    if is_true("rviz", given["rviz"]):
+        sim_time = {}
+        if given["use_sim_time"]:
+            sim_time["use_sim_time"] = is_true("use_sim_time", given["use_sim_time"])
         nodes.append(
             Node(
                 package="rviz2",
                 executable="rviz2",
                 namespace=given["namespace"],
-                arguments=arguments,
-                parameters=[{"use_sim_time": given["use_sim_time"] == "true"}],
+                arguments=["-d", os.path.join(config, "tree_sway.rviz")],
+                parameters=[sim_time],
             )
         )
     return nodes
 
 
+def is_true(name, text):
+    """Return whether an argument says yes: True, true and 1 do; refuse what is neither."""
+    if text.lower() in ("true", "1"):
+        return True
+    if text.lower() in ("", "false", "0"):
+        return False
+    raise ValueError(f"launch argument '{name}': '{text}' is neither true nor false")
+
+
+def overrides_of(name, given):
+    """Values of a node's parameters that arguments ask for; nothing where nothing was given."""
+    overrides = {}
+    if given["frame_id"]:
+        overrides["frame_id"] = given["frame_id"]
+    if given["use_sim_time"]:
+        with_clock = is_true("use_sim_time", given["use_sim_time"])
+        overrides["use_sim_time"] = with_clock and name != "player"
+        if name == "player":
+            overrides["publish_clock"] = with_clock
+    if name == "player" and given["file"]:
+        overrides["file"] = given["file"]
+    if name == "solver":
+        if given["tree"]:
+            overrides["tree"] = given["tree"]
+        numbers = ("rate", "x", "y", "z", "yaw")
+        overrides.update({each: float(given[each]) for each in numbers if given[each]})
+    return overrides
+
+
 def make_node(name, given, config):
     """Make one node: its file in config/, then the user's file, then the arguments."""
-    with_clock = given["use_sim_time"] == "true"
-    overrides = {"use_sim_time": with_clock and name != "player"}
-    if name == "solver" and given["tree"]:
-        overrides["tree"] = given["tree"]
-    if name == "solver" and given["rate"]:
-        overrides["rate"] = float(given["rate"])
-    if name == "player":
-        overrides.update(publish_clock=with_clock)
-        if given["file"]:
-            overrides["file"] = given["file"]
     files = [os.path.join(config, f"{name}.yaml")]
     if given["params_file"]:
         files.append(given["params_file"])
@@ -81,7 +107,7 @@ def make_node(name, given, config):
         executable=name,
         name=name,
         namespace=given["namespace"],
-        parameters=[*files, overrides],
+        parameters=[*files, overrides_of(name, given)],
         remappings=[("wind", given["wind_topic"])] if is_live else [],
         output="screen",
     )

@@ -28,10 +28,10 @@ LAYERS = {
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
     "arrays": 0, "kernel": 1, "checks": 1, "tree": 1,
-    "rotation": 2, "wind": 2, "branch": 2, "oscillators": 2, "growth": 2,
-    "leaves": 3, "reduction": 3,
+    "rotation": 2, "wind": 2, "branch": 2, "oscillators": 2,
+    "growth": 3, "leaves": 3, "reduction": 3,
     "motion": 4,
-    "reference": 5,
+    "reference": 5, "state": 5,
     "simulator": 6,
     "fidelity": 7, "identification": 7,
     "scene": 8,

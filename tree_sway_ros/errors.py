@@ -51,6 +51,10 @@ class SpeciesError(TreeSwayError):
     """A species that no table knows."""
 
 
+class StateError(TreeSwayError):
+    """A state that is of another tree, model or version, or none at all."""
+
+
 class MissingDependencyError(TreeSwayError):
     """An optional part, such as ROS itself, that is asked for and not there."""
 

@@ -22,13 +22,10 @@ import tempfile
 import warnings
 from collections.abc import Callable
 from functools import cache
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
-
-import numba
-from numba.core import config
-from numba.core.caching import CompileResultCacheImpl
-from numba.core.serialize import dumps
 
 ROOT = Path(__file__).resolve().parent
 """Folder of the package."""
@@ -36,11 +33,46 @@ ROOT = Path(__file__).resolve().parent
 FOLDER_VARIABLE = "TREE_SWAY_CACHE"
 """Environment variable that names another folder for compiled kernels."""
 
+PLAIN_VARIABLE = "TREE_SWAY_NO_NUMBA"
+"""Environment variable that leaves the compiler out, if it is set to anything but nothing or 0."""
+
+OLDEST_COMPILER = (0, 59)
+"""Versions of numba before this one do not come to an end of these kernels."""
+
 _IMPORT = re.compile(
     r"^[ \t]*(?:from[ \t]+tree_sway_ros\.([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]*)"
     r"|import[ \t]+tree_sway_ros\.([\w.]+))",
     re.MULTILINE,
 )
+
+
+@cache
+def why_no_compiler() -> str:
+    """Why kernels cannot be compiled here, in a few words; empty where they can."""
+    if os.environ.get(PLAIN_VARIABLE, "0") not in ("", "0"):
+        return f"{PLAIN_VARIABLE} is set"
+    reason = _what_is_wrong_with_numba()
+    if reason:
+        _complain(
+            f"{reason}: trees are solved in numpy, some 100 times slower (3 ms for a frame of "
+            "1,000 segments), and the model 'segments' not at all; install numba 0.59 or later"
+        )
+    return reason
+
+
+def _what_is_wrong_with_numba() -> str:
+    try:
+        found = version("numba")
+    except PackageNotFoundError:
+        return "numba is not installed"
+    numbers = tuple(int(part) for part in re.findall(r"\d+", found)[:2])
+    if numbers < OLDEST_COMPILER:
+        return f"numba {found} is older than {'.'.join(map(str, OLDEST_COMPILER))}"
+    try:
+        import_module("numba")
+    except Exception as error:  # whatever a broken installation raises
+        return f"numba {found} cannot be imported ({type(error).__name__})"
+    return ""
 
 
 class KernelCache:
@@ -58,13 +90,16 @@ class KernelCache:
 
     def __init__(self, function: Callable[..., Any], flags: str) -> None:
         """Find out what the kernel is made from."""
+        numba = import_module("numba")
+        self._codec = import_module("numba.core.caching").CompileResultCacheImpl
+        self._dumps = import_module("numba.core.serialize").dumps
         code = function.__code__
         digest = source_digest(Path(code.co_filename))
         self._name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
         self._key = "\0".join(
             [
                 *(function.__module__, function.__qualname__, str(code.co_firstlineno), digest),
-                *(flags, numba.__version__, sys.version, str(config.BOUNDSCHECK)),
+                *(flags, numba.__version__, sys.version, str(numba.config.BOUNDSCHECK)),
             ]
         )
         self._enabled = bool(digest)
@@ -93,7 +128,7 @@ class KernelCache:
             return None
         try:
             payload = pickle.loads(path.read_bytes())
-            return CompileResultCacheImpl.rebuild(None, target_context, payload)
+            return self._codec.rebuild(None, target_context, payload)
         except Exception as error:
             _complain(f"a compiled kernel cannot be read ({type(error).__name__}): {path}")
             return None
@@ -101,11 +136,11 @@ class KernelCache:
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write compiled code, all of it or nothing."""
         path = self._path(sig, data.codegen)
-        if path is None or not CompileResultCacheImpl.check_cachable(None, data):
+        if path is None or not self._codec.check_cachable(None, data):
             return
         partial = path.with_suffix(f".{os.getpid()}.part")
         try:
-            partial.write_bytes(dumps(CompileResultCacheImpl.reduce(None, data)))
+            partial.write_bytes(self._dumps(self._codec.reduce(None, data)))
             partial.replace(path)
         except OSError as error:
             _complain(f"compiled kernels cannot be kept: {error}")

@@ -12,7 +12,6 @@ from tree_sway_ros.core.rotation import (
     half_angle,
     product,
     quaternion,
-    quaternions_from_x,
     rotated,
     turned,
 )
@@ -92,20 +91,3 @@ def test_no_rotation_is_exactly_none():
     assert quaternion(0.0, 0.0, 0.0) == IDENTITY
     assert rotated(*IDENTITY, 0.1, 0.2, 0.3) == (0.1, 0.2, 0.3)
     assert turned(0.0, 0.0, 0.0, 0.1, 0.2, 0.3) == (0.1, 0.2, 0.3)
-
-
-@settings(deadline=None)
-@given(vectors.filter(lambda v: np.linalg.norm(v) > 1e-3))
-def test_orientations_from_x_point_along_and_turn_the_least(v):
-    u = np.array(v) / np.linalg.norm(v)
-    (q,) = quaternions_from_x(u[None])
-    assert rotated(*q, 1.0, 0.0, 0.0) == pytest.approx(u, abs=1e-9)
-    assert 2.0 * np.arccos(np.clip(q[0], -1, 1)) == pytest.approx(np.arccos(u[0]), abs=1e-6)
-
-
-def test_the_direction_against_x_has_an_orientation_too():
-    against = np.array([[-1.0, 0.0, 0.0], [-1.0, 1e-9, 0.0], [1.0, 0.0, 0.0]])
-    q = quaternions_from_x(against)
-    assert np.linalg.norm(q, axis=1) == pytest.approx(1.0)
-    for one, direction in zip(q, against, strict=True):
-        assert rotated(*one, 1.0, 0.0, 0.0) == pytest.approx(direction, abs=1e-6)

@@ -73,7 +73,7 @@ def test_a_node_that_is_told_to_end_ends_well(run, observer, tree_file, signals)
         ("player", [], {}, "no file to play"),
         ("wind", [], {"ROS_DOMAIN_ID": "three"}, "ROS_DOMAIN_ID=three is no domain"),
         ("wind", [], {"ROS_DOMAIN_ID": "300"}, "ROS_DOMAIN_ID=300 is no domain"),
-        ("wind", ["max_speed:=-1.0"], {}, "give 1 .. 200 [m/s]"),
+        ("wind", ["max_speed:=-1.0"], {}, "give 1 .. 150 [m/s]"),
         ("anemometer", ["rate:=[1"], {}, "ROS 2 cannot start"),
     ],
 )

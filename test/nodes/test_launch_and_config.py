@@ -8,6 +8,8 @@ import yaml
 from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
+ARGUMENTS = ("tree", "file", "rate", "x", "y", "z", "yaw", "frame_id", "use_sim_time")
+GIVEN = dict.fromkeys(ARGUMENTS, "")
 
 
 @pytest.fixture
@@ -44,6 +46,37 @@ def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executab
 
 def test_rviz_is_started_if_asked_for(launch_file, monkeypatch):
     assert "rviz2" in start(launch_file, monkeypatch, rviz="true")
+
+
+@pytest.mark.parametrize("word", ["True", "true", "1"])
+def test_yes_is_yes_however_it_is_written(launch_file, monkeypatch, word):
+    nodes = start(launch_file, monkeypatch, use_sim_time=word, rviz=word, source="player")
+    assert "rviz2" in nodes
+    assert launch_file.overrides_of("solver", GIVEN | {"use_sim_time": word}) == {
+        "use_sim_time": True
+    }
+    assert launch_file.overrides_of("player", GIVEN | {"use_sim_time": word}) == {
+        "use_sim_time": False,
+        "publish_clock": True,
+    }
+
+
+def test_neither_yes_nor_no_is_refused(launch_file):
+    with pytest.raises(ValueError, match="'use_sim_time': 'maybe' is neither true nor false"):
+        launch_file.overrides_of("wind", GIVEN | {"use_sim_time": "maybe"})
+
+
+def test_arguments_that_are_not_given_override_nothing(launch_file):
+    for name in ("anemometer", "player", "wind", "solver"):
+        assert launch_file.overrides_of(name, GIVEN) == {}
+    placed = launch_file.overrides_of("solver", GIVEN | {"x": "3", "yaw": "1.57"})
+    assert placed == {"x": 3.0, "yaw": 1.57}
+
+
+def test_what_is_shipped_in_config_overrides_no_default():
+    for name in ("anemometer", "player", "wind", "solver"):
+        content = yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text())
+        assert content == {f"/**/{name}": {"ros__parameters": {}}}
 
 
 def test_every_argument_is_declared(launch_file):

@@ -142,7 +142,7 @@ def test_bad_wind_leaves_the_state_alone(compose, observer, tree_file, bad):
     nodes = compose(solver={"tree": tree_file})
     frames = observer.listen(SEGMENT_POSES)
     breeze = Breeze(observer, (bad, 0.0, 0.0))
-    counts = nodes["solver"]._gate.counts
+    counts = nodes["solver"]._intake.counts
     observer.until(lambda: counts.refused > 3 and len(frames) > 5, "refusals")
     np.testing.assert_array_equal(block(frames[-1]), block(frames[0]))
     breeze.vector = (5.0, 0.0, 0.0)
@@ -160,7 +160,7 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
 
     assert not change("publish_every", 0).successful
     assert "0 .. 2" in change("wind_delay", "x").reason
-    assert "read at start only" in change("rate", 30.0).reason
+    assert "read-only" in change("rate", 30.0).reason
     assert nodes["solver"].values["rate"] == 60.0
     frames = observer.listen(SEGMENT_POSES)
     assert change("publish_every", 4).successful
@@ -234,3 +234,17 @@ def test_transforms_need_their_message(compose, tree_file):
 def test_a_parameter_of_another_kind_names_itself(compose):
     with pytest.raises(ParameterError, match="parameter 'rate': 'fast' is not a number"):
         compose(solver={"rate": "fast"})
+
+
+def test_two_trees_stand_in_one_frame_each_in_its_place(compose, observer, tree_file):
+    compose(namespace="oak", solver={"tree": tree_file, "x": 3.0, "hash_in_frame": True})
+    compose(namespace="elm", solver={"tree": tree_file, "y": -2.0, "yaw": 1.5708})
+    oak = observer.listen(SEGMENT_POSES, name="oak/segment_poses")
+    elm = observer.listen(SEGMENT_POSES, name="elm/segment_poses")
+    described = observer.listen(TREE_DESCRIPTION, name="oak/tree_description")
+    observer.until(lambda: oak and elm and described, "frames")
+    np.testing.assert_allclose(block(oak[0])[0, :3], (3.0, 0.0, 0.0), atol=1e-12)
+    np.testing.assert_allclose(block(elm[0])[0, :3], (0.0, -2.0, 0.0), atol=1e-12)
+    assert elm[0].header.frame_id == "map"
+    told = json.loads(described[0].data)
+    assert oak[0].header.frame_id == f"map#{told['hash']}"

@@ -92,7 +92,7 @@ def test_bad_samples_are_refused_and_counted(compose, observer, bad):
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
     observer.until(lambda: mast.say(3.0) and filtered, "wind")
-    counts = nodes["wind"]._gate.counts
+    counts = nodes["wind"]._intake.counts
     for place in range(3):
         mast.say(*np.roll((bad, 0.0, 0.0), place))
     observer.until(lambda: counts.refused == 3, "refusals")
@@ -105,7 +105,7 @@ def test_a_spike_is_refused_and_a_true_step_passes(compose, observer):
     nodes = compose(wind={"longest_refusal": 0.2})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    counts = nodes["wind"]._gate.counts
+    counts = nodes["wind"]._intake.counts
     observer.until(lambda: mast.say(2.0) and filtered, "wind")
     start, n = mast.say(2.0), counts.accepted
     mast.say(30.0, stamp=start + PERIOD)
@@ -127,7 +127,7 @@ def test_stamps_that_lie_are_counted_and_never_step_back(compose, observer):
     for k, stamp in enumerate(stamps):
         mast.say(3.1 + 0.1 * k, stamp=stamp)
     observer.until(lambda: filtered[-1].vector.x == pytest.approx(3.5), "every sample")
-    counts = nodes["wind"]._gate.counts
+    counts = nodes["wind"]._intake.counts
     assert (counts.zero_stamp, counts.future_stamp, counts.old_stamp) == (1, 1, 1)
     assert counts.out_of_order + counts.duplicate_stamp == 2
     assert (np.diff([stamp_to_ns(m.header.stamp) for m in filtered]) > 0).all()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -30,10 +32,16 @@ def one_line(text: str) -> str:
     [
         ([], "required: COMMAND"),
         (["sway"], "invalid choice: 'sway'"),
+        (["dmeo"], "did you mean 'demo'?"),
+        (["demo", "--sped", "3"], "unrecognized arguments: --sped; did you mean '--speed'?"),
+        (["info", "benjamina", "--model", "mode"], "did you mean 'modes'?"),
+        (["info", "oak"], "it is a species: tree-sway grow --species oak --height 10 -o oak.yaml"),
+        (["info", "x" * 300], "File name too long"),
         (["info"], "required: TREE"),
         (["info", "nope"], "no tree 'nope'; give a file, or one of benjamina"),
         (["info", "benjamin"], "did you mean 'benjamina'?"),
         (["info", "benjamina", "--species", "elm"], "unknown species 'elm'; use one of: ash"),
+        (["info", "benjamina", "--species", "brich"], "did you mean 'birch'? use one of: ash"),
         (["info", "benjamina", "--modulus", "-1"], "--modulus: -1 is not positive"),
         (["info", "benjamina", "--density", "nan"], "--density: nan is not positive"),
         (["info", "benjamina", "--count", "0"], "--count: 0 frequencies"),
@@ -77,7 +85,17 @@ def test_every_command_has_its_module_and_help(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(command, "--help")[0] == 0
-    assert f"usage: tree-sway {command}" in capsys.readouterr().out
+    text = " ".join(capsys.readouterr().out.split())
+    assert f"usage: tree-sway {command}" in text
+    summary, example = cli.COMMANDS[command]
+    assert f"{summary[0].upper()}{summary[1:]}." in text  # DDS and MuJoCo keep their capitals
+    assert f"example: tree-sway {example}" in text
+
+
+@pytest.mark.parametrize("command", cli.COMMANDS)
+def test_the_example_of_a_command_is_one_of_it(command: str) -> None:
+    example = cli.COMMANDS[command].example.split()
+    assert cli._parser(command).parse_args(example).command == command
 
 
 def test_a_missing_package_is_one_line(
@@ -88,7 +106,9 @@ def test_a_missing_package_is_one_line(
 
     monkeypatch.setattr(cli, "_module", missing)
     assert run("info", "benjamina")[0] == 2
-    assert "No module named 'numba'; install" in one_line(capsys.readouterr().err)
+    assert "No module named 'numba'; install it: pip install numba" in one_line(
+        capsys.readouterr().err
+    )
 
 
 def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(
@@ -102,6 +122,75 @@ def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(
         cli.main(["info", "benjamina"])
 
 
+def test_quiet_leaves_errors_alone(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    out = str(tmp_path / "tree.obj")
+    assert cli.main(["convert", "goldcrest", "-o", out, "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+    assert cli.main(["info", "nope", "--quiet"]) == 2
+    assert "no tree 'nope'" in one_line(capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("command", [["convert", "goldcrest"], ["plot", "goldcrest"]])
+def test_a_file_that_is_there_is_not_written_over_in_silence(
+    command: list[str], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "tree.obj"
+    path.write_text("mine")
+    assert cli.main([*command, "-o", str(path)]) == 2
+    assert "is there already; name another file, or write over it" in capsys.readouterr().err
+    assert path.read_text() == "mine"
+
+
+def test_a_file_is_written_over_with_force(tmp_path: Path) -> None:
+    path = tmp_path / "tree.obj"
+    path.write_text("mine")
+    assert cli.main(["convert", "goldcrest", "-o", str(path), "--force"]) == 0
+    assert path.read_text() != "mine"
+
+
+def run_process(command: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A line of bash in which $TREE_SWAY is this command line."""
+    return subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "TREE_SWAY": f"{sys.executable} -m tree_sway_ros.tools.cli"}
+        | environment,
+    )
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device /dev/full")
+def test_a_full_disk_under_standard_output_is_one_line() -> None:
+    result = run_process("$TREE_SWAY info goldcrest > /dev/full")
+    assert result.returncode == 2
+    assert "No space left on device" in one_line(result.stderr)
+
+
+@pytest.mark.parametrize("where", [">&-", "2>&-", ">&- 2>&-"])
+def test_closed_output_is_no_error(where: str) -> None:
+    result = run_process(f"$TREE_SWAY info goldcrest {where}")
+    assert result.returncode == 0
+    assert "Traceback" not in result.stderr
+
+
+def test_letters_that_a_terminal_lacks_are_escaped(tmp_path: Path) -> None:
+    plain = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    name = tmp_path / "b\u00e4um.yaml"
+    result = run_process(f"$TREE_SWAY convert goldcrest -o '{name}'", **plain)
+    assert result.returncode == 0, result.stderr
+    assert "um.yaml: goldcrest" in result.stdout
+    assert run_process(f"$TREE_SWAY info '{name}'", **plain, PYTHONIOENCODING="ascii").stderr == ""
+
+
+def test_the_shell_completes_names(tmp_path: Path) -> None:
+    pytest.importorskip("argcomplete", reason="needs argcomplete")
+    line = "tree-sway info --mod"
+    asked = {"_ARGCOMPLETE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)), "_ARC_DEBUG": ""}
+    result = run_process("$TREE_SWAY 8>&1 9>/dev/null", **asked, IFS="\013")
+    assert {word.strip() for word in result.stdout.split("\013")} == {"--model", "--modulus"}
+
+
 def test_a_reader_that_goes_away_is_no_error() -> None:
     command = f"{sys.executable} -m tree_sway_ros.tools.cli info goldcrest --json | head -1"
     result = subprocess.run(
@@ -109,3 +198,38 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     )
     assert result.stdout == "{\n"
     assert result.stderr == ""
+
+
+@pytest.mark.parametrize("name", ["~nosuchuser/tree.yaml", "x" * 300 + ".yaml", "a\0b.yaml"])
+def test_a_name_that_is_no_path_is_one_line(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (
+        ("info", name),
+        ("convert", "benjamina", "-o", name),
+        ("info", "benjamina", "--species", name),
+        ("calibrate", "benjamina", "--record", name, "-o", "x.yaml"),
+    ):
+        code, _ = run(*arguments)
+        assert code == 2
+        assert one_line(capsys.readouterr().err)
+
+
+def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
+    result = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "tree_sway_ros.tools.cli",
+            "convert",
+            "benjamina",
+            "-o",
+            "Bäume.obj",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (result.returncode, result.stderr) == (0, "")
+    assert r"B\xe4ume.obj: benjamina" in result.stdout
+    assert (tmp_path / "Bäume.obj").is_file()

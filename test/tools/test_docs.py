@@ -10,7 +10,7 @@ from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools import cli
-from tree_sway_ros.tools.docs import PAGES, markdown_tables, species_table, with_tables
+from tree_sway_ros.tools.docs import DRAWINGS, PAGES, markdown_tables, species_table, with_tables
 
 ROOT = Path(__file__).resolve().parents[2]
 MARK = "before\n<!-- table: {} -->\nSTALE\n<!-- end -->\nafter\n"
@@ -20,6 +20,8 @@ def test_the_pages_are_up_to_date() -> None:
     texts = [(ROOT / page).read_text(encoding="utf-8") for page in PAGES]
     for text in texts:
         assert with_tables(text) == text, "run: tree-sway docs"
+    for name, draw in DRAWINGS.items():
+        assert (ROOT / name).read_text(encoding="utf-8") == draw(), "run: tree-sway docs"
     for name in markdown_tables():
         assert f"<!-- table: {name} -->" in "".join(texts)
 
@@ -43,7 +45,9 @@ def test_a_table_is_replaced_and_the_rest_kept() -> None:
 
 
 def test_an_unknown_table_is_named() -> None:
-    with pytest.raises(FormatError, match="no table is called 'sovler'; name one of: topics"):
+    with pytest.raises(
+        FormatError, match="no table is called 'sovler'; name one of: commands, topics"
+    ):
         with_tables(MARK.format("sovler"))
 
 

@@ -32,7 +32,7 @@ def test_plot_draws_wind_and_tip(
     assert capsys.readouterr().out == f"{picture}\n"
 
 
-@pytest.mark.parametrize("arguments", [["--tree", "goldcrest"], [SEEDLING, "--tree"]])
+@pytest.mark.parametrize("arguments", [["goldcrest", "--portrait"], ["--portrait", SEEDLING]])
 def test_plot_tree_draws_the_tree(tmp_path: Path, arguments: list[str]) -> None:
     picture = tmp_path / "tree.png"
     assert cli.main(["plot", *arguments, "--leaves", "on", "-o", str(picture)]) == 0
@@ -83,3 +83,34 @@ def test_a_folder_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[st
     assert cli.main(["convert", "goldcrest", "-o", "/no/such/folder/x.yaml"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "/no/such/folder/x.yaml" in line
+
+
+def test_a_tree_that_sways_by_a_skin_or_by_weights(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for way in ("skin", "morph"):
+        path = tmp_path / f"{way}.glb"
+        arguments = ["convert", SEEDLING, "--leaves", "on", "--sway", way, "-o", str(path)]
+        assert cli.main(arguments) == 0
+        assert path.read_bytes().startswith(b"glTF")
+        assert (b'"skins"' in path.read_bytes()) == (way == "skin")
+        assert (b'"targetNames"' in path.read_bytes()) == (way == "morph")
+        assert b'"leaves"' in path.read_bytes()
+    assert "weights; in a breeze that moves it by" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([SEEDLING, "-o", "tree.obj", "--sway"], "--sway: 'tree.obj' cannot sway; write a .glb"),
+        (["FOREST", "-o", "trees.glb", "--sway", "morph"], "--sway: a forest by morph targets"),
+    ],
+)
+def test_what_cannot_sway(
+    tmp_path: Path, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    forest = tmp_path / "forest.yaml"
+    forest.write_text(f"trees: [{{name: a, tree: {SEEDLING}}}]\n")
+    given = [str(forest) if word == "FOREST" else word for word in arguments]
+    assert cli.main(["convert", *given]) == 2
+    assert message in capsys.readouterr().err

@@ -39,7 +39,7 @@ def test_info_sums_up(forest: str, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--tree", "{}"], ["{}", "--seconds", "1", "--model", "branch"]]
+    "arguments", [["--portrait", "{}"], ["{}", "--seconds", "1", "--model", "branch"]]
 )
 def test_plot_draws_it(forest: str, tmp_path: Path, arguments: list[str]) -> None:
     pytest.importorskip("matplotlib")

@@ -105,3 +105,23 @@ def test_the_text_says_the_same(capsys: pytest.CaptureFixture[str]) -> None:
     assert f"{found['branches']} branches, {found['segments']} segments" in text
     assert f"{found['frequencies'][0]:.3f}" in text
     assert "an estimate" in text
+
+
+@pytest.mark.parametrize(
+    ("option", "cure"),
+    [
+        (("--modulus", "9.4"), "9.4 GPa are --modulus 9.4e+09"),
+        (("--density", "0.95"), "0.95 g/cm^3 are --density 950"),
+    ],
+)
+def test_wood_in_another_unit_is_refused(
+    capsys: pytest.CaptureFixture[str], option: tuple[str, str], cure: str
+) -> None:
+    assert cli.main(["info", "goldcrest", *option]) == 2
+    assert cure in capsys.readouterr().err
+
+
+def test_what_is_odd_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert facts(capsys, "goldcrest")["warnings"] == []
+    odd = facts(capsys, "goldcrest", "--modulus", "1e11")["warnings"]
+    assert [each.split(",")[0] for each in odd] == ["a modulus of 100 GPa"]

@@ -6,7 +6,7 @@ import math
 from typing import SupportsFloat
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.errors import ParameterError
 
@@ -86,3 +86,86 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     except (TypeError, ValueError, OverflowError):
         text = " ".join(repr(vector).split())[:80]
         raise ParameterError(f"{text} is not three numbers", where=name) from None
+
+
+def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """
+    Return an array if a kernel can write all of a shape into it.
+
+    A kernel knows no bounds: what is too short would be written past its end.
+
+    Parameters
+    ----------
+    name
+        Name of the argument, for the error.
+    array
+        To be written.
+    shape
+        That it must have.
+
+    Raises
+    ------
+    ParameterError
+        If it is no array of float64 in the machine's own order, of that shape, whole in one piece
+        of memory, row after row, and free to be written.
+
+    """
+    if not isinstance(array, np.ndarray):
+        wrong = f"a {type(array).__name__}"
+    elif array.shape != shape:
+        wrong = f"an array of shape {array.shape}"
+    elif array.dtype != np.float64:
+        wrong = f"an array of {array.dtype}"
+    elif not (array.flags.c_contiguous and array.flags.aligned):
+        wrong = "an array that is spread over memory"
+    elif not array.flags.writeable:
+        wrong = "an array that cannot be written"
+    else:
+        return array
+    raise ParameterError(
+        f"{wrong} cannot be filled", where=name, cure=f"give np.empty({shape}) or nothing"
+    )
+
+
+def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[np.float64]:
+    """
+    Return numbers, one for each thing, none of them negative.
+
+    Parameters
+    ----------
+    name
+        Name of the argument, for the error.
+    values
+        Anything of shape (count,).
+    count, what
+        How many there must be, and of what they are, for the error.
+
+    Returns
+    -------
+    NDArray[np.float64]
+        Shape (count,).
+
+    Raises
+    ------
+    ParameterError
+        Another shape, or a number that is negative or not finite.
+
+    """
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ParameterError("not all are numbers", where=name) from None
+    if numbers.shape != (count,):
+        raise ParameterError(
+            f"an array of shape {numbers.shape}",
+            where=name,
+            cure=f"give one number per {what}, ({count},)",
+        )
+    bad = np.flatnonzero(~(np.isfinite(numbers) & (numbers >= 0.0)))
+    if len(bad):
+        raise ParameterError(
+            f"{numbers[bad[0]]} of {what} {bad[0]}",
+            where=name,
+            cure="give finite numbers, 0 or more",
+        )
+    return np.ascontiguousarray(numbers)

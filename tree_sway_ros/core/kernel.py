@@ -1,6 +1,9 @@
 """
 The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker.
 
+Where numba is missing (`WHY_PLAIN`) functions stay as they are: those of numbers run as plain
+Python, and `motion` takes the numpy form of what runs over a tree.
+
 """
 
 from __future__ import annotations
@@ -9,14 +12,14 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
-from numba.core import types
-from numba.extending import overload
 
-from tree_sway_ros.kernel_cache import KernelCache
+from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.kernel_cache import KernelCache, why_no_compiler
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
+WHY_PLAIN = why_no_compiler()
+"""Why nothing is compiled, in a few words; empty where kernels are."""
 
 _LOOSE = {"contract", "reassoc", "nsz"}
 
@@ -34,13 +37,14 @@ def kernel(function: _F) -> _F:
 
 def fused(function: _F) -> _F:
     """
-    Compile like `kernel`, but let a product and a sum be one instruction and reorder sums.
+    Compile like `kernel`, but let a product and a sum be one instruction and reorder loops' sums.
 
-    For what is placed and summed, where the last bit does not matter; the result is still the same
-    bit for bit on one machine. Not for code that counts on rounding.
+    For what is placed and summed, where the last bit does not matter. The result is still the same
+    bit for bit on one machine, for a callee becomes part of each caller: were it called, a caller
+    would run whichever copy of it was loaded first. Not for code that counts on rounding.
 
     """
-    return _compiled(function, fastmath=_LOOSE)
+    return _compiled(function, fastmath=_LOOSE, forceinline=True)
 
 
 def inlined(function: _F) -> _F:
@@ -54,10 +58,38 @@ def inlined(function: _F) -> _F:
 
 
 def _compiled(function: _F, **options: Any) -> _F:
+    if WHY_PLAIN:
+        function.py_func = function  # type: ignore[attr-defined]
+        return function
+    from numba import njit
+
     dispatcher = njit(error_model="numpy", nogil=True, **options)(function)
     if hasattr(dispatcher, "_cache"):  # not where NUMBA_DISABLE_JIT leaves the plain function
         dispatcher._cache = KernelCache(function, repr(sorted(options)))
     return cast(_F, dispatcher)
+
+
+def need_compiler(what: str) -> None:
+    """
+    Refuse what has no form but the compiled one.
+
+    Parameters
+    ----------
+    what
+        What is asked for, for the error.
+
+    Raises
+    ------
+    MissingDependencyError
+        If kernels are not compiled here.
+
+    """
+    if WHY_PLAIN:
+        raise MissingDependencyError(
+            f"{what} needs compiled kernels, and {WHY_PLAIN}",
+            cure="install numba 0.59 or later, or take one of the models that run on numpy: "
+            "branch, subtree, modes, coupled",
+        )
 
 
 def like(value: float, model: Any) -> Any:
@@ -71,8 +103,12 @@ def like(value: float, model: Any) -> Any:
     return value
 
 
-@overload(like, inline="always")
-def _like(value, model):  # type: ignore[no-untyped-def]
-    if model == types.float32:
-        return lambda value, model: np.float32(value)
-    return lambda value, model: value
+if not WHY_PLAIN:
+    from numba.core import types
+    from numba.extending import overload
+
+    @overload(like, inline="always")
+    def _like(value, model):  # type: ignore[no-untyped-def]
+        if model == types.float32:
+            return lambda value, model: np.float32(value)
+        return lambda value, model: value

@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused, inlined
 
 SERIES_LIMIT = 2.25
@@ -120,29 +117,3 @@ def turned(
         vy + f * (cy + hz * cx - hx * cz),
         vz + f * (cz + hx * cy - hy * cx),
     )
-
-
-def quaternions_from_x(direction: Floats) -> Floats:
-    """
-    Orientations whose x axis runs along given directions, turned as little as possible.
-
-    Parameters
-    ----------
-    direction
-        Unit vectors, (n, 3).
-
-    Returns
-    -------
-    Floats
-        Quaternions w x y z, (n, 4); half a turn about z where the direction is -x.
-
-    """
-    x, y, z = direction.T
-    across = y * y + z * z
-    w = np.where(
-        x < 0.0, across / (1.0 - np.minimum(x, 0.0)), 1.0 + x
-    )  # 1 + x without cancellation
-    q = np.stack([w, np.zeros_like(x), -z, y], axis=1)
-    q[(x < 0.0) & (across < 1e-30)] = [0.0, 0.0, 0.0, 1.0]
-    q /= np.linalg.norm(q, axis=1)[:, None]
-    return q

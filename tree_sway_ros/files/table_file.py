@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.text_file import finite
+from tree_sway_ros.files.text_file import finite, why_no_number
 
 _MAX_COLUMNS = 10_000
 
@@ -80,7 +80,7 @@ def row_numbers(
         value = finite(cells[index])
         if value is None:
             raise FormatError(
-                f"{name} is '{cells[index][:40]}', not a finite number",
+                f"{name} is {why_no_number(cells[index])}",
                 where=where,
                 cure="mend the cell or remove the row",
             )
@@ -132,4 +132,19 @@ def parse_table(lines: Sequence[str], source: str, comment: str = "#") -> TextTa
     if len(columns) > _MAX_COLUMNS:
         raise FormatError(f"a header of {len(columns)} columns", where=f"{source}:{numbered[0][0]}")
     rows = tuple((number, split_row(line, separator)) for number, line in numbered[1:])
+    _refuse_shifted(columns, rows, source)
     return TextTable(columns, rows, source)
+
+
+def _refuse_shifted(
+    columns: tuple[str, ...], rows: tuple[tuple[int, tuple[str, ...]], ...], source: str
+) -> None:
+    """Refuse a table most rows of which have more cells than the header."""
+    long = [number for number, cells in rows if any(cells[len(columns) :])]
+    if 2 * len(long) > len(rows):
+        raise FormatError(
+            f"more cells than the {len(columns)} columns of the header, as in most rows",
+            where=f"{source}:{long[0]}",
+            cure="if its numbers have decimal commas, export it with decimal points; "
+            "else name every column in the header",
+        )

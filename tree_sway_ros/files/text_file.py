@@ -9,6 +9,7 @@ gives the same short answer for each format.
 from __future__ import annotations
 
 import math
+import os
 import re
 from pathlib import Path
 
@@ -17,7 +18,35 @@ from tree_sway_ros.errors import FormatError
 MAX_BYTES = 256 * 1024 * 1024
 """Larger files are refused, so that no input takes the memory of the machine [bytes]."""
 
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+# Each digit can be matched in one way only, so that no text takes longer than its length.
+_NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?", re.ASCII)
+
+
+def path_of(name: str | Path) -> Path:
+    """
+    Return a path as a person names it: ``~`` is the home folder.
+
+    Raises
+    ------
+    FormatError
+        If it begins with a user that does not exist, or can be no path.
+
+    """
+    text = str(name)
+    try:
+        path = Path(text).expanduser()
+        os.stat(path)
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return path
+    except RuntimeError:
+        raise FormatError(
+            f"no user '{text.split('/')[0]}'", where=text[:80], cure="write the folder in full"
+        ) from None
+    except (OSError, ValueError) as error:  # such as a name that is too long, or holds a zero byte
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise FormatError(f"not a path: {reason}", where=ascii(text[:80])) from None
+    return path
 
 
 def read_bytes(path: Path, at_most: int = -1) -> bytes:
@@ -37,7 +66,11 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
         If it is missing, not a file, not readable or larger than `MAX_BYTES`.
 
     """
-    if not path.exists():
+    try:
+        is_there = path.exists()
+    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
+        is_there = False
+    if not is_there:
         raise FormatError("no such file", where=str(path), cure="check the path")
     if not path.is_file():
         raise FormatError("not a file", where=str(path), cure="name a file")
@@ -84,7 +117,16 @@ def read_lines(path: Path) -> list[str]:
 
 def finite(text: str) -> float | None:
     """Read a plain decimal number; None if it is anything else, such as empty, NaN or infinite."""
-    if _NUMBER.fullmatch(text.strip()) is None:
+    cell = text.strip()
+    if _NUMBER.fullmatch(cell) is None:
         return None
-    value = float(text)
+    value = float(cell)
     return value if math.isfinite(value) else None
+
+
+def why_no_number(text: str) -> str:
+    """Say what keeps a cell from being a finite number, with the cell."""
+    cell = text.strip()
+    if _DECIMAL_COMMA.fullmatch(cell):
+        return f"'{cell[:40]}', with a decimal comma: export it with decimal points"
+    return f"'{cell[:40]}', not a finite number"

@@ -11,11 +11,15 @@ from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
-from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.core.wind.intake import WindIntake
+from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.progress import Progress
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import WARN, Status
 from tree_sway_ros.ros.reports.sway_report import SwayReport
@@ -30,7 +34,8 @@ _FARTHEST_CAMERA = 1e6
 
 class SolverNode(TreeSwayNode):
     """
-    Subscribes `wind/filtered`, publishes `segment_poses`, `markers` and `tree_description`.
+    Subscribes `wind/filtered`; publishes `segment_poses`, `markers`, `tree_state` and
+    `tree_description`.
 
     Parameters
     ----------
@@ -41,9 +46,31 @@ class SolverNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("solver", **options)
+        with Progress(self.get_logger().info) as progress:
+            progress.stage(f"opening tree '{self.values['tree']}'")
+            source = self._open()
+            progress.stage(
+                f"reducing {source.tree.n_segments} segments and making the kernels ready "
+                "(where none are kept they are compiled, up to a minute)"
+            )
+            self._make(source)
+        for doubt in source.warnings:
+            self.get_logger().warning(doubt)
+        for note in source.notes:
+            self.get_logger().info(note)
+        self.pacer.start()
+        self.get_logger().info(
+            f"ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, "
+            f"{self.values['rate']:g} Hz"
+        )
+
+    def _open(self) -> Any:
         source = open_scene(self.values["tree"])
         if self.values["species"]:
-            source = source.of_species(open_species(self.values["species"]))
+            source = source.of_species(open_species(self.values["species"])).checked()
+        return placed_scene(source, **self.values("x", "y", "z", "yaw"))
+
+    def _make(self, source: Any) -> None:
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
@@ -54,11 +81,10 @@ class SolverNode(TreeSwayNode):
                 self.values["anemometer_height"],
                 self.values["profile_exponent"],
                 self.values["roughness"],
+                ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
             ),
         )
-        self.simulator: Any = source.simulator(
-            settings, **self.values("fidelity", "tolerance")
-        )
+        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
@@ -66,38 +92,33 @@ class SolverNode(TreeSwayNode):
         tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
         self._tell_demand()
         self.simulator.reset()  # on the model that is asked for
-        # Trusts no sender: keeps times in order and numbers finite, however sudden the wind.
-        self._gate = WindGate(max_speed=150.0, max_rate=1e4)
+        self._intake = WindIntake.of_velocities()
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
+        self._state = StatePublisher(self, self.simulator, leaves)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
         self.report_with(source.tree.name, self._statuses)
         self.on_close(self.pacer.stop)
-        self.pacer.start()
-        for note in source.notes:
-            self.get_logger().info(note)
 
     def _make_wind(self) -> WindAverage:
         return WindAverage(**self.values("interpolation", "timeout", "decay"))
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
-        vector = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds
-        verdict = self._gate.offer(sample.stamp * 1e-9, vector, arrival * 1e-9)
-        if verdict.accepted:
-            self._stepper.add_wind(round(verdict.time * 1e9), vector)
+        components = (sample.u, sample.v, sample.w)
+        good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
+        if good is not None:
+            self._stepper.add_wind(*good)
 
     def _see(self, message: Any) -> None:
         at = message.pose.position
         camera = (at.x, at.y, at.z)
-        if not all(
-            abs(component) <= _FARTHEST_CAMERA for component in camera
-        ):  # NaN is refused, too
+        if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # NaN is not, either
             self._refused_cameras += 1
             return
         self._camera = camera
@@ -123,6 +144,7 @@ class SolverNode(TreeSwayNode):
         self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
         index = tick.time // self.pacer.period
         self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
+        self._state.publish(index, tick.time)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._stepper.request(self.simulator.reset)

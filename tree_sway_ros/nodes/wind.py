@@ -8,6 +8,7 @@ from geometry_msgs.msg import Vector3Stamped
 
 from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import Status
@@ -39,7 +40,7 @@ class WindNode(TreeSwayNode):
         super().__init__("wind", **options)
         self._report = WindReport()
         self._convention = WindConvention(**self.values(*_CONVENTION))
-        self._gate = WindGate(**self.values(*_GATE))
+        self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
         self._attitude: Any = None
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
@@ -51,28 +52,29 @@ class WindNode(TreeSwayNode):
     def on_change(self, values: dict[str, Any]) -> None:
         """Read the wind otherwise from the next sample on."""
         self._convention = WindConvention(**self.values(*_CONVENTION))
+        self._intake.convention = self._convention
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
-        frame_id = self.values["fixed_frame"]
+        frame_id = self.values["frame_id"]
         if sample.frame_id not in ("", frame_id):
             self.get_logger().warning(
                 f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'", once=True
             )
-        velocity = self._convention.velocity(sample.u, sample.v, sample.w)
+        components = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds
-        verdict = self._gate.offer(sample.stamp * 1e-9, velocity, arrival * 1e-9)
-        self._report.add(verdict.accepted)
-        if not verdict.accepted:
+        good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
+        self._report.add(good is not None)
+        if good is None:
             return
-        time = round(verdict.time * 1e9)
-        vector = self._convention.project(velocity)
+        time, vector = good
         self._filtered.publish(wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector)))
         self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
         self._plane.publish(plane_message(time, frame_id, self._attitude))
 
     def _statuses(self) -> list[Status]:
-        return [self._report.status(self.values["timeout"], self._gate, self._types_not_read())]
+        gate, others = self._intake.gate, self._types_not_read()
+        return [self._report.status(self.values["timeout"], gate, others)]
 
     def _types_not_read(self) -> list[str]:
         """Types other than `input_type` that somebody publishes on the topic."""

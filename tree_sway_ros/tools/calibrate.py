@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.identification.calibration import Calibration, calibrate
-from tree_sway_ros.core.identification.sway_record import KINDS, SwayEstimate, estimate_sway
+from tree_sway_ros.core.identification.measured_sway import KINDS, SwayEstimate, estimate_sway
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.plausibility import doubt_of_sway
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.wind.sway_table import read_csv_sway
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
+from tree_sway_ros.tools.progress import waiting
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
-from tree_sway_ros.tools.tree_output import write_tree_file
+from tree_sway_ros.tools.tree_output import add_output_arguments, output_path, write_tree_file
 
 _YAML = (".yaml", ".yml")
 _FAR = 2.0
@@ -45,18 +49,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("LOW", "HIGH"),
         help="where in the record's spectrum to look for the sway [Hz]",
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        metavar="FILE",
-        help="tree with the fitted wood to write: .yaml",
-    )
+    add_output_arguments(parser, "tree with the fitted wood to write: .yaml")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Fit the tree and write it."""
     _check(arguments)
+    output = output_path(arguments)
     tree_file = opened_tree(arguments)
     frequency, damping, error = arguments.frequency, arguments.damping, 0.0
     if arguments.record is not None:
@@ -64,11 +63,15 @@ def run(arguments: argparse.Namespace) -> int:
         frequency, error = found.frequency, found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
     settings = Settings(model="modes", in_leaf=told_leaves(arguments))
-    fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
+    with waiting("calibrating"):
+        fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
     in_leaf = is_in_leaf(tree_file.species, settings.in_leaf)
+    doubt = doubt_of_sway(tree_file.tree, fitted.frequency)
+    for each in (*tree_file.of_species(fitted.species).warnings, *([doubt] if doubt else [])):
+        print(f"warning: {each}", file=sys.stderr)
     for line in _summary(tree_file.species, fitted, error, in_leaf=in_leaf):
         print(line)
-    write_tree_file(arguments.output, tree_file.tree, fitted.species)
+    write_tree_file(output, tree_file.tree, fitted.species)
     return 0
 
 
@@ -92,7 +95,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     """What the record says, also printed."""
-    record = read_csv_sway(Path(arguments.record))
+    record = read_csv_sway(path_of(arguments.record))
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     try:
         found = estimate_sway(record.time, record.motion, arguments.kind, band)

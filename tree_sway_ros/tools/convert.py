@@ -4,23 +4,75 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.export.gltf_tree import morphing_tree
+from tree_sway_ros.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
-from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
+from tree_sway_ros.tools.tree_output import (
+    OUTPUT_HELP,
+    add_output_arguments,
+    output_path,
+    what_was_written,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True)
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
+    add_leaves_argument(parser)
+    add_output_arguments(parser, OUTPUT_HELP)
+    parser.add_argument(
+        "--sway",
+        nargs="?",
+        choices=("skin", "morph"),
+        const="skin",
+        help="how a .glb or .gltf is to sway: by a joint per segment, set from segment_poses, or "
+        "by some 20 weights, set from the tree's state (skin)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read a tree and write it."""
+    output = output_path(arguments)
+    is_gltf = Path(output).suffix.lower() in GLTF_SUFFIXES
+    if arguments.sway is not None and not is_gltf:
+        raise ParameterError(
+            f"'{output}' cannot sway", where="--sway", cure="write a .glb or .gltf file"
+        )
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f"note: {note}", file=sys.stderr)
-    species = scene.species if isinstance(scene, TreeFile) else None
-    write_tree_file(arguments.output, scene.tree, species)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
+    if arguments.sway == "morph":
+        _write_morphing(scene, arguments)
+    else:
+        species = scene.species if isinstance(scene, TreeFile) else None
+        leaves = drawn_leaves(scene, arguments) if is_gltf else None
+        write_tree(output, scene.tree, species, leaves)
+    print(what_was_written(output, scene.tree))
     return 0
+
+
+def _write_morphing(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None:
+    """Write a tree with morph targets and say what their linear form leaves out."""
+    if not isinstance(scene, TreeFile):
+        raise ParameterError(
+            "a forest by morph targets", where="--sway", cure="convert its trees one by one"
+        )
+    settings = Settings(model="modes", in_leaf=told_leaves(arguments))
+    simulator = SwaySimulator(scene.tree, scene.species, settings)
+    document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
+    write_gltf(arguments.output, document)
+    print(
+        f"  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} mm "
+        f"(rms; at most {1e3 * form.motion_greatest:.3g}), the linear form is off by "
+        f"{1e3 * form.rms:.2g} mm (at most {1e3 * form.greatest:.2g})"
+    )

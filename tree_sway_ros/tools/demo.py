@@ -8,25 +8,31 @@ What it prints is what a subscriber receives, not what the solver believes to ha
 from __future__ import annotations
 
 import argparse
+import sys
+import tempfile
+import webbrowser
+from pathlib import Path
 
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.files.export.tree_export import write_tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
+from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
+from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.only_demo import only_demo
+from tree_sway_ros.tools.stream.text import summary
+from tree_sway_ros.tools.stream.watch import checked_seconds, watch
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument(
-        "--tree",
-        default="benjamina",
-        help="benjamina, goldcrest, broadleaf, or a file of a tree or a forest (%(default)s)",
-    )
+    add_tree_arguments(parser, forests=True, default="benjamina")
     parser.add_argument(
         "--wind", metavar="FILE", help="a wind record to play; simulated if left out"
     )
@@ -41,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
     )
     parser.add_argument(
-        "--rate", type=float, default=60.0, help="poses a second [Hz] (%(default)s)"
+        "--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)"
     )
     fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
     parser.add_argument(
@@ -54,35 +60,53 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
     )
+    parser.add_argument("--no-page", action="store_true", help="serve no page")
+    add_page_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
-    tree = open_scene(arguments.tree).tree
+    with tempfile.TemporaryDirectory() as folder:
+        return _run(arguments, seconds, Path(folder))
+
+
+def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
+    scene = opened_scene(arguments)
+    for doubt in scene.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
+    tree = scene.tree
     print(
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    try:
-        with interrupted_once(), Composition({}) as nodes:
-            monitor = StreamMonitor(nodes.context, tree)
+    with Ending() as ending, only_demo(), Composition({}) as nodes:
+        monitor = StreamMonitor(nodes.context, tree)
 
-            def goes_on() -> bool:
-                nodes.check()
-                return not nodes.is_done
+        def goes_on() -> bool:
+            nodes.check()
+            return not nodes.is_done
 
-            try:
-                monitor.expect_silence()
-                for name, values in _nodes(arguments).items():
-                    nodes.add(name, values)
-                begin = watch(monitor, seconds, goes_on)
-            finally:
-                monitor.close()
-    except KeyboardInterrupt:
-        return 0
-    print(summary(monitor.record.since(begin), arguments.rate))
+        try:
+            monitor.expect_silence()
+            for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
+                nodes.add(name, values)
+            if not arguments.no_page:
+                _serve_page(nodes, arguments)
+            ending.limit = LONGEST
+            watch(monitor, seconds, goes_on)
+            print(summary(monitor.totals, arguments.rate), flush=True)
+        finally:
+            monitor.close()
     return 0
+
+
+def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
+    """Add the viewer, tell where its page is, and open it if asked to."""
+    url = nodes.add("viewer", {**vars(page_settings(arguments)), "control": True}).server.url
+    print(f"page: {url}", flush=True)
+    if arguments.open:
+        webbrowser.open(url)
 
 
 def size_of(tree: Tree) -> str:
@@ -92,9 +116,20 @@ def size_of(tree: Tree) -> str:
     return f"{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
 
 
-def _nodes(arguments: argparse.Namespace) -> dict[str, dict[str, Value]]:
+def _tree_of(scene: TreeFile | ForestFile, arguments: argparse.Namespace, folder: Path) -> str:
+    """What the solver opens: TREE, or a file of it with the wood and the options given here."""
+    told = (arguments.seed, arguments.option, arguments.modulus, arguments.density)
+    if not any(told) or not isinstance(scene, TreeFile):
+        return str(arguments.tree)
+    path = folder / "tree.yaml"
+    write_tree(path, scene.tree, scene.species)
+    return str(path)
+
+
+def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Value]]:
     solver: dict[str, Value] = {
-        "tree": arguments.tree,
+        "tree": tree,
+        "species": "" if tree != arguments.tree else arguments.species or "",
         "rate": arguments.rate,
         "fidelity": arguments.fidelity,
     }

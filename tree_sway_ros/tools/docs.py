@@ -11,16 +11,24 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.trees.tree_file import TREE_FORMATS
+from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process import topics
+from tree_sway_ros.tools import cli
+from tree_sway_ros.tools.rooms import rooms_drawing
 
-PAGES = ("README.md", "doc/trees.md")
+PAGES = ("README.md", "doc/reference.md", "doc/trees.md")
 """Pages with tables."""
+
+DRAWINGS: dict[str, Callable[[], str]] = {"doc/pictures/rooms.svg": rooms_drawing}
+"""Drawings made from the source."""
 
 _TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
@@ -28,7 +36,10 @@ _TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DO
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "files", nargs="*", default=PAGES, help=f"files with tables ({', '.join(PAGES)})"
+        "files",
+        nargs="*",
+        default=(*PAGES, *DRAWINGS),
+        help=f"files with tables, or drawings ({', '.join((*PAGES, *DRAWINGS))})",
     )
     parser.add_argument(
         "--check", action="store_true", help="change nothing; exit 2 if not up to date"
@@ -36,18 +47,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Bring the tables of the files up to date, or check that they are."""
+    """Bring tables and drawings up to date, or check that they are."""
     for file in arguments.files:
         path = Path(file)
-        text = path.read_text(encoding="utf-8")
-        fresh = with_tables(text, where=str(path))
+        text = path.read_text(encoding="utf-8") if path.is_file() or file not in DRAWINGS else ""
+        fresh = DRAWINGS[file]() if file in DRAWINGS else with_tables(text, where=str(path))
         if fresh == text:
             print(f"{path}: up to date")
             continue
         if arguments.check:
             raise FormatError("not up to date", where=str(path), cure="run tree-sway docs")
-        path.write_text(fresh, encoding="utf-8")
-        print(f"{path}: tables written")
+        write_text_whole(path, fresh)
+        print(f"{path}: written")
     return 0
 
 
@@ -87,14 +98,37 @@ def with_tables(text: str, where: str = "text") -> str:
 
 def markdown_tables() -> dict[str, str]:
     """
-    Every table by its name: ``topics``, ``species``, and the parameters of each node by the node's
-    name.
+    Every table by its name: commands, topics, species, formats of trees, and the parameters of each
+    node by the node's name.
 
     """
-    tables = {"topics": topics.markdown_table(), "species": species_table()}
+    tables = {
+        "commands": commands_table(),
+        "topics": topics.markdown_table(),
+        "species": species_table(),
+        "tree_formats": formats_table(),
+    }
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters.markdown_table(table)
     return tables
+
+
+def commands_table() -> str:
+    """What each command does, with its example."""
+    lines = ["| command | what it does | example |", "|---|---|---|"]
+    lines += [
+        f"| `{name}` | {c.summary} | `tree-sway {c.example}` |" for name, c in cli.COMMANDS.items()
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def formats_table() -> str:
+    """Formats of tree files, with the options that each takes."""
+    lines = ["| format | files | options |", "|---|---|---|"]
+    for each in TREE_FORMATS:
+        options = ", ".join(f"`{option}`" for option in each.options)
+        lines.append(f"| {each.name} | {', '.join(each.suffixes)} | {options} |")
+    return "\n".join(lines) + "\n"
 
 
 def species_table() -> str:

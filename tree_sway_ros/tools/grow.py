@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 import numpy as np
 
 from tree_sway_ros.core.growth.grow import HABITS, grow
 from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.tools.tree_output import OUTPUT_HELP, write_tree_file
+from tree_sway_ros.tools.tree_output import (
+    OUTPUT_HELP,
+    add_output_arguments,
+    output_path,
+    write_tree_file,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,13 +36,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seed", type=int, default=0, help="another seed, another tree (%(default)s)"
     )
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=OUTPUT_HELP)
+    add_output_arguments(parser, OUTPUT_HELP)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Grow a tree and write it."""
     if arguments.seed < 0:
         raise ParameterError(f"{arguments.seed} is negative", where="--seed", cure="give 0 or more")
+    output = output_path(arguments)
     species = open_species(arguments.species)
     tree = grow(
         species.key,
@@ -44,5 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.habit,
         rng=np.random.default_rng(arguments.seed),
     )
-    write_tree_file(arguments.output, tree, species)
+    grown = TreeFile(tree, species, tree.name).checked()
+    for doubt in grown.warnings:
+        print(f"warning: {doubt}", file=sys.stderr)
+    write_tree_file(output, tree, species)
     return 0

@@ -13,6 +13,7 @@ import numpy as np
 from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.tree.plausibility import doubt_of_sway
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -105,10 +106,14 @@ def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str,
         notes.append(f"modes without its own weight, as it cannot stand: {error}")
         bank = build_bank(tree, species, settings)
     rows = mode_table(tree, bank, count)
+    warnings = list(tree_file.warnings)
+    if rows and (doubt := doubt_of_sway(tree, min(row.frequency for row in rows))):
+        warnings.append(doubt)
     return {
         "name": tree.name,
         "source": tree_file.source,
         "notes": notes,
+        "warnings": warnings,
         "branches": tree.n_branches,
         "segments": tree.n_segments,
         "height": tree.height,
@@ -174,6 +179,7 @@ def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
         f"copied",
     ]
     lines += [f"  note       {note}" for note in facts["notes"]]
+    lines += [f"  warning    {doubt}" for doubt in facts["warnings"]]
     if facts["modes"]:
         lines.append(f"  natural modes, {weight}:")
         lines.append("       Hz   damping   sways along (east = 0, north = 90)   most in branch")

@@ -73,4 +73,6 @@ def forest_text(facts: dict[str, Any]) -> str:
             f"{'   in leaf' if tree['in_leaf'] else ''}"
         )
     notes = [*facts["notes"], *(f"{tree['name']}: {n}" for tree in trees for n in tree["notes"])]
-    return "\n".join([*lines, *(f"  note       {note}" for note in notes)])
+    doubts = [f"{tree['name']}: {doubt}" for tree in trees for doubt in tree["warnings"]]
+    lines += [f"  note       {note}" for note in notes]
+    return "\n".join([*lines, *(f"  warning    {doubt}" for doubt in doubts)])

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import argparse
 
+from tree_sway_ros.ros.process.ending import LONGEST, Ending
 from tree_sway_ros.ros.process.spin import init, require_rclpy
-from tree_sway_ros.tools.stream_monitor import StreamMonitor
-from tree_sway_ros.tools.stream_text import summary
-from tree_sway_ros.tools.stream_watch import checked_seconds, interrupted_once, watch
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.text import summary
+from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,15 +37,14 @@ def run(arguments: argparse.Namespace) -> int:
     context = rclpy.context.Context()
     init(rclpy, [], context=context, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
     try:
-        with interrupted_once():
+        with Ending() as ending:
             monitor = StreamMonitor(context, None, arguments.namespace)
             try:
-                begin = watch(monitor, seconds, lambda: True)
+                ending.limit = LONGEST
+                watch(monitor, seconds, lambda: True)
+                print(summary(monitor.totals, arguments.rate), flush=True)
             finally:
                 monitor.close()
-    except KeyboardInterrupt:
-        return 0
     finally:
         context.try_shutdown()
-    print(summary(monitor.record.since(begin), arguments.rate))
     return 0

@@ -1,5 +1,5 @@
 """
-``tree-sway plot``: the wind and the motion of the tip over time, or with ``--tree`` the tree
+``tree-sway plot``: the wind and the motion of the tip over time, or with ``--portrait`` the tree
 itself.
 
 """
@@ -21,8 +21,10 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
+from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
-from tree_sway_ros.tools.tree_argument import add_wood_arguments, opened_scene
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
+from tree_sway_ros.tools.tree_output import add_output_arguments, output_path
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 
@@ -31,26 +33,16 @@ _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    add_tree_arguments(parser, forests=True, default="benjamina")
     parser.add_argument(
-        "tree",
-        nargs="?",
-        default="benjamina",
-        metavar="TREE",
-        help="name, or file of a tree or a forest (%(default)s)",
-    )
-    parser.add_argument(
-        "--tree",
-        nargs="?",
-        const="",
-        dest="portrait",
-        metavar="TREE",
+        "--portrait",
+        action="store_true",
         help="draw the tree at rest and, beside it, in a steady westerly",
     )
-    add_wood_arguments(parser)
     add_leaves_argument(parser)
     parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
     parser.add_argument(
-        "--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --tree)"
+        "--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --portrait)"
     )
     parser.add_argument(
         "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
@@ -58,36 +50,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model", choices=MODELS, default="modes", help="model of the sway (%(default)s)"
     )
-    parser.add_argument(
-        "-o", "--output", default="sway.png", metavar="FILE", help="picture (%(default)s)"
-    )
+    picture = "picture (sway.png, or the next name that is free)"
+    add_output_arguments(parser, picture, required=False)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
     if not 0.0 < arguments.seconds <= 3600.0:
         raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0 to 3600")
-    arguments.tree = arguments.portrait or arguments.tree
+    output = output_path(arguments, "sway.png")
     scene = opened_scene(arguments)
-    if arguments.portrait is not None:
-        _portrait(scene, arguments)
-    else:
-        _motion(scene, arguments)
-    print(arguments.output)
+    draw = _portrait if arguments.portrait else _motion
+    draw(scene, arguments, output)
+    print(output)
     return 0
 
 
-def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None:
+def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output: str) -> None:
     speed = 10.0 if arguments.speed is None else arguments.speed
     simulator = _simulator(scene, arguments)
     wind = np.array([speed, 0.0, 0.0])
-    for _ in range(round(_SETTLING / _SETTLING_STEP)):
+    for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), "settling in the wind"):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
         [each.tree for each in simulators_of(simulator)],
         simulator.place(),
         wind,
-        arguments.output,
+        output,
         leaves=drawn_leaves(scene, arguments),
     )
 
@@ -103,7 +92,7 @@ def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> S
         return light
 
 
-def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None:
+def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output: str) -> None:
     speed = 6.0 if arguments.speed is None else arguments.speed
     source = f"simulated wind, mean {speed:g} m/s"
     samples: Samples
@@ -116,4 +105,4 @@ def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> None
     if len(result.time) < 2:
         raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
     title = f"{scene.tree.name}, {arguments.model}, {source}"
-    plot_wind_and_tip(result.time, result.wind, result.tip, arguments.output, title=title)
+    plot_wind_and_tip(result.time, result.wind, result.tip, output, title=title)

@@ -16,6 +16,7 @@ from tree_sway_ros.core.scene.make import Simulator
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.files.wind.record import WindRecord
+from tree_sway_ros.tools.progress import bar
 
 Samples = Iterator[tuple[float, Floats]]
 
@@ -23,7 +24,7 @@ Samples = Iterator[tuple[float, Floats]]
 @dataclass(frozen=True)
 class Ride:
     """
-    What happened, one row a step.
+    What happened, one row per step.
 
     Parameters
     ----------
@@ -65,7 +66,7 @@ def ride(simulator: Simulator, samples: Samples, seconds: float, rate: float = 6
     seconds
         Ends after so long at the latest [s].
     rate
-        Steps a second in [Hz].
+        Steps per second in [Hz].
 
     Returns
     -------
@@ -77,7 +78,7 @@ def ride(simulator: Simulator, samples: Samples, seconds: float, rate: float = 6
     dt = 1.0 / rate
     time, wind, tip = [], [], []
     coming = next(samples, None)
-    for step in range(round(seconds * rate)):
+    for step in bar(range(round(seconds * rate)), "swaying"):
         begin, end = step * dt, (step + 1) * dt
         while coming is not None and coming[0] <= end:
             average.add(*coming)

@@ -19,14 +19,29 @@ from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
 
 
-def add_tree_arguments(parser: argparse.ArgumentParser, *, forests: bool = False) -> None:
-    """Add TREE and what can be said of its wood; `forests` says that TREE may be a forest."""
-    parser.add_argument("tree", metavar="TREE", help=f"{_TREE}{' of a tree or a forest' * forests}")
-    add_wood_arguments(parser)
+def add_tree_arguments(
+    parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
+) -> None:
+    """
+    Add TREE and what can be said of its wood.
 
+    Parameters
+    ----------
+    parser
+        Of the command.
+    forests
+        TREE may be a forest.
+    default
+        TREE where it is left out; it may not be if None.
 
-def add_wood_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what can be said of the wood of a tree, and of how its file is to be read."""
+    """
+    kind = f"{_TREE}{' of a tree or a forest' * forests}"
+    if default is None:
+        parser.add_argument("tree", metavar="TREE", help=kind)
+    else:
+        parser.add_argument(
+            "tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)"
+        )
     parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
     parser.add_argument(
         "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"
@@ -80,12 +95,14 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
             where=scene.source,
             cure="say --species, or give trees files with wood of their own",
         )
-    return scene.of_species(open_species(arguments.species)) if arguments.species else scene
+    if not arguments.species:
+        return scene
+    return scene.of_species(open_species(arguments.species)).checked()
 
 
 def _of_wood(tree_file: TreeFile, arguments: argparse.Namespace) -> TreeFile:
     species = open_species(arguments.species) if arguments.species else tree_file.species
-    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments)))
+    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
 
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from tree_sway_ros.core.leaves.flutter import air_speed, flutter_angle, leaf_pos
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
+from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.view.plotting import new_figure
 from tree_sway_ros.view.projection import Camera, ends_of_poses
 from tree_sway_ros.view.tree_drawing import Frame, draw_tree, draw_wind, frame_around
@@ -87,7 +88,7 @@ def animate_poses(
         from PIL import Image
     except ImportError:
         raise MissingDependencyError(
-            "moving pictures need pillow", cure="pip install 'tree_sway_ros[plot]'"
+            "moving pictures need pillow", cure="pip install pillow"
         ) from None
     camera = camera or Camera()
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
@@ -104,16 +105,10 @@ def animate_poses(
     if kind == "GIF":
         palette = images[len(images) // 2].quantize(_GIF_COLORS)
         images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
-    try:
+    with whole_file(target) as partial:
         images[0].save(
-            target, kind, save_all=True, append_images=images[1:], duration=1000.0 / rate, loop=0
+            partial, kind, save_all=True, append_images=images[1:], duration=1000.0 / rate, loop=0
         )
-    except OSError as error:
-        raise FormatError(
-            f"cannot write the picture ({error.strerror})",
-            where=str(target),
-            cure="name a folder that exists and that you may write to",
-        ) from None
     return target
 
 

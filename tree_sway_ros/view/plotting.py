@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError
+from tree_sway_ros.files.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,7 +32,7 @@ def new_figure(width: float, height: float) -> Figure:
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingDependencyError(
-            "pictures need matplotlib", cure="pip install 'tree_sway_ros[plot]'"
+            "pictures need matplotlib", cure="pip install matplotlib"
         ) from None
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
@@ -56,12 +57,6 @@ def save_figure(figure: Figure, path: str | Path, dots_per_inch: float = 110.0) 
             where=str(target),
             cure=f"end the name with one of: {', '.join('.' + k for k in sorted(known))}",
         )
-    try:
-        figure.savefig(target, dpi=dots_per_inch)
-    except OSError as error:
-        raise FormatError(
-            f"cannot write the picture ({error.strerror})",
-            where=str(target),
-            cure="name a folder that exists and that you may write to",
-        ) from None
+    with whole_file(target) as partial:
+        figure.savefig(partial, dpi=dots_per_inch, format=target.suffix[1:].lower())
     return target

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.rotation import quaternions_from_x
+from tree_sway_ros.core.tree.rest_frame import quaternions_from_x
 
 
 @dataclass(frozen=True)

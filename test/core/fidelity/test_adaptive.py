@@ -134,3 +134,19 @@ def test_reset_and_bad_wind_as_in_one_simulator(adaptive):
         sim.step((5.0, 0.0, 0.0), DT)
     sim.reset()
     np.testing.assert_array_equal(sim.place(), rest)
+
+
+def test_counts_only_grow_whatever_models_come_and_go(adaptive):
+    sim = adaptive(10.0)
+    before, models = (sim.counts.steps, sim.counts.refused, sim.counts.held), set()
+    start = before
+    for second in range(40):
+        sim.tolerance = 10.0 if second % 20 < 5 else 0.01
+        for step in range(60):
+            sim.step((np.nan if step == 7 else 6.0, 0.0, 0.0), DT)
+            models.add(sim.model)
+            now = (sim.counts.steps, sim.counts.refused, sim.counts.held)
+            assert all(new >= old for new, old in zip(now, before, strict=True))
+            before = now
+    assert len(models) > 1
+    assert (before[0] - start[0], before[1] - start[1]) == (40 * 60, 40)

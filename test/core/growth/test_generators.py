@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tree_sway_ros.core.branch.closed_forms import greenhill_length
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
-from tree_sway_ros.core.growth.grow import greenhill_length
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -114,5 +114,5 @@ def test_stands_under_its_own_weight(generate: Generator, seed: int) -> None:
         carried = volume[branch : tree.subtree_end[branch]].sum()
         length = float(tree.branch_length[branch])
         # The carried wood as if it were spread along the branch makes it that much denser.
-        density = wood.density * carried / (0.25 * np.pi * middle**2 * length)
-        assert length < 0.8 * greenhill_length(wood.modulus, density, middle)
+        stiffness = wood.modulus * np.pi * middle**4 / 64.0
+        assert length < 0.8 * greenhill_length(stiffness, wood.density * 9.81 * carried / length)

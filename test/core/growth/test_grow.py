@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.growth.grow import HABITS, greenhill_length, grow
+from tree_sway_ros.core.growth.grow import HABITS, grow
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, SpeciesError
@@ -87,15 +87,3 @@ def test_bad_sizes_are_refused_with_the_cure(
 def test_an_unknown_species_is_refused() -> None:
     with pytest.raises(SpeciesError, match="'okk'"):
         grow("okk", 10.0, rng=rng())
-
-
-def test_greenhill_of_a_wooden_rod() -> None:
-    """
-    Against the lowest zero of the Bessel function J_{-1/3}, 1.8664, from which the law follows.
-
-    """
-    oak = species_named("oak")
-    stiffness = oak.modulus * np.pi * 0.1**4 / 64.0
-    weight = oak.density * 9.81 * np.pi * 0.1**2 / 4.0
-    expected = (2.25 * 1.8663508**2 * stiffness / weight) ** (1.0 / 3.0)
-    assert greenhill_length(oak.modulus, oak.density, 0.1) == pytest.approx(expected, rel=1e-3)

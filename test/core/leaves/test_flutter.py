@@ -18,7 +18,6 @@ from tree_sway_ros.core.leaves.flutter import (
     leaf_poses,
 )
 from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
-from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -28,7 +27,7 @@ def twig() -> Tree:
 
 
 def poses_at_rest(tree: Tree) -> np.ndarray:
-    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    rest = tree.rest_frame
     return np.hstack([tree.start, rest[:, [1, 2, 3, 0]]])
 
 

@@ -17,7 +17,6 @@ from tree_sway_ros.core.leaves.foliage import (
     leafy_length,
     no_clusters,
 )
-from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.leaf_traits import LeafTraits
 from tree_sway_ros.core.tree.species import leaf_traits, species_keys
@@ -124,7 +123,7 @@ def test_clusters_together_show_the_leaf_area() -> None:
 def test_leaves_look_up() -> None:
     tree = builtin_tree("broadleaf")
     clusters = leaf_clusters(tree, rng())
-    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])[clusters.segment]
+    rest = tree.rest_frame[clusters.segment]
     turn = Rotation.from_quat(rest[:, [1, 2, 3, 0]]) * Rotation.from_quat(
         clusters.orientation[:, [1, 2, 3, 0]]
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.motion.fill_records import moving_records
-from tree_sway_ros.core.motion.tree_passes import even_wind_moments
+from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
 from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings

@@ -11,7 +11,7 @@ from tree_sway_ros.core.reference.articulated_kernel import articulation_of, mot
 from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
 from tree_sway_ros.core.reference.articulated_step import respond, room_of
 from tree_sway_ros.core.reference.measure import frame_means, record_tips, tip_error, tips_of_poses
-from tree_sway_ros.core.reference.refinement import place_on_parent, refined
+from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import TreeError
 from tree_sway_ros.study.example_trees import (
@@ -219,7 +219,7 @@ def test_refined_tree_is_the_same_wood_with_children_in_place():
     cut = refined(tree, 3)
     assert cut.volume.sum() == pytest.approx(tree.volume.sum())
     assert cut.end[2::3] == pytest.approx(tree.end)
-    assert place_on_parent(cut) == pytest.approx(1.0)
+    assert cut.place_on_parent == pytest.approx(1.0)
     first = cut.branch_first[1:-1]
     assert cut.start[first] == pytest.approx(cut.end[cut.segment_parent[first]])
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.reference.refinement import place_on_parent, refined
+from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.study.example_trees import forked_tree
 from tree_sway_ros.study.frame.frame import frame_model
@@ -25,7 +25,7 @@ def test_one_piece_is_the_tree_itself():
 
 def test_places_along_the_parent():
     tree = with_arms(0.25, 0.5, 1.0)
-    assert place_on_parent(tree) == pytest.approx([1.0, 0.25, 0.5, 1.0])
+    assert tree.place_on_parent == pytest.approx([1.0, 0.25, 0.5, 1.0])
 
 
 @pytest.mark.parametrize(("pieces", "seats"), [(2, [0, 1, 1]), (4, [1, 2, 3]), (3, [0, 1, 2])])

@@ -121,7 +121,7 @@ def test_a_steady_wind_bends_the_coupled_tree_as_its_stiffness_says(fork):
     sim = SwaySimulator(fork(), model="coupled", gravity=0.0, damping_ratio=0.5)
     for _ in range(1500):
         sim.step([1.0, 0.4, 0.0], 1 / 30)
-    bank = sim._bank.oscillators
+    bank = sim.bank.oscillators
     x, moment = bank.rotations(), bank.state[0]
     shapes, w2 = bank.shapes, bank.stiffness
     assert x == pytest.approx(shapes @ ((shapes.T @ moment) / w2), rel=1e-6, abs=1e-12)

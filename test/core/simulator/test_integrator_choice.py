@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
+from tree_sway_ros.core.oscillators.step_rules import (
+    CONDITIONALLY_STABLE,
+    REAL_TIME,
+    stability_limit,
+)
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import ParameterError
@@ -40,3 +44,26 @@ def test_a_method_that_is_too_slow_for_a_frame_is_not_offered():
     assert "radau_ggl" not in REAL_TIME
     with pytest.raises(ParameterError, match="unknown integrator 'radau_ggl'"):
         SwaySimulator(forked_tree(0.4, 0.35), WOOD, integrator="radau_ggl")
+
+
+@pytest.mark.parametrize("integrator", ["semi_implicit_euler", "rk4", "verlet"])
+def test_a_late_step_is_cut_where_the_method_would_explode(integrator):
+    tree = tapered_stem(6.0, np.linspace(0.05, 0.04, 7))
+    late, even = (
+        SwaySimulator(tree, WOOD, model="branch", integrator=integrator, gravity=0.0)
+        for _ in range(2)
+    )
+    wind = (4.0, 1.0, 0.0)
+    for sim in (late, even):
+        sim.step(wind, 1.0 / 120.0)
+    late.step(wind, 1.0)
+    for _ in range(120):
+        even.step(wind, 1.0 / 120.0)
+    assert late.tip_displacement == pytest.approx(even.tip_displacement, rel=1e-9)
+    late.step(wind, 1.0 / 240.0)
+    assert np.isfinite(late.place()).all()
+
+
+@pytest.mark.parametrize("name", REAL_TIME)
+def test_the_methods_that_are_cut_are_those_with_a_limit(name):
+    assert (name in CONDITIONALLY_STABLE) == np.isfinite(stability_limit(name))

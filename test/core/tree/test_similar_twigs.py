@@ -72,5 +72,5 @@ def test_copies_move_as_their_source(sketch, model):
     tip = np.abs(poses[4, 3:] - SwaySimulator(sim.tree, model=model).place()[4, 3:]).max()
     assert tip > 1e-3
     assert np.abs(poses - solved).max() < 0.2 * tip
-    x = sim._bank.oscillators.x.reshape(-1, 2)
+    x = sim.bank.oscillators.x.reshape(-1, 2)
     assert (x[1:] == x[1]).all()

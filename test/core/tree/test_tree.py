@@ -6,6 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
+
+from tree_sway_ros.core.tree.building import tree_from_segments
 
 
 def test_figures_of_a_fork(fork):
@@ -38,3 +41,25 @@ def test_a_weeping_branch_has_its_length_along_the_wood(fork):
     own = tree.segments_of(1)
     chord = np.linalg.norm(tree.end[own][-1] - tree.start[own][0])
     assert tree.branch_length[1] > chord
+
+
+def test_directions_and_frames_of_segments(fork):
+    tree = fork()
+    np.testing.assert_allclose(np.linalg.norm(tree.direction, axis=1), 1.0)
+    np.testing.assert_allclose(tree.direction * tree.length[:, None], tree.end - tree.start)
+    turned = Rotation.from_quat(tree.rest_frame[:, [1, 2, 3, 0]]).apply([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(turned, tree.direction, atol=1e-12)
+    for array in (tree.direction, tree.rest_frame, tree.place_on_parent):
+        assert not array.flags.writeable
+
+
+def test_the_foot_of_a_segment_on_its_parent():
+    tree = tree_from_segments(
+        [[0, 0, 0], [0, 0, 0.5], [0, 0.1, 2.5], [0, 0, 2]],
+        [[0, 0, 2], [1, 0, 0.5], [0, 1, 2.5], [0, 0, 3]],
+        [0.1, 0.02, 0.02, 0.08],
+        parent=[-1, 0, 0, 0],
+        branch=[0, 1, 2, 0],
+    )
+    by_source = dict(zip(tree.source_index.tolist(), tree.place_on_parent.tolist(), strict=True))
+    assert by_source == pytest.approx({0: 1.0, 1: 0.25, 2: 1.0, 3: 1.0})

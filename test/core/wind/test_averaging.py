@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -157,6 +158,77 @@ def test_the_mean_stays_within_the_largest_sample(samples, interpolation):
         mean = average.mean(time, time + wait)
         time += wait
         assert np.abs(mean).max() <= largest * (1.0 + 1e-9)
+
+
+STREAMS = st.lists(
+    st.tuples(
+        st.sampled_from([0.01, 0.05, 0.3, 2.5, 9.0]) | st.floats(0.0, 12.0), WIND, st.booleans()
+    ),
+    max_size=40,
+)
+
+
+@given(
+    STREAMS,
+    st.floats(-40.0, 40.0),
+    st.sampled_from(["linear", "hold"]),
+    st.floats(-3.0, 1.0),
+)
+def test_the_mean_stays_in_the_convex_hull_of_samples_and_calm(samples, low, interpolation, late):
+    """In any direction no mean lies beyond the farthest sample, whatever was lost or late."""
+    average = WindAverage(interpolation)
+    direction = np.array([math.cos(low), math.sin(low), 0.3])
+    time, farthest = 0.0, 0.0
+    for wait, wind, is_heard in samples:
+        if is_heard and average.add(time + late * wait, wind):
+            farthest = max(farthest, float(direction @ wind))
+        mean = average.mean(time, time + wait)
+        time += wait
+        assert direction @ mean <= farthest + 1e-9
+
+
+def test_a_wind_that_turns_while_it_fades_in_is_no_faster_than_its_samples():
+    """After a drop-out comes the other way, and turns back at once."""
+    average, largest = WindAverage(), 0.0
+    for frame in range(600):
+        end = frame * FRAME
+        if not 2.0 < end < 6.0:
+            average.add(end - 0.5 * FRAME, (20.0 if end < 2.0 or end > 6.1 else -20.0, 0.0, 0.0))
+        largest = max(largest, float(np.abs(average.mean(end - FRAME, end)).max()))
+    assert largest == pytest.approx(20.0, abs=1e-9)
+
+
+def test_a_fade_is_exactly_the_mean_of_the_mix():
+    average = WindAverage()
+    run(average, 2.0)
+    for frame in range(120, 420):
+        average.mean(frame * FRAME, (frame + 1) * FRAME)
+    average.add(7.0, (3.0, -9.0, 1.0))
+    average.add(7.05, (-5.0, 2.0, 0.0))
+    average.add(7.1, (4.0, 2.0, 0.0))
+    edges = 7.0 + np.linspace(0.0, 0.7, 15)
+    fine = np.array([average.mean(t, t) for t in 7.0 + 1e-4 * (np.arange(7000) + 0.5)])
+    for k, (start, end) in enumerate(pairwise(edges)):
+        expected = fine[k * 500 : (k + 1) * 500].mean(axis=0)
+        np.testing.assert_allclose(average.mean(start, end), expected, atol=1e-3)
+
+
+def test_its_state_may_be_asked_while_another_thread_feeds_it():
+    """The newest sample may be forgotten between two looks at it."""
+
+    class Forgetting(WindAverage):
+        looks = 0
+
+        @property
+        def _newest(self):
+            self.looks += 1
+            return 1.0 if self.looks == 1 else None
+
+        @_newest.setter
+        def _newest(self, value):
+            self.looks = 0
+
+    assert Forgetting().state(5.0) == "decaying"
 
 
 class TestRefusals:

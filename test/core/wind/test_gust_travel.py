@@ -163,6 +163,34 @@ def test_days_of_wind_cost_no_precision():
     assert np.abs(history._run).max() < 128 * 8.1
 
 
+@pytest.mark.parametrize("rate", [20, 69, 200, 500, 1000, 4000])
+def test_the_history_is_a_minute_long_at_any_rate(rate):
+    """A tree 50 s downwind feels the gust when it comes, whatever the rate of the steps."""
+    dt = 1.0 / rate
+    history = GustHistory([[400.0, 0.0, 0.0]], np.zeros(3), averaging_time=3600.0)
+    gust = np.array([10.0, 0.0, 0.0])
+    mean, speed = np.array([8.0, 0.0, 0.0]), []
+    for step in range(58 * rate):
+        wind = gust if 1.0 <= step * dt < 2.0 else mean
+        felt_now = history.push(wind, dt)[0, 0]
+        if step % max(1, rate // 20) == 0:
+            speed.append(felt_now)
+    time = np.arange(len(speed)) * max(1, rate // 20) * dt
+    above = time[np.array(speed) > 9.0]
+    # The delay follows the mean wind, which the gust has raised by a little.
+    assert above[0] == pytest.approx(1.0 + history.delay[0], abs=0.5)
+    assert above[-1] - above[0] == pytest.approx(1.0, abs=0.1)
+    assert history.delay[0] == pytest.approx(50.0, abs=0.5)
+
+
+def test_every_step_of_a_minute_is_kept_as_it_was():
+    winds = gusts(4000)
+    history = GustHistory([[240.0, 0.0, 0.0]], np.zeros(3), averaging_time=3600.0)
+    assert history._finest < 0.25 * DT
+    felt(history, winds)
+    assert history._at[1] == 4001
+
+
 def test_a_step_allocates_nothing():
     history = GustHistory(np.random.default_rng(0).uniform(0.0, 100.0, (20, 3)))
     wind = np.array([7.0, 1.0, 0.0])

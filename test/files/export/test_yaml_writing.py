@@ -10,7 +10,8 @@ from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import SpeciesError
-from tree_sway_ros.files.export.yaml_writing import write_yaml_tree, yaml_of_tree
+from tree_sway_ros.files.export.tree_export import write_tree
+from tree_sway_ros.files.export.yaml_writing import yaml_of_tree
 from tree_sway_ros.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
 
 DATA = Path(__file__).parents[1] / "data"
@@ -55,7 +56,7 @@ def test_any_name_survives(name):
 
 def test_written_file_reads_back(tmp_path):
     first = read_yaml_tree(DATA / "seedling.yaml")
-    write_yaml_tree(tmp_path / "again.yaml", first.tree, first.species)
+    write_tree(tmp_path / "again.yaml", first.tree, first.species)
     again = read_yaml_tree(tmp_path / "again.yaml")
     assert_same_tree(again.tree, first.tree)
     assert again.species == first.species

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.wind.nmea import read_nmea_wind
+from tree_sway_ros.files.wind.nmea import parse_nmea, read_nmea_wind
+from tree_sway_ros.files.wind.sensor_line import checksum_of
 
 DATA = Path(__file__).parents[1] / "data"
 MAST = DATA / "mast.nmea"
@@ -47,14 +48,58 @@ def test_heading_and_rate():
     assert any("head 90 degrees" in note for note in record.notes)
 
 
+@pytest.mark.parametrize(
+    ("body", "velocity"),
+    [
+        ("IIVWR,090.0,L,,,5.0,M,,", (5, 0, 0)),  # from the left, to the right
+        ("IIVWR,090.0,R,10.0,N,5.2,M,18.7,K", (-10 * 1852 / 3600, 0, 0)),
+        ("IIVWT,000.0,R,,N,,M,18.0,K", (0, -5, 0)),
+        ("WIMWV,180.0,R,36.0,K,A", (0, 10, 0)),
+    ],
+)
+def test_left_and_right_of_the_bow(body, velocity):
+    said = parse_nmea(f"${body}*{checksum_of(body)}\r\n", need_checksum=True)
+    np.testing.assert_allclose(said.velocity, velocity, atol=1e-12)
+    x, y, _ = said.velocity
+    turned = parse_nmea(f"${body}", heading=pi / 2)
+    np.testing.assert_allclose(turned.velocity[:2], (y, -x), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "refusal"),
+    [
+        ("$IIVWR,190.0,L,5.0,M", "angle '190.0', side 'L'"),
+        ("$IIVWR,90.0,X,5.0,M", "angle '90.0', side 'X'"),
+        ("$IIVWR,90.0,R,5.0,C", "no speed"),
+        ("$IIVWT,90.0,R,-5.0,M", "speed is -5 m/s"),
+        ("$IIMWV,270,R,12.0,N,A*1", "wrong checksum"),
+        ("$IIMWV,270,R,12.0,N,A*+1", "wrong checksum"),
+        ("$IIMWV,270,R,12.0,N,A" + "," * 2000, "a line of 2021 characters"),
+    ],
+)
+def test_refusals(line, refusal):
+    assert parse_nmea(line).refusal == refusal
+
+
+@pytest.mark.parametrize("line", ["", "$", "$IIMWV", "$IIMWV,1", "$PMWV,1,R,2,N,A", "$IIHDT,1,T"])
+def test_what_is_not_about_the_wind(line):
+    assert parse_nmea(line) is None
+
+
+def test_a_checksum_can_be_needed():
+    line = "$IIMWV,270,R,12.0,N,A"
+    assert parse_nmea(line, need_checksum=True).refusal == "no checksum"
+    assert parse_nmea(f"{line}*15", need_checksum=True).refusal == ""
+
+
 def test_errors(tmp_path):
     (tmp_path / "other.nmea").write_text("$GPZDA,120000\n")
     with pytest.raises(FormatError, match="no sentence MWD"):
         read_nmea_wind(tmp_path / "other.nmea", sentence="MWD")
     with pytest.raises(FormatError, match="no good row of wind, 1 refused; first line 11"):
         read_nmea_wind(MAST, sentence="MWD")
-    with pytest.raises(ParameterError, match="sentence is 'VWR'"):
-        read_nmea_wind(MAST, sentence="VWR")
+    with pytest.raises(ParameterError, match="sentence is 'XDR'"):
+        read_nmea_wind(MAST, sentence="XDR")
     for rate in (0.0, float("nan")):
         with pytest.raises(ParameterError, match="rate is"):
             read_nmea_wind(MAST, rate=rate)

@@ -6,8 +6,10 @@ pytestmark = pytest.mark.ros
 from rcl_interfaces.msg import ParameterType  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter as RosParameter  # noqa: E402
+from rclpy.qos import ReliabilityPolicy  # noqa: E402
 
 from tree_sway_ros.errors import ParameterError  # noqa: E402
+from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
 from tree_sway_ros.ros.parameters.declaration import ParameterValues  # noqa: E402
 from tree_sway_ros.ros.parameters.parameter import Parameter  # noqa: E402
 
@@ -17,6 +19,7 @@ TABLE = (
     Parameter("every", 1, "Every.", "", 1, 10, live=True),
     Parameter("normal", (0.0, 0.0, 1.0), "Normal.", "", -1.0, 1.0, live=True),
     Parameter("kind", "to", "Kind.", choices=("to", "from")),
+    Parameter("on", False, "On.", live=True),
 )
 
 
@@ -24,7 +27,7 @@ TABLE = (
 def declare(context):
     nodes = []
 
-    def make(on_change=None, **overrides):
+    def make(on_change=None, is_own=lambda name: True, **overrides):
         node = Node(
             "some",
             context=context,
@@ -32,7 +35,7 @@ def declare(context):
             parameter_overrides=[RosParameter(k, value=v) for k, v in overrides.items()],
         )
         nodes.append(node)
-        return node, ParameterValues(node, TABLE, on_change)
+        return node, ParameterValues(node, TABLE, on_change, is_own=is_own)
 
     yield make
     for node in nodes:
@@ -92,7 +95,7 @@ def test_a_live_change_is_taken_and_told(declare):
         ("delay", "soon", "not a number"),
         ("delay", None, "not a number"),
         ("every", 1.5, "not a whole number"),
-        ("rate", 30.0, "restart with -p rate:=30.0"),
+        ("rate", 30.0, "read-only parameter: rate"),
         ("normal", [0.0, 1.0], "not 3 numbers"),
     ],
 )
@@ -109,6 +112,44 @@ def test_a_bad_change_is_refused_with_the_reason(declare, name, value, reason):
     assert told == []
 
 
-def test_setting_the_same_value_again_is_no_change(declare):
+@pytest.mark.parametrize(
+    ("name", "value"), [("delay", 1), ("every", 2.0), ("on", 1), ("on", "True")]
+)
+def test_a_value_keeps_its_kind_in_ros_too(declare, name, value):
+    """A double that was set to 1 is still a double: the next 1.5 is taken."""
+    node, values = declare()
+    kind = node.get_parameter(name).type_
+    assert change(node, name, value).successful
+    assert node.get_parameter(name).type_ == kind
+    assert type(values[name]) is type(node.get_parameter(name).value)
+    assert change(node, "delay", 1.5).successful
+
+
+def test_what_is_read_at_the_start_is_read_only(declare):
     node, _ = declare()
-    assert change(node, "rate", 60).successful
+    assert node.describe_parameter("rate").read_only
+    assert not node.describe_parameter("delay").read_only
+
+
+@pytest.mark.parametrize("overrides", [{"rats": 1.0}, {"rate": 0.5}, {"kind": 3}])
+def test_what_was_set_for_every_node_kills_none(declare, overrides):
+    node, values = declare(is_own=lambda name: False, **overrides)
+    assert values["rate"] == 60.0
+    assert values["kind"] == "to"
+    assert not node.has_parameter("rats")
+
+
+def test_the_quality_of_service_of_a_topic_can_be_told(context):
+    overrides = {
+        "qos_overrides./wind/filtered.publisher.depth": 3,
+        "qos_overrides./wind.subscription.reliability": "reliable",
+    }
+    node = WindNode(
+        context=context,
+        parameter_overrides=[RosParameter(k, value=v) for k, v in overrides.items()],
+        use_global_arguments=False,
+    )
+    by_name = {each.topic_name: each for each in (*node.publishers, *node.subscriptions)}
+    assert by_name["/wind/filtered"].qos_profile.depth == 3
+    assert by_name["/wind"].qos_profile.reliability == ReliabilityPolicy.RELIABLE
+    node.close()

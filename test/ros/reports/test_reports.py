@@ -5,7 +5,7 @@ pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402
 
-from tree_sway_ros.core.wind.gate import WindGate  # noqa: E402
+from tree_sway_ros.core.wind.gate import SECOND, WindGate  # noqa: E402
 from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
 from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status, status_array  # noqa: E402
@@ -68,7 +68,7 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
 
 def test_refused_samples_are_no_wind(clock):
     report, gate = WindReport(), WindGate()
-    gate.offer(1.0, (float("nan"), 0.0, 0.0))
+    gate.offer(SECOND, (float("nan"), 0.0, 0.0))
     report.add(False)
     status = report.status(TIMEOUT, gate)
     assert status.level == WARN
@@ -79,7 +79,7 @@ def test_refused_samples_are_no_wind(clock):
 def test_a_frozen_sensor_is_named(clock):
     report, gate = WindReport(), WindGate(frozen_after=1.0)
     for k in range(30):
-        gate.offer(1.0 + 0.05 * k, (3.0, 0.0, 0.0))
+        gate.offer(SECOND + k * SECOND // 20, (3.0, 0.0, 0.0))
         report.add(True)
     status = report.status(TIMEOUT, gate)
     assert (status.level, status.message[:6]) == (WARN, "frozen")

@@ -1,11 +1,12 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.ros.wire.tree_description import SCHEMA, VERSION, describe
+from tree_sway_ros.ros.wire.tree_description import SCHEMA, VERSION, describe, tree_hash
 
 TREE = tree_from_segments(
     [[0, 0, 0], [0, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 2], [1, 0, 1]], [0.1, 0.08, 0.03]
@@ -62,3 +63,8 @@ def test_it_says_what_the_tree_says():
     np.testing.assert_allclose(segments["base_radii"], TREE.base_diameter / 2)
     assert told["branches"]["first_segments"] == TREE.branch_first[:-1].tolist()
     assert all(len(column) == TREE.n_segments for column in segments.values())
+
+
+def test_another_tree_has_another_hash():
+    assert tree_hash(TREE) == json.loads(describe(TREE, "map"))["hash"]
+    assert tree_hash(replace(TREE, end=TREE.end * (1.0 + 1e-12))) != tree_hash(TREE)

@@ -7,7 +7,7 @@ import pytest
 
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import MissingDependencyError
-from tree_sway_ros.study.compare.mujoco_tree import mujoco_module
+from tree_sway_ros.study.compare.mujoco_tree import mujoco_module, take_warnings
 from tree_sway_ros.study.compare.with_mujoco import compare_with_mujoco
 from tree_sway_ros.study.example_trees import forked_tree
 
@@ -32,3 +32,20 @@ def test_both_run_on_one_tree_and_agree():
     assert found.error < 0.05
     assert found.speed_up > 1.0
     assert "tip error over tip motion: coupled" in str(found)
+
+
+def test_its_warnings_are_told_and_leave_no_log_behind(tmp_path, monkeypatch, capsys):
+    mujoco = pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    monkeypatch.chdir(tmp_path)
+    mujoco_module()
+    take_warnings()
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><worldbody><body><joint type="slide"/>'
+        '<geom size="1" mass="1"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    data.qvel[0] = np.nan
+    mujoco.mj_step(model, data)
+    (warning,) = take_warnings()
+    assert "Nan" in warning
+    assert not list(tmp_path.iterdir())

@@ -333,7 +333,7 @@ class RotationField:
         self.points, self.nodes, self.children = beam.from_base(
             np.cross(self.slope, beam.tangent[:, None, :])
         )
-        """Displacement at the points (m, 5, 3), nodes (m + 1, 3) and children (c, 3), in [m/rad]."""
+        """Displacement in [m/rad]: points (m, 5, 3), nodes (m + 1, 3), children (c, 3)."""
 
     @classmethod
     def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:

@@ -29,6 +29,7 @@ from tree_sway_ros.core.branch.shapes import (
     ways_to_move,
     wind_load,
 )
+from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -114,6 +115,10 @@ def branch_models(
 
     """
     n = tree.n_branches
+    if leaf_mass is not None:
+        leaf_mass = one_of_each("leaf_mass", leaf_mass, n, "branch")
+    if leaf_area is not None:
+        leaf_area = one_of_each("leaf_area", leaf_area, n, "branch")
     models: list[BranchModel] = []
     area, area_moment = np.zeros(n), np.zeros((n, 3))
     weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
@@ -142,7 +147,8 @@ def branch_models(
         if speed_profile is not None:
             drag_area *= (speed_profile[here] ** 2)[:, None]
         carried = sums[children if carries else children[:0]]
-        ways = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *_richness(tree, branch, enriched))
+        richness = _richness(tree, branch, enriched)
+        ways = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)
         models.append(BranchModel(beam, drag_area, mass, ways, children))
         point, dm = beam.point, beam.weight * mass
         area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
@@ -171,19 +177,12 @@ def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, i
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
-    """
-    Where children sit: the foot of the perpendicular from their start onto the parent's segment.
-
-    """
+    """Where children sit on the segments of their parent."""
     if len(children) == 0:
         return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
     first = tree.branch_first[children]
     seat = tree.segment_parent[first]
-    step = tree.end[seat] - tree.start[seat]
-    along = (
-        np.einsum("ij,ij->i", tree.start[first] - tree.start[seat], step) / tree.length[seat] ** 2
-    )
-    return Attachments(seat - tree.branch_first[branch], np.clip(along, 0.0, 1.0))
+    return Attachments(seat - tree.branch_first[branch], tree.place_on_parent[first])
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:

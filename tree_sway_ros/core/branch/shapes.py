@@ -250,7 +250,8 @@ def _twists(
     turn = np.ones(len(spin))
     if len(spin):
         _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment)
-    along = np.einsum("wsgk,sk->wsg", curvatures, beam.tangent) * (beam.tangent @ beam.chord)[:, None]
+    along = np.einsum("wsgk,sk->wsg", curvatures, beam.tangent)
+    along *= (beam.tangent @ beam.chord)[:, None]
     left = [_rest(twists, beam, each) for each in along]
     gram = np.array([[one.stiffness(other, 1.0) for other in left] for one in left])
     whole = float(beam.integral(beam.second_moment * np.square(curvatures).sum(axis=(0, -1))))

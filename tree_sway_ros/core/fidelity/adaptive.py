@@ -9,9 +9,9 @@ or, where none that can be afforded does, the most accurate of those.
 comes. The better model goes on from the motion that is shown, its coordinates mapped one by one;
 what the two still differ by fades within a quarter of a second.
 
-**Down slowly.** A lesser model first sways along unseen until it has forgotten where it started,
-then the picture goes over to it within a second. It is taken only when it would do with a third to
-spare, so that a wind on the border does not flicker.
+**Down slowly.** A lesser model first sways along unseen until it has forgotten that it started at
+rest, then the picture goes over to it within a second. It is taken only when it would do with a
+third to spare, so that a wind on the border does not flicker.
 
 """
 
@@ -20,20 +20,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.rotation_fit import coordinates_within
+from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, Counts, SwaySimulator
+from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
+from tree_sway_ros.errors import StateError
 
 RUN_IN = 10.0
 """How long a new model sways unseen in [s]."""
@@ -56,7 +62,7 @@ REVIEW = 2.0
 _SPARE = 2.0 / 3.0
 
 
-class AdaptiveSimulator:
+class AdaptiveSimulator(KeepsState):
     """
     A tree on the least model that its scene needs; otherwise as `SwaySimulator`.
 
@@ -89,23 +95,22 @@ class AdaptiveSimulator:
         self.settings = in_season(tree, self.species, settings or Settings())
         self.ladder = FidelityLadder(tree, self.species, self.settings)
         self.tolerance, self.budget = tolerance, budget
+        self.counts = Counts()
+        """Steps, refused winds and held loads since the start, whatever models were in use."""
         self.pace = 1.0
         """Cost here over the cost that the ladder says: set it once it is measured."""
         self._expected = expected or WindClimate.steady(8.0, 0.2)
         self._built: dict[str, SwaySimulator] = {}
-        self._coordinates: dict[str, Ints] = {}
-        self.counts = Counts()
-        """Steps, refused winds and held loads since the start, whatever the model."""
-        self._expect()
+        self._among_whole: dict[str, Any] = {}
+        self.choice = self._expect()
         for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
             self._simulator(estimate)  # now, for a change must not hold up the stream
         self._shown = self._simulator(self.choice)
         self._next: SwaySimulator | None = None
         self._next_age = self._since_review = 0.0
         self._left: SwaySimulator | None = None
-        self._behind, self._difference = 0.0, np.zeros((tree.n_segments, 7))
-        self._poses = np.zeros((tree.n_segments, 7))
-        self._mixed = np.zeros((tree.n_segments, 7))
+        self._behind = 0.0
+        self._turns_apart, self._poses_apart = np.zeros(0), np.zeros((tree.n_segments, 7))
 
     @property
     def model(self) -> str:
@@ -134,7 +139,7 @@ class AdaptiveSimulator:
 
     @property
     def tip_displacement(self) -> Floats:
-        """Way of the highest tip from rest in [m], (3,), as last placed by the model in use."""
+        """Displacement of the highest tip from rest in [m], (3,), of the model in use."""
         return self._shown.tip_displacement
 
     @property
@@ -153,15 +158,13 @@ class AdaptiveSimulator:
         held = self._shown.counts.held
         status = self._shown.step(wind_mean, dt)
         self.counts.steps += 1
-        self.counts.refused += bool(status & WIND_REFUSED)
+        self.counts.refused += status & WIND_REFUSED
         self.counts.held += self._shown.counts.held - held
         self._tracker.add(self._shown.wind, dt)
         self._behind = max(self._behind - dt / HAND_OVER, 0.0)
         if self._left is not None:
             self._left.step(wind_mean, dt)
-            np.subtract(self._left.place(), self._shown.place(self._mixed), out=self._difference)
-            _nearer(self._difference, self._left.place(), self._mixed)
-            self._left, self._behind = None, 1.0
+            self._set_apart(self._left)
         if self._next is not None:
             self._next.step(wind_mean, dt)
             self._next_age += dt
@@ -171,6 +174,68 @@ class AdaptiveSimulator:
         if self._since_review >= REVIEW:
             self.review()
         return status
+
+    @cached_property
+    def bank(self) -> Bank:
+        """What places the key rotations of the whole tree, whatever the model in use."""
+        return self.ladder.whole.at_rest("coupled")
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,), whatever the model."""
+        return self.bank.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def rotations(self) -> Floats:
+        """Key rotations of the whole tree in [rad], (N,), on the way from one model to the next."""
+        shown = self._whole_rotations(self._shown)
+        share = self._faded
+        if self._next is not None and share > 0.0:
+            shown += share * (self._whole_rotations(self._next) - shown)
+        if self._behind > 0.0:
+            shown += _smooth(self._behind) * self._turns_apart
+        return shown
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations of the whole tree, (n, 7)."""
+        shape = (self.tree.n_segments, 7)
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        self.bank.place(rotations, self.tree.start[0], poses)
+        return poses
+
+    def state(self) -> TreeState:
+        """Return all that the model in use carries from one step to the next."""
+        name = self._name_of(self._shown)
+        return replace(self._shown.state(), model=name, digest=self.digest())
+
+    def set_state(self, state: TreeState) -> None:
+        """Go on from a state, at once on the model that it is of; see `KeepsState.set_state`."""
+        simulator = self._built.get(state.model)
+        if simulator is None or state.digest != self.digest():
+            raise StateError(
+                f"a state of tree '{state.tree}', model '{state.model}', settings {state.digest}",
+                where=self.tree.name,
+                cure=f"this is tree '{self.tree.name}' with settings {self.digest()} and models: "
+                + ", ".join(self._built),
+            )
+        simulator.set_state(replace(state, model=simulator.model, digest=simulator.digest()))
+        self._shown, self._next, self._left, self._behind = simulator, None, None, 0.0
+        estimates = self.ladder.estimates(self._tracker.climate)
+        self.choice = next(each for each in estimates if each.name == state.model)
+
+    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
+        """Poses of a state, (n, 7); the simulator stays as it is."""
+        kept = self._shown, self._next, self.choice, self._left, self._behind
+        theirs = self._built.get(state.model, self._shown)
+        before = theirs.state()
+        self.set_state(state)
+        rotations = self._whole_rotations(self._shown)
+        theirs.set_state(before)
+        self._shown, self._next, self.choice, self._left, self._behind = kept
+        return self.place_rotations(rotations, out)
 
     def review(self) -> Estimate:
         """
@@ -193,61 +258,66 @@ class AdaptiveSimulator:
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""
-        poses = self._shown.place(self._poses if out is None else out)
-        share = (self._next_age - RUN_IN) / CROSS_FADE
-        if self._next is not None and share > 0.0:
-            _mix(poses, self._next.place(self._mixed), _smooth(share))
+        poses = self._shown.place(out)
+        if self._next is not None and self._faded > 0.0:
+            _mix(poses, self._next.place(), self._faded)
         if self._behind > 0.0:
-            _shift(poses, self._difference, _smooth(self._behind))
+            _shift(poses, _smooth(self._behind) * self._poses_apart)
         return poses
-
-    def _feel(self, wind_mean: ArrayLike, dt: float) -> None:
-        """Notice a load beyond what the model was chosen for, before the step in which it comes."""
-        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
-        load = x * x + y * y + z * z
-        self._gust *= math.exp(-dt / GUST_MEMORY)
-        if self._gust < load <= self.settings.max_wind**2:
-            self._gust, self._bearing = load, (x, y)
-            if load > SURPRISE * self._judged:
-                self.review()
-
-    def _gust_climate(self) -> WindClimate:
-        """The wind that may come until the next look: the last gust holds on, as unsteady as now."""
-        mean = np.array(self._bearing)
-        mean *= self._gust / max(float(np.linalg.norm(mean)), 1e-9)
-        climate = self._tracker.climate
-        return replace(climate, mean=mean, speed=math.sqrt(self._gust))
-
-    def _hand_over(self, wanted: Estimate) -> None:
-        """Let a better model go on from the motion that is shown."""
-        fading = self._next is not None and self._next_age > RUN_IN
-        shown = self._next if self._next is not None and fading else self._shown
-        better = self._simulator(wanted)
-        if better is not self._shown:
-            x, v = np.zeros((2, self.ladder.n_coordinates))
-            here = self._coordinates[self._name_of(shown)]
-            x[here], v[here] = shown.motion()
-            here = self._coordinates[wanted.name]
-            better.take_over(x[here], v[here])
-            self._left, self._shown = self._shown, better
-        self._next, self.choice = None, wanted
 
     def reset(self) -> None:
         """
         Go back to rest and to the wind that was expected, at once on the model that it asks for.
 
         """
-        self._expect()
+        self.choice = self._expect()
         self._shown, self._next, self._left = self._simulator(self.choice), None, None
         self._shown.reset()
         self._since_review = self._behind = 0.0
 
-    def _expect(self) -> None:
+    def _expect(self) -> Estimate:
         """Choose for the wind that is expected."""
         self._tracker = ClimateTracker()
         self._gust, self._bearing = 0.0, (1.0, 0.0)
         self._judged = float(np.linalg.norm(self._expected.mean))
-        self.choice = self._choose(self.ladder.estimates(self._expected))
+        return self._choose(self.ladder.estimates(self._expected))
+
+    def _feel(self, wind_mean: ArrayLike, dt: float) -> None:
+        """Notice a load beyond what the model was chosen for, before the step in which it comes."""
+        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
+        load = x * x + y * y + z * z
+        self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
+        if self._gust < load <= self.settings.max_wind**2:
+            self._gust, self._bearing = load, (x, y)
+            if load > SURPRISE * self._judged:
+                self.review()
+
+    def _gust_climate(self) -> WindClimate:
+        """Forecast until the next look: the last gust holds on, as unsteady as the last minute."""
+        mean = np.array(self._bearing)
+        mean *= self._gust / max(float(np.linalg.norm(mean)), 1e-9)
+        return replace(self._tracker.climate, mean=mean, speed=math.sqrt(self._gust))
+
+    def _hand_over(self, wanted: Estimate) -> None:
+        """Let a better model go on from the motion that is shown."""
+        shown = self._next if self._next is not None and self._faded > 0.5 else self._shown
+        better = self._simulator(wanted)
+        if better is not shown:
+            x, v = shown.motion()
+            into_whole = self._into_whole(shown)
+            here = self._among(better)
+            better.take_over((into_whole @ x)[here], (into_whole @ v)[here])
+            self._left, self._shown = shown, better
+        self._next, self.choice = None, wanted
+
+    def _set_apart(self, left: SwaySimulator) -> None:
+        """Note by how much the picture would jump from a model to the one now shown."""
+        self._turns_apart = self._whole_rotations(left) - self._whole_rotations(self._shown)
+        poses, others = left.place(), self._shown.place()
+        apart = np.einsum("jk,jk->j", poses[:, 3:], others[:, 3:]) < 0.0
+        poses[apart, 3:] *= -1.0
+        self._poses_apart = poses - others
+        self._left, self._behind = None, 1.0
 
     def _estimates(self, *climates: WindClimate) -> list[Estimate]:
         """Judge every model in several winds by the worst."""
@@ -267,8 +337,34 @@ class AdaptiveSimulator:
             return careful if careful is not None and careful.cost < same.cost else same
         return wanted
 
+    @property
+    def _faded(self) -> float:
+        """How far the picture has gone over to the next model."""
+        return _smooth(max((self._next_age - RUN_IN) / CROSS_FADE, 0.0))
+
+    def _whole_rotations(self, simulator: SwaySimulator) -> Floats:
+        """Key rotations of a model among those of the whole tree, (N,), a new array."""
+        rotations: Floats = self._into_whole(simulator) @ simulator.rotations()
+        return rotations
+
+    def _into_whole(self, simulator: SwaySimulator) -> Any:
+        """Matrix from the coordinates of a model to those of the whole tree."""
+        name = self._name_of(simulator)
+        if name not in self._among_whole:
+            self._among_whole[name] = coordinates_within(
+                simulator.joints, self.ladder.moving(name), self.joints
+            )
+        return self._among_whole[name]
+
+    def _among(self, simulator: SwaySimulator) -> Ints:
+        """Where the coordinates of a model stand among those of the whole tree, (n,)."""
+        first = self.joints["coordinate"][self.ladder.moving(self._name_of(simulator))]
+        counts = simulator.joints["n_coordinates"]
+        within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        return np.repeat(first, counts) + within
+
     def _name_of(self, simulator: SwaySimulator) -> str:
-        return next(name for name, built in self._built.items() if built is simulator)
+        return next(name for name, each in self._built.items() if each is simulator)
 
     def _simulator(self, wanted: Estimate) -> SwaySimulator:
         if wanted.name not in self._built:
@@ -277,9 +373,7 @@ class AdaptiveSimulator:
             sim = SwaySimulator(self.tree, self.species, model, calibrated=calibrated)
             sim.step((0.0, 0.0, 0.0), 1.0 / 60.0)
             sim.reset()
-            sim.counts.steps = 0
             self._built[wanted.name] = sim
-            self._coordinates[wanted.name] = self.ladder.coordinates(wanted)
         return self._built[wanted.name]
 
 
@@ -292,38 +386,16 @@ def _smooth(share: float) -> float:
     return share * share * (3.0 - 2.0 * share)
 
 
-def _nearer(difference: Floats, poses: Floats, others: Floats) -> None:
-    """Take the difference of two quaternions of one rotation from the nearer sign."""
-    apart = np.einsum("jk,jk->j", poses[:, 3:], others[:, 3:]) < 0.0
-    difference[apart, 3:] = -poses[apart, 3:] - others[apart, 3:]
+def _shift(poses: Floats, by: Floats) -> None:
+    """Add a small difference to poses, in place."""
+    poses += by
+    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
 
 
-@fused
-def _shift(poses: Floats, difference: Floats, share: float) -> None:
-    """Add a share of a difference to poses, in place."""
-    for j in range(len(poses)):
-        square = 0.0
-        for k in range(7):
-            poses[j, k] += share * difference[j, k]
-            if k >= 3:
-                square += poses[j, k] * poses[j, k]
-        for k in range(3, 7):
-            poses[j, k] /= np.sqrt(square)
-
-
-@fused
 def _mix(poses: Floats, others: Floats, share: float) -> None:
-    """Go over from poses to others by a share of the way, in place."""
-    for j in range(len(poses)):
-        towards = 0.0
-        for k in range(3, 7):
-            towards += poses[j, k] * others[j, k]
-        sign = 1.0 if towards >= 0.0 else -1.0
-        square = 0.0
-        for k in range(7):
-            other = others[j, k] if k < 3 else sign * others[j, k]
-            poses[j, k] += share * (other - poses[j, k])
-            if k >= 3:
-                square += poses[j, k] * poses[j, k]
-        for k in range(3, 7):
-            poses[j, k] /= np.sqrt(square)
+    """Go over from poses to others by a share, in place."""
+    turn, other = poses[:, 3:], others[:, 3:]
+    towards = np.einsum("jk,jk->j", turn, other)
+    poses[:, :3] += share * (others[:, :3] - poses[:, :3])
+    turn += share * (np.where(towards < 0.0, -1.0, 1.0)[:, None] * other - turn)
+    turn /= np.sqrt(np.einsum("jk,jk->j", turn, turn))[:, None]

@@ -20,6 +20,9 @@ _CALL = 4.0
 _STEP_ALONE, _STEP_CARRIED, _STEP_ENRICHED = 0.06, 0.13, 0.15
 """Of stepping a branch: alone, one that carries or is carried, and what further shapes add."""
 
+_STEP_TABLED = 1.5
+"""Of stepping a tree on its table, however large."""
+
 _PLACE_BRANCH, _PLACE_ENRICHED, _PLACE_SEGMENT, _PLACE_RIGID = 0.03, 0.12, 0.013, 0.012
 """Of placing: a branch, what further shapes add, a segment that bends, one that is frozen."""
 
@@ -49,4 +52,6 @@ def frame_cost(bank: Bank, tree: Tree) -> float:
     each = _STEP_CARRIED if bank.oscillators.carries else _STEP_ALONE
     shapes = getattr(bank.oscillators, "shapes", np.zeros(0))
     step = _CALL + each * n_moving + _STEP_ENRICHED * n_enriched
+    if bank.oscillators.is_tabled:
+        step = _CALL + _STEP_TABLED
     return place + step + _MODE_OF_COORDINATE * shapes.size

@@ -9,10 +9,12 @@ for a conifer, below the 70 that foresters hold for a stable stem (Wang, Titus &
 
 from __future__ import annotations
 
+import math
 from typing import Literal, get_args
 
 import numpy as np
 
+from tree_sway_ros.core.branch.closed_forms import greenhill_length
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer
@@ -108,19 +110,6 @@ def grow(
     return generator(rng, height=height, diameter=diameter, name=called, species=species)
 
 
-def greenhill_length(modulus: float, density: float, diameter: float) -> float:
-    """
-    Length in [m] at which an upright uniform rod buckles under its own weight (Greenhill 1881).
-
-    Parameters
-    ----------
-    modulus, density, diameter
-        Of the wood in [Pa] and [kg/m^3], and of the rod in [m].
-
-    """
-    return float((7.837 * modulus * diameter**2 / (16.0 * density * _GRAVITY)) ** (1.0 / 3.0))
-
-
 def _check_stem(wood: Species, height: float, diameter: float) -> None:
     thinnest = _thinnest(wood, height)
     thickest = height / 5.0
@@ -138,5 +127,7 @@ def _thinnest(wood: Species, height: float) -> float:
     Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve.
 
     """
-    stout = (height / 0.8) ** 3 * 16.0 * wood.density * _GRAVITY / (7.837 * wood.modulus)
-    return float(np.sqrt(stout))
+    # EI and the weight per length of a rod of 1 m; the length goes with the diameter to 2/3.
+    area = math.pi / 4.0
+    of_one = greenhill_length(wood.modulus * area / 16.0, wood.density * _GRAVITY * area)
+    return float((height / 0.8 / of_one) ** 1.5)

@@ -18,7 +18,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.leaf_traits import LeafTraits
 from tree_sway_ros.core.tree.species import leaf_traits
 from tree_sway_ros.core.tree.tree import Tree
@@ -167,7 +166,7 @@ def leaf_clusters(
     away /= np.linalg.norm(away, axis=1)[:, None]
     offset = 0.5 * size[:, None] * away
     offset[:, 0] += along
-    rest = quaternions_from_x((tree.end - tree.start)[segment] / tree.length[segment, None])
+    rest = tree.rest_frame[segment]
     orientation = _facing_up(away, Rotation.from_quat(rest[:, [1, 2, 3, 0]]))
     return LeafClusters(
         segment=segment.astype(np.int64),

@@ -28,7 +28,7 @@ from tree_sway_ros.core.motion.records import (
 )
 from tree_sway_ros.core.reduction.matrices import Reduction
 from tree_sway_ros.core.reduction.pruning import Pruning
-from tree_sway_ros.core.rotation import quaternions_from_x, rotated
+from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -46,7 +46,7 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     is_plain = all(len(model.coordinates) == 2 for model in models)
     records = np.zeros(n_records, dtype=segment_layout(1) if is_plain else segment_layout())
     records["rest"][:, 0] = 1.0
-    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    rest = tree.rest_frame
     for branch, model in enumerate(models):
         here = tree.segments_of(branch)
         rows = slice(block[branch], block[branch] + here.stop - here.start)
@@ -144,7 +144,7 @@ def branch_records(
 
     """
     records = np.zeros(tree.n_branches, dtype=branch_layout() if layout is None else layout)
-    rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+    rest = tree.rest_frame
     records["block"], records["lane"], _ = lanes(tree, models)
     records["parent"], records["source"] = tree.branch_parent, np.arange(tree.n_branches)
     records["first"], records["end"] = tree.branch_first[:-1], tree.branch_first[1:]
@@ -184,7 +184,7 @@ def _fill_shapes(model: BranchModel, record: Any) -> None:
 
 
 _STRAIGHT = 0.03
-"""Share of the wind that meets a branch from ahead, below which this is not told apart from none."""
+"""Share of the wind along a branch below which this is not told apart from none."""
 
 
 def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:

@@ -51,6 +51,7 @@ class ModalBank:
     """
 
     carries = True
+    is_tabled = False
 
     def __init__(
         self,
@@ -69,10 +70,10 @@ class ModalBank:
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
-        self._flexibility = reduction.flexibility if m < n else np.zeros(n)
-        held = reduction.stiffness @ modes.shapes * self._flexibility[:, None] / self.stiffness
-        self._held = np.ascontiguousarray(held.T)
-        self._limit = LOAD_MAX * diagonal
+        self.flexibility = reduction.flexibility if m < n else np.zeros(n)
+        held = reduction.stiffness @ modes.shapes * self.flexibility[:, None] / self.stiffness
+        self.held = np.ascontiguousarray(held.T)
+        self.limit = LOAD_MAX * diagonal
         self._momentum = (reduction.mass @ modes.shapes).T
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
@@ -80,16 +81,17 @@ class ModalBank:
         self.modal = np.zeros((6, m))
         self.state = np.zeros((4, n))
         self._pull = np.zeros(len(branches))
-        self._whole, self._half = np.zeros((2, m, 8))
+        self.whole, self.half = np.zeros((2, m, 8))
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         one = np.ones(len(self.stiffness))
-        fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self._whole)
-        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self._half)
+        fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self.whole)
+        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
-        velocity = self._half[:, 6] + self._half[:, 7]
-        self._loads["compliance"][block, lane] = self._participation @ velocity
+        velocity = self.half[:, 6] + self.half[:, 7]
+        compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads
+        self._loads["compliance"][block, lane] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -105,14 +107,14 @@ class ModalBank:
         Returns
         -------
         int
-            How many loads were held at their limit.
+            How many loads were held at their limit, -1 if the motion is not finite.
 
         """
         return int(
             _advance(
                 self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
-                self._held,
-                self._flexibility, self._limit, self._whole, self._half, self._pull,
+                self.held,
+                self.flexibility, self.limit, self.whole, self.half, self._pull,
                 wx, wy, wz, per_speed_squared,
             )
         )  # fmt: skip
@@ -125,14 +127,30 @@ class ModalBank:
         """
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
-        eta = dynamic - (self._held @ moments)[:, :, None]
-        rest = self._flexibility[:, None, None] * moments[:, :, None]
+        eta = dynamic - (self.held @ moments)[:, :, None]
+        rest = self.flexibility[:, None, None] * moments[:, :, None]
         swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
         return np.asarray(swinging, dtype=np.complex128)
 
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
+        return self.modal[:4], self.state[0], self._loads["slip"]
+
+    def take(self, eta: Floats, rate: Floats, force: Floats, rotations: Floats) -> None:
+        """
+        Go on from modes, their rates and forces (m,) and from key rotations (N,) with the static
+        rest in them.
+
+        """
+        self.modal[0], self.modal[1], self.modal[2], self.modal[3] = eta, rate, 0.0, force
+        rest = rotations - self.shapes @ eta
+        bends = self.flexibility > 0.0
+        self.state[0] = np.where(bends, rest, 0.0) / np.where(bends, self.flexibility, 1.0)
+        self._loads["slip"] = 0.0
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _expand(self._shapes, self._flexibility, self.modal, self.state)
+        _expand(self._shapes, self.flexibility, self.modal, self.state)
         rotations: Floats = self.state[3]
         return rotations
 
@@ -144,6 +162,11 @@ class ModalBank:
         """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
         self.reset()
         self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -206,6 +229,38 @@ def _to_middle(
 
 
 @fused
+def wind_moments(
+    branches: Any, work: Any, loads: Any, x: Floats, v: Floats, moment: Floats, pull: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> None:  # fmt: skip
+    """
+    Find the moments of a wind on the key rotations of a tree that bends and moves.
+
+    Parameters
+    ----------
+    branches, work, loads
+        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`.
+    x, v
+        Key rotations in [rad] and their rates in [rad/s], (N,).
+    moment, pull
+        As of `generalised_loads`, written; the moments are true at any deflection.
+    wx, wy, wz, per_speed_squared
+        As of `wind_forces`.
+
+    """
+    outward_pass(branches, work, x, v)
+    for b in range(len(branches)):
+        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        for c in range(branches[b].n_coordinates):
+            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
+    wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
+    generalised_loads(branches, work, loads, True, moment, pull)
+    for b in range(len(branches)):
+        i = branches[b].coordinate
+        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+
+
+@fused
 def _advance(
     branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats,
     held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
@@ -214,17 +269,8 @@ def _advance(
     _to_middle(modal, state, shapes, half, flexibility)
     eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
     moment, x, v = state[0], state[1], state[2]
-    outward_pass(branches, work, x, v)
-    for b in range(len(branches)):
-        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
-        for c in range(branches[b].n_coordinates):
-            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
-    wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
-    generalised_loads(branches, work, loads, True, moment, pull)
-    over = 0
-    for b in range(len(branches)):
-        i = branches[b].coordinate
-        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+    wind_moments(branches, work, loads, x, v, moment, pull, wx, wy, wz, per_speed_squared)
+    over, total = 0, 0.0
     for i in range(len(moment)):
         if not abs(moment[i]) <= limit[i]:
             moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
@@ -238,4 +284,5 @@ def _advance(
         c, old = whole[k], eta[k]
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * force[k]
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * force[k]
-    return over
+        total += 0.0 * eta[k] + 0.0 * rate[k] + 0.0 * rest[k]
+    return over if total == 0.0 else -1

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.motion.tree_passes import even_wind_moments
+from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
 
 Complexes = NDArray[np.complex128]
 
@@ -27,6 +27,7 @@ class Responding(Protocol):
 
     branches: Any
     carries: bool
+    is_tabled: bool
 
     def response(self, moments: Floats, circular: Floats) -> Complexes:
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""

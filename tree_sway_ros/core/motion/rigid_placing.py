@@ -17,8 +17,7 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.placing import turn_at
 from tree_sway_ros.core.reduction.pruning import Pruning
-from tree_sway_ros.core.rotation import product, quaternions_from_x, rotated
-from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.rotation import product, rotated
 
 
 @dataclass(frozen=True)
@@ -73,7 +72,7 @@ class RigidParts:
             branches["base_slope"][tops].copy(),
             branches["offset"][tops].copy(),
             tree.start - base,
-            _orientations(tree),
+            tree.rest_frame,
         )
 
     def place(self, branches: Any, work: Any, x: Floats, out: Floats) -> None:
@@ -94,10 +93,6 @@ class RigidParts:
             self.parent, self.rows, self.base_slope, self.offset, self.arm, self.rest,
             branches, work, x, out,
         )  # fmt: skip
-
-
-def _orientations(tree: Tree) -> Floats:
-    return quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
 
 
 @fused

@@ -16,8 +16,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.drag import drag
-from tree_sway_ros.core.motion.fill_records import load_records
-from tree_sway_ros.core.motion.records import LANES, WORK
+from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import turned
 
 
@@ -241,33 +240,6 @@ def _add_carried_loads(branches: Any, work: Any, moment: Floats, pull: Floats) -
         pull[branch.parent] += branch.axial_lever * along
 
 
-def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True) -> Floats:
-    """
-    Moments of an even wind of 1 m/s and 1 kg/m^3, along x and along y, on the tree at rest.
-
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    n_coordinates
-        N.
-    carries
-        Whether what a branch carries pushes on it.
-
-    Returns
-    -------
-    Floats
-        In [N m], (N, 2).
-
-    """
-    moments, pull = np.zeros((2, n_coordinates)), np.zeros(len(branches))
-    for moment, (wx, wy) in zip(moments, np.eye(2), strict=True):
-        work, loads = np.zeros(len(branches), dtype=WORK), load_records(branches)
-        wind_forces(branches, work, loads, False, wx, wy, 0.0, 1.0)
-        generalised_loads(branches, work, loads, carries, moment, pull)
-    return moments.T
-
-
 def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
     """
     Moments of winds from all sides, as far as they are linear in the wind: those along x and y then
@@ -292,7 +264,9 @@ def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
     across = np.sqrt(np.maximum(level[:, None] + slant[:, None] * sides, 0.0)).mean(axis=1)
     force = np.stack([[xx, xy, xz], [xy, yy, yz]]).transpose(2, 1, 0)
     force = force * (branches["area"] * branches["speed"] ** 2 * across)[:, None, None]
-    wrench = np.concatenate([force, np.cross(branches["centre"][:, :, None], force, axis=1)], axis=1)
+    wrench = np.concatenate(
+        [force, np.cross(branches["centre"][:, :, None], force, axis=1)], axis=1
+    )
     moments = np.zeros((n_coordinates, 2))
     for b in range(len(branches) - 1, -1, -1):
         i, k = int(branches["coordinate"][b]), int(branches["n_coordinates"][b])

@@ -45,6 +45,8 @@ class UncoupledBank:
 
     """
 
+    is_tabled = False
+
     def __init__(
         self,
         branches: Any,
@@ -94,7 +96,7 @@ class UncoupledBank:
         Returns
         -------
         int
-            How many loads were held at their limit.
+            How many loads were held at their limit, -1 if the motion is not finite.
 
         """
         return int(
@@ -118,6 +120,10 @@ class UncoupledBank:
         flexibility: NDArray[np.complex128] = np.repeat(1.0 / impedance, 2, axis=0)
         return moments[:, :, None] * flexibility[:, None, :]
 
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
+        return self.x, self.v, self._banks["slip"], self._banks["load"]
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
         return self.x
@@ -130,6 +136,11 @@ class UncoupledBank:
         """Go on from key rotations and rates, (2 b,)."""
         self.reset()
         self.x[:], self.v[:] = x, v
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -163,7 +174,7 @@ def _advance(
         for b in range(n):
             load, j = banks[b // LANES].load, b % LANES
             load[0, j], load[1, j], load[2, j] = pull[b], moment[2 * b], moment[2 * b + 1]
-    held = 0
+    held, total = 0, 0.0
     for block in range(len(banks)):
         held += _step(banks[block])
     for b in range(n):
@@ -172,7 +183,8 @@ def _advance(
             here, j = banks[branches[b].source // LANES], branches[b].source % LANES
         for k in range(2):
             x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
-    return held
+            total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
+    return held if total == 0.0 else -1
 
 
 @fused

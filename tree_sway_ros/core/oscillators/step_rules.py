@@ -131,6 +131,9 @@ STEP_RULES: MappingProxyType[str, StepRule] = MappingProxyType(
 REAL_TIME = tuple(STEP_RULES)
 """Their names."""
 
+CONDITIONALLY_STABLE = ("semi_implicit_euler", "verlet", "rk4")
+"""Those of them that have a `stability_limit`: a step can be too long for them."""
+
 
 def rule_named(name: str) -> StepRule:
     """

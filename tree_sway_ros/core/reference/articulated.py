@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill, one_of_each
+from tree_sway_ros.core.kernel import need_compiler
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
@@ -27,7 +29,6 @@ from tree_sway_ros.core.reference.articulated_modes import (
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
 from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
 from tree_sway_ros.core.reference.refinement import refined
-from tree_sway_ros.core.rotation import quaternions_from_x
 from tree_sway_ros.core.tree.tree import Tree
 
 RIGID_TWIST = 1e3
@@ -93,6 +94,7 @@ class ArticulatedTree:
         leaf_mass: Floats | None = None,
         leaf_area: Floats | None = None,
     ) -> None:
+        need_compiler("the model 'segments'")
         self.tree = tree
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)
@@ -102,7 +104,7 @@ class ArticulatedTree:
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
         self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
         self._rotation, self._nodes = np.zeros((n, 3, 3)), np.zeros((3, n, 3))
-        self._rest = quaternions_from_x((tree.end - tree.start) / tree.length[:, None])
+        self._rest = tree.rest_frame
         self._wind = np.zeros((n, 3))
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
@@ -132,7 +134,8 @@ class ArticulatedTree:
         tree = self.tree
         if leaves is None:
             return np.zeros(tree.n_segments * self.subdivisions)
-        return np.repeat((leaves / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
+        each = one_of_each("leaves", leaves, tree.n_branches, "branch")
+        return np.repeat((each / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -140,7 +143,7 @@ class ArticulatedTree:
         self.state.rate[:] = 0.0
 
     def step(self, wind: ArrayLike, dt: float) -> None:
-        """Advance by dt in [s] under a wind in [m/s], (3,), or one a segment, (n, 3)."""
+        """Advance by dt in [s] under a wind in [m/s], (3,), or one per segment, (n, 3)."""
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
@@ -169,8 +172,8 @@ class ArticulatedTree:
 
     def place(self, out: Floats | None = None) -> Floats:
         """Pose of each segment at its start node, ``x y z qx qy qz qw``, (n, 7)."""
-        if out is None:
-            out = np.empty((self.tree.n_segments, 7))
+        shape = (self.tree.n_segments, 7)
+        out = np.empty(shape) if out is None else array_to_fill("out", out, shape)
         self._place_bodies()
         _, start, end = self._nodes
         pose_block(

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.reference.refinement import place_on_parent
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -91,9 +90,9 @@ def articulated_bodies(
     square = d0 * d0 + d0 * d1 + d1 * d1
     hinge = 0.5 * d0 * (2.0 * d0 + d1) / square
     joint = tree.start + hinge[:, None] * (tree.end - tree.start)
-    axis = (tree.end - tree.start) / tree.length[:, None]
+    axis = tree.direction
     carrier = np.full(n, -1, dtype=np.int64)
-    place = place_on_parent(tree)
+    place = tree.place_on_parent
     for i in range(1, n):
         parent = tree.segment_parent[i]
         carrier[i] = parent if place[i] >= hinge[parent] else carrier[parent]

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -26,7 +25,7 @@ def refined(tree: Tree, pieces: int) -> Tree:
     width = np.repeat(tree.base_diameter, pieces)
     taper = np.repeat(tree.tip_diameter - tree.base_diameter, pieces)
     parent = np.arange(-1, pieces * tree.n_segments - 1, dtype=np.int64)
-    piece = np.minimum((place_on_parent(tree) * pieces).astype(np.int64), pieces - 1)
+    piece = np.minimum((tree.place_on_parent * pieces + 1e-9).astype(np.int64), pieces - 1)
     parent[::pieces] = np.where(tree.segment_parent < 0, -1, pieces * tree.segment_parent + piece)
     return replace(
         tree,
@@ -38,14 +37,3 @@ def refined(tree: Tree, pieces: int) -> Tree:
         branch_first=pieces * tree.branch_first,
         source_index=np.repeat(tree.source_index, pieces),
     )
-
-
-def place_on_parent(tree: Tree) -> Floats:
-    """Where each segment sits along its parent: 0 its start, 1 its end and the root's, (n,)."""
-    parent = tree.segment_parent
-    chord = tree.end[parent] - tree.start[parent]
-    place = np.einsum("ij,ij->i", tree.start - tree.start[parent], chord)
-    place = np.clip(place / np.einsum("ij,ij->i", chord, chord), 0.0, 1.0)
-    # A start within rounding of the end node is at it.
-    out: Floats = np.where((parent < 0) | (place > 1.0 - 1e-9), 1.0, place)
-    return out

@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
@@ -108,9 +109,6 @@ class Forest:
         self._slices = tuple(map(slice, ends[:-1], ends[1:]))
         self._steps = self._refused = 0
         self._wind = np.zeros(3)
-        self._poses = np.zeros((ends[-1], 7))
-        self._rows = self._rows_of(self._poses)
-        self.place()
 
     @property
     def model(self) -> str:
@@ -134,9 +132,10 @@ class Forest:
 
     @property
     def counts(self) -> Counts:
-        """What was refused at the anemometer, and held in any tree."""
+        """What was refused at the anemometer, and held or begun anew in any tree."""
         held = sum(sim.counts.held for sim in self.simulators)
-        return Counts(self._steps, self._refused, held)
+        restarted = sum(sim.counts.restarted for sim in self.simulators)
+        return Counts(self._steps, self._refused, held, restarted)
 
     @property
     def wind(self) -> Floats:
@@ -182,6 +181,7 @@ class Forest:
             A step that is not above 0 or not finite.
 
         """
+        refuse_time_step(dt)
         status = OK
         x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         # The history must not remember what no tree would take.
@@ -203,8 +203,7 @@ class Forest:
         Parameters
         ----------
         out
-            Where to write, (n, 7) float64; an array of the forest's own, used again each time, if
-            None.
+            Where to write, (n, 7) float64, to be fast; a new array if None.
 
         Returns
         -------
@@ -213,20 +212,20 @@ class Forest:
             `SwaySimulator.place`.
 
         """
-        poses = self._poses if out is None else out
-        rows = self._rows if out is None else self._rows_of(out)
-        for simulator, each in zip(self.simulators, rows, strict=True):
-            simulator.place(each)
+        shape = (self.tree.n_segments, 7)
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        for simulator, rows in zip(self.simulators, self._slices, strict=True):
+            simulator.place(poses[rows])
         return poses
 
     @property
     def tip_displacements(self) -> Floats:
-        """Way of the highest tip of each tree from rest in [m], (t, 3), as last placed."""
+        """Displacement of the highest tip of each tree from rest in [m], (t, 3)."""
         return np.stack([sim.tip_displacement for sim in self.simulators])
 
     @property
     def tip_displacement(self) -> Floats:
-        """Way of the highest tip of all from rest in [m], (3,), as last placed."""
+        """Displacement of the highest tip of all from rest in [m], (3,)."""
         highest = max(self.simulators, key=lambda sim: float(sim.tree.end[:, 2].max()))
         return highest.tip_displacement
 
@@ -236,10 +235,6 @@ class Forest:
             simulator.reset()
         self.gusts.reset()
         self._wind[:] = 0.0
-        self.place()
-
-    def _rows_of(self, poses: Floats) -> tuple[Floats, ...]:
-        return tuple(poses[each] for each in self._slices)
 
 
 def _simulator(

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
+from tree_sway_ros.core.kernel import WHY_PLAIN, need_compiler
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -21,11 +22,17 @@ from tree_sway_ros.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.numpy_banks import NumpyModalBank, NumpyUncoupledBank
+from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
+from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
+from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.motion.response import Responding
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
-from tree_sway_ros.core.motion.tree_passes import even_wind_moments, mean_wind_moments
+from tree_sway_ros.core.motion.tree_passes import mean_wind_moments
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+from tree_sway_ros.core.motion.wind_basis import WindBasisBank
+from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
 from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
 from tree_sway_ros.core.reduction.modes import (
@@ -35,6 +42,7 @@ from tree_sway_ros.core.reduction.modes import (
     refuse_buckling,
     with_static,
 )
+from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.similar_twigs import twig_sources
@@ -53,6 +61,9 @@ class Oscillators(Responding, Protocol):
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step under a mean wind [m/s]; returns how many loads were held."""
 
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
@@ -62,11 +73,14 @@ class Oscillators(Responding, Protocol):
     def take_over(self, x: Floats, v: Floats) -> None:
         """Go on from key rotations and rates, (N,)."""
 
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+
     def reset(self) -> None:
         """Go back to rest."""
 
 
-_COUPLED = ("modes", "coupled")
+_COUPLED = ("wind_basis", "modes", "coupled")
 
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
@@ -79,6 +93,7 @@ class Frozen:
     """Model 0: a tree that stands still, for one too far away to be seen moving."""
 
     carries = True
+    is_tabled = False
 
     def __init__(self, branches: Any, n_coordinates: int) -> None:
         """Rest is all there is."""
@@ -97,6 +112,10 @@ class Frozen:
         """Zeros, (N, k, f)."""
         return np.zeros((*moments.shape, len(circular)), dtype=np.complex128)
 
+    def memory(self) -> tuple[Floats, ...]:
+        """Nothing."""
+        return ()
+
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
@@ -107,6 +126,11 @@ class Frozen:
 
     def take_over(self, x: Floats, v: Floats) -> None:
         """Stay at rest."""
+
+    def forces(self) -> Floats:
+        """None, (b, 3)."""
+        forces: Floats = self.work["force"]
+        return forces
 
     def reset(self) -> None:
         """Stay at rest."""
@@ -131,6 +155,8 @@ class Bank:
         Of wood and leaves in [kg].
     frozen
         What moves with its parent as one body, and how many branches that is.
+    plain
+        Whether nothing is compiled.
 
     """
 
@@ -143,6 +169,21 @@ class Bank:
     mass: float
     frozen: RigidParts | None = None
     n_frozen: int = 0
+    plain: bool = bool(WHY_PLAIN)
+
+    @cached_property
+    def _plain_placing(self) -> NumpyPlacing:
+        return NumpyPlacing(self.branches, self.segments, self.frozen)
+
+    def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
+        """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+        if self.plain:
+            self._plain_placing.place(rotations, origin, out)
+            return
+        work = self.oscillators.work
+        place(self.branches, self.segments, self.heads, work, rotations, origin, out)
+        if self.frozen is not None:
+            self.frozen.place(self.branches, work, rotations, out)
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
@@ -172,14 +213,20 @@ class CalibratedTree:
     ----------
     tree, species, settings
         As for `SwaySimulator`; the settings' model does not matter.
+    plain
+        Whether its models run in numpy: always where nothing can be compiled.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
+    def __init__(
+        self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
+    ) -> None:
         """Wait to be asked."""
+        self.plain = plain or bool(WHY_PLAIN)
         self.tree, self.species = tree, species
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
+        self._tables: dict[int, WindBasisTable] = {}
 
     @property
     def damping_ratio(self) -> float:
@@ -189,6 +236,7 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping(bool(settings.in_leaf))
 
+    @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
         Build the oscillators of a model.
@@ -198,8 +246,8 @@ class CalibratedTree:
         model
             One of `MODELS`.
         n_modes
-            How many modes the model ``modes`` steps; `USUAL_MODES`, or all if there are fewer, if
-            None.
+            How many modes ``modes`` and ``wind_basis`` step; `USUAL_MODES`, or all if there are
+            fewer, if None.
 
         Raises
         ------
@@ -209,16 +257,23 @@ class CalibratedTree:
             More modes than there are.
 
         """
-        layer = self.layer(model)
+        layer, settings = self.layer(model), self.settings
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if model == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
-            oscillators = ModalBank(
-                branches, layer.reduction, modes, self.damping_ratio, self.settings.integrator
+            modal = (NumpyModalBank if self.plain else ModalBank)(
+                branches, layer.reduction, modes, self.damping_ratio, settings.integrator
             )
-            frequencies = modes.frequencies
+            oscillators, frequencies = modal, modes.frequencies
+            if model == "wind_basis":
+                need_compiler("the model 'wind_basis'")
+                n = len(modes.circular)
+                if n not in self._tables:
+                    law = self.species.drag_law(bool(settings.in_leaf))
+                    self._tables[n] = WindBasisTable(modal, law, settings.degree)
+                oscillators = WindBasisBank(modal, self._tables[n])
         else:
             refuse_buckling(self.tree, layer.reduction)
             copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
@@ -228,7 +283,18 @@ class CalibratedTree:
         solved = int((branches["source"] == np.arange(len(branches))).sum())
         segments = layer.segments.copy()
         heads = head_records(branches, segments)
-        return Bank(oscillators, branches, segments, heads, frequencies, solved, layer.mass)
+        return Bank(
+            oscillators, branches, segments, heads, frequencies, solved, layer.mass,
+            plain=self.plain,
+        )  # fmt: skip
+
+    def at_rest(self, model: str) -> Bank:
+        """Return what places the key rotations of a model, and steps nothing."""
+        layer = self.layer(model)
+        branches, segments = layer.branches.copy(), layer.segments.copy()
+        still = Frozen(branches, layer.reduction.n_coordinates)
+        heads = head_records(branches, segments)
+        return Bank(still, branches, segments, heads, np.zeros(0), 0, layer.mass)
 
     def layer(self, model: str) -> Layer:
         """Reduction that a model starts from."""
@@ -253,6 +319,7 @@ class CalibratedTree:
             carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
         )
 
+    @one_thread()
     def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
         tree, species, settings = self.tree, self.species, self.settings
         speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
@@ -287,7 +354,7 @@ class CalibratedTree:
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
-        is_driven = model == "modes" and self.settings.mode_choice == "driven" and n_modes <= n
+        is_driven = model != "coupled" and self.settings.mode_choice == "driven" and n_modes <= n
         candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
         wanted = n if model == "coupled" else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:
@@ -315,4 +382,5 @@ class CalibratedTree:
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-        return UncoupledBank(branches, inertia, damping, stiffness, carries, settings.integrator)
+        kind = NumpyUncoupledBank if self.plain else UncoupledBank
+        return kind(branches, inertia, damping, stiffness, carries, settings.integrator)

@@ -32,7 +32,8 @@ class PartlyFrozenTree(CalibratedTree):
     def __init__(self, whole: CalibratedTree, frozen: Bools) -> None:
         """Wait to be asked."""
         self.pruning = Pruning(whole.tree, frozen)
-        super().__init__(self.pruning.tree(), whole.species, whole.settings)
+        tree = self.pruning.tree()
+        super().__init__(tree, whole.species, whole.settings, plain=whole.plain)
         self._whole = whole
 
     def bank(self, model: str, n_modes: int | None = None) -> Bank:

@@ -10,16 +10,28 @@ It is there to compare with, and for a scene that has the time: its steps are ma
 from __future__ import annotations
 
 import math
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts
+from tree_sway_ros.core.simulator.simulator import (
+    OK,
+    RESTARTED,
+    WIND_REFUSED,
+    Counts,
+    refuse_time_step,
+)
+from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -27,8 +39,11 @@ from tree_sway_ros.errors import ParameterError
 LONGEST_STEP = 1.0 / 60.0
 """Longest step of the implicit springs in [s]; longer ones are cut."""
 
+LARGEST_TURN = 1.0
+"""Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
 
-class SegmentsSimulator:
+
+class SegmentsSimulator(KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 
@@ -44,7 +59,10 @@ class SegmentsSimulator:
 
     """
 
-    model = "segments"
+    @property
+    def model(self) -> str:
+        """``segments``."""
+        return "segments"
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
@@ -75,16 +93,17 @@ class SegmentsSimulator:
         )
         self.wind = np.zeros(3)
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0
-        self._poses = np.zeros((tree.n_segments, 7))
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
-        self.place()
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut."""
-        if not (math.isfinite(dt) and dt > 0.0):
-            raise ParameterError(
-                f"time step of {dt} s", where="step", cure="give a finite one above 0"
-            )
+        """
+        Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut.
+
+        Joints that would turn by more than `LARGEST_TURN` within a piece of a step, as a twig does
+        in a gale, are taken in finer pieces.
+
+        """
+        refuse_time_step(dt)
         wind = np.asarray(wind_mean, dtype=np.float64)
         status = OK
         if np.abs(wind).max() < 1e9 and np.linalg.norm(wind) <= self.settings.max_wind:
@@ -94,22 +113,72 @@ class SegmentsSimulator:
             self.counts.refused += 1
         pieces = math.ceil(dt / LONGEST_STEP - 1e-9)
         for _ in range(pieces):
-            self._model.step(self.wind, dt / pieces)
+            if not self._advance(dt / pieces):
+                self._model.reset()
+                self.counts.restarted += 1
+                status |= RESTARTED
         self.counts.steps += 1
         return status
 
+    def _advance(self, dt: float) -> bool:
+        """Advance by a time [s], finer where joints turn too fast; tell whether they still do."""
+        turn, rate = self._model.state
+        before = turn.copy(), rate.copy()
+        for pieces in (1, 4, 16, 64):
+            for _ in range(pieces):
+                self._model.step(self.wind, dt / pieces)
+                largest = float(np.abs(rate).max()) * dt / pieces
+                if not largest <= LARGEST_TURN:
+                    break
+            else:
+                return True
+            turn[:], rate[:] = before
+        return False
+
+    @cached_property
+    def _joined(self) -> tuple[Bank, RotationFit]:
+        """What places key rotations, and what fits them."""
+        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest("coupled")
+        return bank, RotationFit(self.tree, bank.branches, bank.segments)
+
+    @property
+    def bank(self) -> Bank:
+        """What places key rotations: branches and segments of the coupled tree."""
+        return self._joined[0]
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        return self.bank.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next, the wind of the last step first."""
+        return self.wind, self._model.state.turn, self._model.state.rate
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad] that fit the segments best, (N,); the same array each time."""
+        return self._joined[1].of(self._model.place())
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        shape = (self.tree.n_segments, 7)
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        self._joined[0].place(rotations, self.tree.start[0], poses)
+        return poses
+
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""
-        poses = self._model.place(self._poses if out is None else out)
-        if out is not None:
-            self._poses[:] = out
-        return poses
+        return self._model.place(out)
 
     @property
     def tip_displacement(self) -> Floats:
-        """Way of the highest branch's tip from rest in [m], (3,), as last placed."""
+        """Displacement of the highest branch's tip from rest in [m], (3,)."""
         rest = self.tree.end[self.tree.branch_first[self._highest + 1] - 1]
-        displacement: Floats = tips_of_poses(self.tree, self._poses)[self._highest] - rest
+        displacement: Floats = tips_of_poses(self.tree, self.place())[self._highest] - rest
         return displacement
 
     def frequencies(self, count: int = 10) -> Floats:
@@ -120,4 +189,3 @@ class SegmentsSimulator:
         """Go back to rest, with no wind; the counts stay."""
         self._model.reset()
         self.wind[:] = 0.0
-        self.place()

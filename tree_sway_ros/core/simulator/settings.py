@@ -9,11 +9,13 @@ import math
 from dataclasses import dataclass, field
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import ParameterError
 
-MODELS = ("frozen", "branch", "subtree", "modes", "coupled")
+MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 """Models of the ladder of models, the least first."""
 
 STIFFNESS_RULES = ("beam", "volume_rule")
@@ -28,11 +30,15 @@ class Settings:
     Parameters
     ----------
     model
-        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``modes`` or ``coupled``.
+        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes`` or
+        ``coupled``.
     n_modes
-        How many modes the model ``modes`` steps; 12, or all if there are fewer, if None.
+        How many modes the models ``wind_basis`` and ``modes`` step; 12, or all if there are
+        fewer, if None.
     mode_choice
         Which modes these are: the most ``driven`` by wind among the slow ones, or the ``slowest``.
+    degree
+        Of the harmonics of the wind's direction in the model ``wind_basis``: 1, 3 or 5.
     stiffness
         ``beam``, or ``volume_rule`` (the paper's, models ``branch`` and ``subtree``).
     volume_stiffness, volume_damping
@@ -47,7 +53,7 @@ class Settings:
         Wind over height.
     integrator
         Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be
-        unstable is refused at the first step.
+        unstable is refused at the first step. Later steps that are longer are cut.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
@@ -65,6 +71,7 @@ class Settings:
     model: str = "subtree"
     n_modes: int | None = None
     mode_choice: str = "driven"
+    degree: int = 5
     stiffness: str = "beam"
     volume_stiffness: float = 2.0e5
     volume_damping: float = 2.0e3
@@ -77,7 +84,7 @@ class Settings:
     enrich: str = "limbs"
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
-    max_wind: float = 150.0
+    max_wind: float = FASTEST_WIND
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
@@ -86,7 +93,7 @@ class Settings:
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)
         _one_of("enrich", self.enrich, ("none", "stem", "limbs", "carriers", "all"))
-        if self.stiffness == "volume_rule" and self.model in ("modes", "coupled"):
+        if self.stiffness == "volume_rule" and self.model in ("wind_basis", "modes", "coupled"):
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",
                 where="stiffness",
@@ -100,7 +107,10 @@ class Settings:
             raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
         if self.n_modes is not None and self.n_modes < 1:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
-        for name in ("volume_stiffness", "volume_damping", "max_wind"):
+        if self.degree not in (1, 3, 5):
+            raise ParameterError(f"degree {self.degree}", where="degree", cure="use 1, 3 or 5")
+        within("max_wind", self.max_wind, 0.0, FASTEST_WIND, "m/s", above=True)
+        for name in ("volume_stiffness", "volume_damping"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ParameterError(f"{name} {value}", cure="give a finite number above 0")

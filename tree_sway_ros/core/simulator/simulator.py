@@ -13,16 +13,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.motion.drag import pressure
-from tree_sway_ros.core.motion.placing import place
+from tree_sway_ros.core.oscillators.step_rules import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
-OK, WIND_REFUSED, LOAD_HELD = 0, 1, 2
+OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
 """What `SwaySimulator.step` tells, as bits."""
 
 
@@ -39,15 +41,18 @@ class Counts:
         Steps whose wind was not finite or faster than the limit; the wind before was kept.
     held
         Loads that were held at the limit of the model.
+    restarted
+        Steps whose motion was not finite, so that the tree went on from rest.
 
     """
 
     steps: int = 0
     refused: int = 0
     held: int = 0
+    restarted: int = 0
 
 
-class SwaySimulator:
+class SwaySimulator(KeepsState):
     """
     A tree that sways.
 
@@ -98,17 +103,16 @@ class SwaySimulator:
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
-        self._bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
+        self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
-        self._advance = self._bank.oscillators.advance
+        self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
-        self._dt = 0.0
-        self._wind = (0.0, 0.0, 0.0)
+        self._dt, self._longest, self._pieces = math.nan, 0.0, 1
+        self._wind = np.zeros(3)
         self._poses = np.zeros((tree.n_segments, 7))
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
         self._rest_tip = tree.end[self._highest].copy()
-        self.place()
 
     @property
     def model(self) -> str:
@@ -118,34 +122,58 @@ class SwaySimulator:
     @property
     def n_solved(self) -> int:
         """Branches that are solved; the others copy."""
-        return self._bank.n_solved
+        return self.bank.n_solved
 
     @property
     def n_copied(self) -> int:
         """Branches that copy the motion of another."""
-        return self.tree.n_branches - self._bank.n_solved - self._bank.n_frozen
+        return self.tree.n_branches - self.bank.n_solved - self.bank.n_frozen
 
     @property
     def n_frozen(self) -> int:
         """Branches that move with their parent as one body."""
-        return self._bank.n_frozen
+        return self.bank.n_frozen
 
     @property
     def wind(self) -> Floats:
         """Wind of the last step in [m/s], (3,)."""
-        return np.array(self._wind)
+        return self._wind.copy()
 
     @property
     def mass(self) -> float:
         """Mass of wood and leaves in [kg]."""
-        return self._bank.mass
+        return self.bank.mass
 
     def frequencies(self, count: int = 10) -> Floats:
         """
         Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
 
         """
-        return self._bank.frequencies[:count]
+        return self.bank.frequencies[:count]
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        return self.bank.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species and settings."""
+        return digest_of(self.tree, self.species, self.settings)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next, the wind of the last step first."""
+        return self._wind, *self.bank.oscillators.memory()
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
+        return self.bank.oscillators.rotations()
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        shape = self._poses.shape
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        self.bank.place(rotations, self._origin, poses)
+        return poses
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -162,32 +190,40 @@ class SwaySimulator:
         Returns
         -------
         int
-            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept) and
-            `LOAD_HELD` (a load beyond what the model follows was held at its limit).
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept),
+            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and `RESTARTED`
+            (the motion was not finite: the tree goes on from rest).
 
         Raises
         ------
         ParameterError
-            A step that is not above 0 or not finite.
+            A step that is not above 0 or not finite, or a first step that is too long for the
+            integrator; later ones are cut into pieces no longer than those it could take.
 
         """
         wx, wy, wz = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         status = OK
         speed = math.hypot(wx, wy, wz)
         if speed <= self._max_wind:
-            self._wind = wx, wy, wz
+            wind = self._wind
+            wind[0], wind[1], wind[2] = wx, wy, wz
         else:
             status = WIND_REFUSED
             self.counts.refused += 1
-            wx, wy, wz = self._wind
+            wx, wy, wz = self._wind.tolist()
             speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
         load = pressure(speed, *self._drag_law)
-        held = self._advance(wx, wy, wz, load)
-        if held:
-            self.counts.held += held
-            status |= LOAD_HELD
+        for _ in range(self._pieces):
+            held = self._advance(wx, wy, wz, load)
+            if held > 0:
+                self.counts.held += held
+                status |= LOAD_HELD
+            elif held < 0:
+                self.bank.oscillators.reset()
+                self.counts.restarted += 1
+                status |= RESTARTED
         self.counts.steps += 1
         return status
 
@@ -198,8 +234,7 @@ class SwaySimulator:
         Parameters
         ----------
         out
-            Where to write, (n, 7) float64; an array of the simulator's own, used again each time,
-            if None.
+            Where to write, (n, 7) float64, to be fast; a new array if None.
 
         Returns
         -------
@@ -207,21 +242,18 @@ class SwaySimulator:
             Pose block: x y z of each segment's root-side node in [m], quaternion x y z w, x axis
             along the segment.
 
+        Raises
+        ------
+        ParameterError
+            An array that cannot hold the poses.
+
         """
-        poses = self._poses if out is None else out
-        bank, work = self._bank, self._bank.oscillators.work
-        rotations = bank.oscillators.rotations()
-        place(bank.branches, bank.segments, bank.heads, work, rotations, self._origin, poses)
-        if bank.frozen is not None:
-            bank.frozen.place(bank.branches, work, rotations, poses)
-        if out is not None:
-            self._poses[self._highest] = out[self._highest]
-        return poses
+        return self.place_rotations(self.bank.oscillators.rotations(), out)
 
     @property
     def tip_displacement(self) -> Floats:
-        """Way of the highest tip from rest in [m], (3,), as last placed."""
-        x, y, z, qx, qy, qz, qw = self._poses[self._highest]
+        """Displacement of the highest tip from rest in [m], (3,)."""
+        x, y, z, qx, qy, qz, qw = self.place(self._poses)[self._highest]
         length = self.tree.length[self._highest]
         along = np.array(
             [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw)]
@@ -236,28 +268,41 @@ class SwaySimulator:
         rest, in [N m], (3,).
 
         """
-        centre, force = self._bank.branches["centre"], self._bank.oscillators.work["force"]
+        centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
-        return self._bank.oscillators.motion()
+        return self.bank.oscillators.motion()
 
     def take_over(self, x: Floats, v: Floats) -> None:
         """Go on from key rotations and rates, (N,), instead of from rest."""
-        self._bank.oscillators.take_over(x, v)
+        self.bank.oscillators.take_over(x, v)
 
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
-        self._bank.oscillators.reset()
-        self._wind = (0.0, 0.0, 0.0)
-        self.place()
+        self.bank.oscillators.reset()
+        self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:
-        if not (math.isfinite(dt) and dt > 0.0):
-            raise ParameterError(
-                f"time step of {dt} s", where="step", cure="give a finite one above 0"
-            )
-        self._bank.oscillators.set_step(dt)
-        self._dt = dt
+        refuse_time_step(dt)
+        is_cut = self.settings.integrator in CONDITIONALLY_STABLE and self._longest > 0.0
+        pieces = max(math.ceil(dt / self._longest - 1e-9), 1) if is_cut else 1
+        self.bank.oscillators.set_step(dt / pieces)
+        self._longest = max(self._longest, dt / pieces)
+        self._dt, self._pieces = dt, pieces
+
+
+def refuse_time_step(dt: float) -> None:
+    """
+    Refuse a time step [s] that is none.
+
+    Raises
+    ------
+    ParameterError
+        If it is not above 0 or not finite.
+
+    """
+    if not (math.isfinite(dt) and dt > 0.0):
+        raise ParameterError(f"time step of {dt} s", where="step", cure="give a finite one above 0")

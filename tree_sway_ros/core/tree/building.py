@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TreeError
 
@@ -188,13 +189,7 @@ def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
             f"ground, "
             "or make each tree its own",
         )
-    children: list[list[int]] = [[] for _ in range(n)]
-    for child, its_parent in enumerate(parents):
-        if its_parent >= 0:
-            children[its_parent].append(child)
-    order = list(map(int, roots))
-    for segment in order:
-        order.extend(children[segment])
+    order = parents_first(parents.tolist())
     if len(order) < n:
         lost = int(np.setdiff1d(np.arange(n), order)[0])
         raise TreeError(

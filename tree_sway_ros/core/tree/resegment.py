@@ -148,7 +148,5 @@ def _place(tree: Tree, branch: int) -> float:
     """Where a branch sits on its parent, counted in the parent's segments."""
     first = int(tree.branch_first[branch])
     seat = int(tree.segment_parent[first])
-    step = tree.end[seat] - tree.start[seat]
-    along = float((tree.start[first] - tree.start[seat]) @ step) / float(tree.length[seat]) ** 2
     within = seat - int(tree.branch_first[tree.branch_parent[branch]])
-    return within + min(max(along, 0.0), 1.0)
+    return within + float(tree.place_on_parent[first])

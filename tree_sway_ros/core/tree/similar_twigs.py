@@ -36,8 +36,7 @@ def twig_sources(tree: Tree, tolerance: float) -> Ints:
     source = np.arange(tree.n_branches, dtype=np.int64)
     if tolerance < 0.0:
         return source
-    direction = (tree.end - tree.start) / tree.length[:, None]
-    solved: dict[int, list[int]] = {}
+    direction, solved = tree.direction, dict[int, list[int]]()
     for branch in range(1, tree.n_branches):
         first = int(tree.branch_first[branch])
         if tree.branch_first[branch + 1] - first > 1 or tree.subtree_end[branch] - branch > 1:

@@ -14,6 +14,7 @@ in `leaf_traits`.
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from functools import partial
 
@@ -67,7 +68,7 @@ class Species:
     drag_coefficient: float = 1.2
     drag_exponent: float = 0.0
     bare_drag_coefficient: float = 1.2
-    shear_ratio: float = 1.0 / 2.6
+    shear_ratio: float = 1.0 / 14.0
     leaves: LeafTraits = BROAD_LEAVES
     habit: str = "broadleaf"
     clear_bole: float = 0.1
@@ -184,7 +185,9 @@ def species_named(key: str) -> Species:
         return _TABLE[key]
     except KeyError:
         known = ", ".join(sorted(_TABLE))
-        raise SpeciesError(f"unknown species '{key}'", cure=f"use one of: {known}") from None
+        near = difflib.get_close_matches(key, _TABLE, n=1)
+        guess = f"did you mean '{near[0]}'? " if near else ""
+        raise SpeciesError(f"unknown species '{key}'", cure=f"{guess}use one of: {known}") from None
 
 
 def species_keys() -> tuple[str, ...]:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.tree.rest_frame import quaternions_from_x
 
 _Number = TypeVar("_Number", np.float64, np.int64)
 
@@ -85,6 +86,31 @@ class Tree:
     def length(self) -> Floats:
         """Length of each segment in [m], (n,)."""
         return _read_only(np.linalg.norm(self.end - self.start, axis=1))
+
+    @cached_property
+    def direction(self) -> Floats:
+        """Unit vector along each segment at rest, (n, 3)."""
+        return _read_only((self.end - self.start) / self.length[:, None])
+
+    @cached_property
+    def rest_frame(self) -> Floats:
+        """Frame of each segment at rest as a quaternion w x y z (`quaternions_from_x`), (n, 4)."""
+        return _read_only(quaternions_from_x(self.direction))
+
+    @cached_property
+    def place_on_parent(self) -> Floats:
+        """
+        Where each segment sits along its parent: 0 its start, 1 its end, and the root's, (n,).
+
+        It is the foot of the perpendicular from the start of the segment onto the parent, within
+        its ends.
+
+        """
+        parent = self.segment_parent
+        chord = self.end[parent] - self.start[parent]
+        along = np.einsum("ij,ij->i", self.start - self.start[parent], chord)
+        place = np.clip(along / self.length[parent] ** 2, 0.0, 1.0)
+        return _read_only(np.where(parent < 0, 1.0, place))
 
     @cached_property
     def branch_of_segment(self) -> Ints:

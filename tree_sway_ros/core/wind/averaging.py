@@ -8,8 +8,9 @@ The solver gets the exact mean of the curve over its step, which keeps second or
 of it would not.
 
 What the solver has been given is never redrawn, so that nothing jumps in `linear`, whatever comes
-late, early or not at all: a short dropout is held; a long one decays to calm; the first sample
-after either is faded in. Times are those of one clock, handed in by the caller; it may jump.
+late, early or not at all: a short dropout is held; a long one decays to calm; after either, what
+was given fades over into the new samples. Every mean is one of samples and of calm, and never
+beyond them. Times are those of one clock, handed in by the caller; it may jump.
 
 """
 
@@ -22,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.core.checks import three_numbers, within
 from tree_sway_ros.core.wind.curve import Vector, WindCurve
+from tree_sway_ros.core.wind.fade import Fade
 from tree_sway_ros.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.errors import ParameterError
 
@@ -36,6 +38,7 @@ Backward step in [s] that is a clock set back, not a sample out of order or a lo
 """
 
 _CALM: Vector = (0.0, 0.0, 0.0)
+_NO_FADE = Fade(_CALM, -math.inf, -math.inf)
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
 
 
@@ -85,14 +88,13 @@ class WindAverage:
         self._decay = within("decay", decay, 0.0, 3600.0, "s", above=True)
         self._blend = min(within("blend", blend, 0.0, 60.0, "s", above=True), self._timeout)
         self._curve = WindCurve(not self._is_linear, int(within("capacity", capacity, 8, 1e6)))
-        self._fade = WindCurve(False, 2)  # what is left of the wind before the last dropout
         self.refused = 0
         self.reset()
 
     def reset(self) -> None:
         """Forget every sample and every step; keep the count of the refused ones."""
         self._curve.clear()
-        self._fade.clear()
+        self._fade = _NO_FADE
         self._timing = SensorTiming(self._timeout)
         self._newest: float | None = None  # time of the newest sample
         self._passed: float | None = None  # end of the latest step: before it nothing may change
@@ -126,7 +128,7 @@ class WindAverage:
 
         """
         x, y, z = three_numbers("wind", vector)
-        if not (math.isfinite(time) and math.isfinite(x + y + z)):
+        if not all(map(math.isfinite, (time, x, y, z))):
             self.refused += 1
             return False
         if self._newest is not None and time <= self._newest:
@@ -192,11 +194,13 @@ class WindAverage:
             ``stale`` when nothing is left of it.
 
         """
-        if self._newest is None:
+        # Another thread may ask: what changes under it is read once.
+        newest, timing = self._newest, self._timing
+        if newest is None:
             return "none"
-        if time - self._newest <= self._timing.longest_live + self._timing.lateness:
+        if time - newest <= timing.longest_live + timing.lateness:
             return "live"
-        overdue = time - self._decay_start
+        overdue = time - newest - timing.lateness - timing.longest_hold
         if overdue <= 0.0:
             return "holding"
         return "decaying" if overdue <= _STALE_DECAYS * self._decay else "stale"
@@ -218,18 +222,14 @@ class WindAverage:
         self._curve.append(knot, value)
 
     def _start_anew(self, time: float, value: Vector, silence: float) -> None:
-        """Start a new curve at a value; what there was until now fades out on top of it."""
+        """Start a new curve at a value; what there was until now fades over into it."""
         since = self._passed
         before = _CALM if since is None else self._mean(since, since)
         self._curve.clear()
-        self._fade.clear()
-        if since is None:
-            self._curve.append(time, value)
-            return
-        self._curve.append(since, value)
-        x, y, z = (b - v for b, v in zip(before, value, strict=True))
-        self._fade.append(since, (x, y, z))
-        self._fade.append(since + min(silence, self._blend), _CALM)
+        self._fade = _NO_FADE
+        self._curve.append(time if since is None else since, value)
+        if since is not None:
+            self._fade = Fade(before, since, since + min(silence, self._blend))
 
     def _mean(self, start: float, end: float) -> Vector:
         if self._newest is None:
@@ -237,10 +237,11 @@ class WindAverage:
         calm = self._decay_start
         if start == end:
             left = math.exp(min(0.0, (calm - start) / self._decay))
-            return _sum(self._curve.value(start), self._fade_at(start, start), left)
+            x, y, z = self._fade.value(self._curve, start)
+            return left * x, left * y, left * z
         if end <= calm:
-            return _sum(self._curve.mean(start, end), self._fade_at(start, end), 1.0)
-        level = _sum(self._curve.value(end), self._fade_at(end, end), 1.0)
+            return self._fade.mean(self._curve, start, end)
+        level = self._fade.value(self._curve, end)
         since = max(start, calm)
         decayed = self._decay * (
             math.exp((calm - since) / self._decay) - math.exp((calm - end) / self._decay)
@@ -251,11 +252,6 @@ class WindAverage:
         held = self._mean(start, calm)
         part = (calm - start) / (end - start)
         return x + part * held[0], y + part * held[1], z + part * held[2]
-
-    def _fade_at(self, start: float, end: float) -> Vector:
-        if not self._fade or start >= self._fade.end:
-            return _CALM
-        return self._fade.value(start) if start == end else self._fade.mean(start, end)
 
     def _set_clock_back(self, time: float) -> None:
         """Begin anew at a time, from the wind there is."""
@@ -277,12 +273,8 @@ class WindAverage:
         jump = time - now
         if jump > self._timing.longest_hold:
             self._curve.shift(jump)
-            self._fade.shift(jump)
+            self._fade = self._fade.later(jump)
             self._passed += jump
             if self._newest is not None:
                 self._newest += jump
             self._is_new_clock = True
-
-
-def _sum(a: Vector, b: Vector, factor: float) -> Vector:
-    return factor * (a[0] + b[0]), factor * (a[1] + b[1]), factor * (a[2] + b[2])

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.wind.simulated.spectra import von_karman_spectrum
 
 
 @dataclass(frozen=True)
@@ -98,9 +99,7 @@ class WindClimate:
         [Hz].
 
         """
-        x = frequencies * self.integral_time
-        share: Floats = 4.0 * self.integral_time / (1.0 + 70.8 * x * x) ** (5.0 / 6.0)
-        return share
+        return von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
 
 
 class ClimateTracker:

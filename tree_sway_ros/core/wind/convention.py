@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.checks import within
@@ -25,6 +25,31 @@ Floats = NDArray[np.float64]
 
 CALM_SPEED = 0.05
 """Speed in [m/s] below which no direction is computed: sonics repeat their last one there."""
+
+
+def velocity_of_bearing(
+    speed: float, bearing: float, direction_convention: str = "from"
+) -> tuple[float, float, float]:
+    """
+    Velocity of a speed and a compass bearing.
+
+    Parameters
+    ----------
+    speed
+        Speed in [m/s].
+    bearing
+        Clockwise from north in [rad].
+    direction_convention
+        ``from``: where the wind comes from, as meteorology says it; ``to``: where it blows to.
+
+    Returns
+    -------
+    tuple of float
+        Where the wind blows to: east, north, up in [m/s].
+
+    """
+    sign = WindConvention(direction_convention).sign
+    return sign * speed * math.sin(bearing), sign * speed * math.cos(bearing), 0.0
 
 
 @dataclass(frozen=True)
@@ -93,6 +118,11 @@ class WindConvention:
         u, v, w = scale * float(u), scale * float(v), scale * float(w)
         return np.array([cosine * u - sine * v, sine * u + cosine * v, w])
 
+    @property
+    def sign(self) -> float:
+        """Of a component that points where the wind blows to."""
+        return 1.0 if self.direction_convention == "to" else -1.0
+
     def velocity(self, u: float, v: float, w: float = 0.0) -> Floats:
         """
         Return what a source says as the velocity of the air, before any projection.
@@ -110,8 +140,27 @@ class WindConvention:
             Wind velocity, blowing to, ENU in [m/s], (3,).
 
         """
-        sign = 1.0 if self.direction_convention == "to" else -1.0
-        return self._enu(u, v, w, sign * self.speed_scale)
+        return self._enu(u, v, w, self.sign * self.speed_scale)
+
+    def velocities(self, components: Floats) -> Floats:
+        """Return `velocity` of many samples at once, (n, 3)."""
+        c, s = math.cos(self.yaw_offset), math.sin(self.yaw_offset)
+        turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return np.asarray(self.sign * self.speed_scale * components @ turn, dtype=np.float64)
+
+    def components(self, velocity: ArrayLike) -> tuple[float, float, float]:
+        """
+        Return what a source of this convention says of a velocity; the inverse of `velocity`.
+
+        Parameters
+        ----------
+        velocity
+            Where the wind blows to, ENU in [m/s], (3,).
+
+        """
+        (u, v, w), scale = np.asarray(velocity).tolist(), self.sign / self.speed_scale
+        c, s = math.cos(self.yaw_offset), math.sin(self.yaw_offset)
+        return scale * (c * u + s * v), scale * (c * v - s * u), scale * w
 
     def project(self, velocity: Floats) -> Floats:
         """Return a velocity in [m/s] projected on the force plane, (3,)."""
@@ -142,8 +191,7 @@ class WindConvention:
 
         """
         bearing = math.radians(bearing_degrees) if math.isfinite(bearing_degrees) else math.nan
-        east, north = -speed * math.sin(bearing), -speed * math.cos(bearing)
-        return self.project(self._enu(east, north, 0.0, self.speed_scale))
+        return self.project(self._enu(*velocity_of_bearing(speed, bearing), self.speed_scale))
 
     def force_plane_quaternion(self, vector: Floats, previous: Floats | None = None) -> Floats:
         """

@@ -85,7 +85,7 @@ class WindCurve:
             after_time, after = knot_time, knot
         return after
 
-    def mean(self, start: float, end: float) -> Vector:
+    def mean(self, start: float, end: float, share: tuple[float, float] = (1.0, 1.0)) -> Vector:
         """
         Return the exact mean of the curve over an interval.
 
@@ -93,6 +93,8 @@ class WindCurve:
         ----------
         start, end
             The interval in [s], ``start < end``; there must be a knot.
+        share
+            What the curve is multiplied by at start and at end, and evenly in between, in [-].
 
         Returns
         -------
@@ -102,6 +104,7 @@ class WindCurve:
         """
         # From the newest knot back: a solver asks for the last step, which holds one knot or none.
         x = y = z = 0.0
+        slope = (share[1] - share[0]) / (end - start)
         to, to_value = end, self.value(end)
         for time, knot in reversed(self._knots):
             if time >= end:
@@ -111,16 +114,19 @@ class WindCurve:
                 first = to_value = knot
             else:
                 first = knot if since == time else self.value(since)
-            half = 0.5 * (to - since)
-            x += half * (first[0] + to_value[0])
-            y += half * (first[1] + to_value[1])
-            z += half * (first[2] + to_value[2])
+            low, high = share[0] + slope * (since - start), share[0] + slope * (to - start)
+            # The integral of the product of two straight lines.
+            sixth = (to - since) / 6.0
+            early, late = sixth * (2.0 * low + high), sixth * (low + 2.0 * high)
+            x += early * first[0] + late * to_value[0]
+            y += early * first[1] + late * to_value[1]
+            z += early * first[2] + late * to_value[2]
             to, to_value = since, first
             if time <= start:
                 break
         else:
             first = self._knots[0][1]
-            level = to - start
+            level = (to - start) * (share[0] + 0.5 * slope * (to - start))
             x, y, z = x + level * first[0], y + level * first[1], z + level * first[2]
         width = end - start
         return x / width, y / width, z / width

@@ -9,7 +9,10 @@ m/s^2: 39 % at 20 Hz in 12 m/s). What stays away for `longest_refusal` is no spi
 is let in.
 
 Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival,
-much older than it, a duplicate, out of order) is counted and the time of arrival stands in for it.
+much older than it, a duplicate, out of order) is counted by its cause; in its place stands the time
+of arrival, less the delay of the sample before, so that the times of a mixed stream go on evenly. A
+stamp ahead is believed only if those before it were nearly as far ahead: a single one would shut
+out the good samples that follow it. All times are whole nanoseconds of one clock.
 
 """
 
@@ -23,6 +26,7 @@ from typing import NamedTuple
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.checks import three_numbers, within
+from tree_sway_ros.core.wind.limits import FASTEST_WIND, is_wind
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is .01 m/s.
@@ -40,12 +44,16 @@ SENTINELS = (
     327.68,
 )
 
-FUTURE_TOLERANCE = 0.5
-"""How far a stamp may be ahead of its arrival in [s]: clocks of two machines differ."""
-LONGEST_TRANSPORT = 2.0
-"""Age in [s] at which a stamp is of another clock, or of a recording, and no longer believed."""
-CLOCK_RESET = 1.0
-"""Backward step in [s] that is a clock set back (a bag that loops), not samples out of order."""
+SECOND = 1_000_000_000
+"""One second in [ns]."""
+LARGEST_LEAD = SECOND // 2
+"""Lead of a stamp over its arrival in [ns] up to which it is of a clock that runs ahead."""
+LEAD_GROWTH = 60 * SECOND // 1000
+"""How much more a stamp may be ahead of its arrival in [ns] than the sample before."""
+LONGEST_TRANSPORT = 2 * SECOND
+"""Age in [ns] at which a stamp is of another clock, or of a recording, and no longer believed."""
+CLOCK_RESET = SECOND
+"""Backward step in [ns] that is a clock set back (a bag that loops), not samples out of order."""
 
 
 class Reason(str, Enum):
@@ -61,11 +69,11 @@ class Reason(str, Enum):
 
 
 class Verdict(NamedTuple):
-    """What became of a sample: whether it is good, why, and the time to use for it in [s]."""
+    """What became of a sample: whether it is good, why, and the time to use for it in [ns]."""
 
     accepted: bool
     reason: Reason
-    time: float
+    time: int
 
 
 @dataclass
@@ -82,8 +90,10 @@ class GateCounts:
         speed; too far from the last good one; a message sent twice; no time after the last one.
     forced
         Accepted ones that were let in because refusing had lasted long enough.
-    zero_stamp, future_stamp, old_stamp, duplicate_stamp, out_of_order
-        Stamps not believed; the sample itself may be good.
+    zero_stamp, ahead_stamp, future_stamp, old_stamp, duplicate_stamp, out_of_order, overtaken_stamp
+        Stamps not believed, though the sample itself may be good: none at all; ahead of the arrival
+        by up to `LARGEST_LEAD`, and by more; older than `LONGEST_TRANSPORT`; that of the sample
+        before; before that of the sample before; not after the time given to the sample before.
     clock_back
         Times the clock was set back.
     frozen
@@ -100,10 +110,12 @@ class GateCounts:
     no_time: int = 0
     forced: int = 0
     zero_stamp: int = 0
+    ahead_stamp: int = 0
     future_stamp: int = 0
     old_stamp: int = 0
     duplicate_stamp: int = 0
     out_of_order: int = 0
+    overtaken_stamp: int = 0
     clock_back: int = 0
     frozen: int = 0
 
@@ -157,10 +169,11 @@ class WindGate:
         jump_fraction: float = 0.25,
     ) -> None:
         """Open the gate with no sample seen."""
-        self._max_speed = within("max_speed", max_speed, 0.0, 150.0, "m/s", above=True)
+        self._max_speed = within("max_speed", max_speed, 0.0, FASTEST_WIND, "m/s", above=True)
         self._max_rate = within("max_rate", max_rate, 0.0, 1e4, "m/s^2", above=True)
-        self._longest_refusal = within("longest_refusal", longest_refusal, 0.0, 60.0, "s")
-        self._frozen_after = within("frozen_after", frozen_after, 0.0, 1e5, "s", above=True)
+        refusal = within("longest_refusal", longest_refusal, 0.0, 60.0, "s")
+        frozen = within("frozen_after", frozen_after, 0.0, 1e5, "s", above=True)
+        self._longest_refusal, self._frozen_after = round(SECOND * refusal), round(SECOND * frozen)
         self._jump_floor = within("jump_floor", jump_floor, 0.0, 100.0, "m/s")
         self._jump_fraction = within("jump_fraction", jump_fraction, 0.0, 10.0)
         self.counts = GateCounts()
@@ -168,13 +181,15 @@ class WindGate:
 
     def reset(self) -> None:
         """Forget the samples seen; keep the counts."""
-        self._time = -math.inf
-        self._stamp = -math.inf
+        self._time: int | None = None  # given to the last sample
+        self._arrival: int | None = None
+        self._stamp: int | None = None  # last one believed
+        self._last_stamp: int | None = None  # last one, believed or not
         self._seen = (math.nan, math.nan, math.nan)  # last sample offered
         self._good = (0.0, 0.0, 0.0)  # last one accepted, at _good_time
-        self._good_time = -math.inf
-        self._refused_since = math.inf
-        self._equal_since = -math.inf
+        self._good_time: int | None = None
+        self._refused_since: int | None = None
+        self._equal_since = 0
         self._is_frozen = False
 
     @property
@@ -182,19 +197,24 @@ class WindGate:
         """Whether the sensor has repeated one reading for longer than a live one does."""
         return self._is_frozen
 
-    def offer(self, stamp: float, vector: ArrayLike, arrival: float | None = None) -> Verdict:
+    def offer(
+        self, stamp: int, vector: ArrayLike, arrival: int | None = None, *, lead: int = 0
+    ) -> Verdict:
         """
         Judge a sample.
 
         Parameters
         ----------
         stamp
-            Time that the sample carries in [s].
+            Time that the sample carries in [ns].
         vector
             Wind in [m/s], (3,), before any projection; the axes do not matter.
         arrival
-            Time that it arrived in [s], on the clock of the stamps; None if the stamp is all there
+            Time that it arrived in [ns], on the clock of the stamps; None if the stamp is all there
             is.
+        lead
+            How far stamps may be ahead of the arrival in [ns]: 0 on a clock that runs, up to a tick
+            of simulated time, which stands still in between.
 
         Returns
         -------
@@ -209,65 +229,78 @@ class WindGate:
 
         """
         x, y, z = three_numbers("wind", vector)
-        is_repeated = stamp > 0.0 and stamp == self._stamp and (x, y, z) == self._seen
-        time = self._time_of(stamp, stamp if arrival is None else arrival)
+        is_repeated = 0 < stamp == self._last_stamp and (x, y, z) == self._seen
+        time = self._time_of(stamp, arrival, lead)
         if is_repeated:
             reason = Reason.REPEATED
-        elif not self._time < time < math.inf:
+        elif self._time is not None and time <= self._time:
             reason = Reason.NO_TIME
         else:
             reason = self._judge(time, x, y, z)
-            self._time, self._stamp = time, stamp
+            self._time, self._last_stamp = time, stamp
+            self._arrival = stamp if arrival is None else arrival
             self._watch_for_frozen(time, (x, y, z))
         name = reason.value
         setattr(self.counts, name, getattr(self.counts, name) + 1)
         if reason is Reason.ACCEPTED:
             self._good, self._good_time = (x, y, z), time
-            self._refused_since = math.inf
+            self._refused_since = None
         return Verdict(reason is Reason.ACCEPTED, reason, time)
 
-    def _time_of(self, stamp: float, arrival: float) -> float:
-        counts = self.counts
-        time = stamp
-        if arrival < self._time - CLOCK_RESET:
-            counts.clock_back += 1
+    def _time_of(self, stamp: int, given: int | None, lead: int) -> int:
+        """Return the stamp if it can be believed, or else the time to stand in for it."""
+        arrival = stamp if given is None else given
+        if self._arrival is not None and arrival < self._arrival - CLOCK_RESET:
+            self.counts.clock_back += 1
             self.reset()
-        if not math.isfinite(stamp) or (stamp <= 0.0 and arrival > 0.0):
-            counts.zero_stamp += 1
-            time = arrival
-        elif stamp > arrival + FUTURE_TOLERANCE:
-            counts.future_stamp += 1
-            time = arrival
-        elif stamp < arrival - LONGEST_TRANSPORT:
-            counts.old_stamp += 1
-            time = arrival
-        elif stamp == self._stamp:
-            counts.duplicate_stamp += 1
-            time = arrival
-        elif stamp < self._stamp:
-            counts.out_of_order += 1
-            time = arrival
-        return arrival if time <= self._time else time
+        fault = self._fault(stamp, arrival, lead)
+        if not fault:
+            self._stamp = stamp
+            return stamp
+        setattr(self.counts, fault, getattr(self.counts, fault) + 1)
+        if given is None or self._time is None or self._arrival is None:
+            return arrival
+        usual = min(arrival, self._time + arrival - self._arrival)
+        # A stamp that was believed may have been ahead of what arrives now.
+        return max(usual, self._time + 1) if self._time < arrival + LARGEST_LEAD else usual
 
-    def _judge(self, time: float, x: float, y: float, z: float) -> Reason:
-        speed = math.hypot(x, y, z)
-        if not math.isfinite(speed):
-            return Reason.NOT_FINITE
-        if speed > self._max_speed:
+    def _fault(self, stamp: int, arrival: int, lead: int) -> str:
+        """Say why a stamp is not believed, by the name of its count; empty if it is."""
+        if stamp <= 0 < arrival:
+            return "zero_stamp"
+        if stamp > arrival + LARGEST_LEAD:
+            return "future_stamp"
+        usual = 0 if self._time is None or self._arrival is None else self._time - self._arrival
+        if stamp > arrival + max(lead, max(usual, 0) + LEAD_GROWTH):
+            return "ahead_stamp"
+        if stamp < arrival - LONGEST_TRANSPORT:
+            return "old_stamp"
+        if stamp == self._last_stamp:
+            return "duplicate_stamp"
+        if self._stamp is not None and stamp <= self._stamp:
+            return "out_of_order"
+        return "overtaken_stamp" if self._time is not None and stamp <= self._time else ""
+
+    def _judge(self, time: int, x: float, y: float, z: float) -> Reason:
+        if not is_wind(x, y, z, self._max_speed):
+            if not all(map(math.isfinite, (x, y, z))):
+                return Reason.NOT_FINITE
             is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
             return Reason.SENTINEL if is_code else Reason.TOO_FAST
         jump = math.hypot(x - self._good[0], y - self._good[1], z - self._good[2])
-        allowed = self._max_rate * (time - self._good_time)
+        since = math.inf if self._good_time is None else 1e-9 * (time - self._good_time)
+        allowed = self._max_rate * since
         allowed += self._jump_floor + self._jump_fraction * math.hypot(*self._good)
         if jump <= allowed:
             return Reason.ACCEPTED
-        self._refused_since = min(self._refused_since, time)
+        if self._refused_since is None:
+            self._refused_since = time
         if time - self._refused_since < self._longest_refusal:
             return Reason.SPIKE
         self.counts.forced += 1
         return Reason.ACCEPTED
 
-    def _watch_for_frozen(self, time: float, sample: tuple[float, float, float]) -> None:
+    def _watch_for_frozen(self, time: int, sample: tuple[float, float, float]) -> None:
         if sample != self._seen or sample == (0.0, 0.0, 0.0):
             self._seen = sample
             self._equal_since = time

@@ -55,7 +55,8 @@ class GustHistory:
     memory
         Longest delay in [s].
     capacity
-        Steps kept; at 60 steps a second the default is a little more than a minute.
+        Times kept. Steps shorter than a part of ``memory`` are joined, so that the history is that
+        long whatever the rate: the default keeps every step of 60 s at up to 500 steps per second.
 
     Raises
     ------
@@ -72,7 +73,7 @@ class GustHistory:
         convection_ratio: float = 1.0,
         averaging_time: float = 60.0,
         memory: float = 60.0,
-        capacity: int = 4096,
+        capacity: int = 1 << 15,
     ) -> None:
         """Make room for the history; nothing is made later."""
         points = np.array(places, dtype=np.float64).reshape(-1, 3)
@@ -84,7 +85,10 @@ class GustHistory:
         self._ratio = within("convection_ratio", convection_ratio, 0.1, math.inf)
         self._averaging = within("averaging_time", averaging_time, 0.0, 3600.0, "s", above=True)
         self._memory = within("memory", memory, 0.0, 600.0, "s")
-        self._run = np.zeros((int(within("capacity", capacity, 2, 1e6)), 4))
+        self._run = np.zeros((int(within("capacity", capacity, 8, 1e6)), 4))
+        # Two times that follow each other are together longer than this, so that all are longer
+        # than the memory and the steps at its ends.
+        self._finest = 2.0 * self._memory / (len(self._run) - 4)
         self._at = np.zeros(2, dtype=np.int64)
         self._mean = np.zeros(3)
         self._wanted, self._delay = np.zeros((2, len(points)))
@@ -140,7 +144,7 @@ class GustHistory:
             raise ParameterError(
                 f"wind ({x}, {y}, {z}) m/s over {dt} s", cure="give finite numbers"
             )
-        _remember(self._run, self._at, x, y, z, dt)
+        _remember(self._run, self._at, self._finest, x, y, z, dt)
         _follow_mean(self._mean, x, y, dt, self._averaging)
         _feel(
             self._run, self._at, self._along, self._from_first, self._mean, self._ratio,
@@ -158,13 +162,24 @@ class GustHistory:
 
 
 @kernel
-def _remember(run: Floats, at: NDArray[np.int64], x: float, y: float, z: float, dt: float) -> None:
-    """Write time and run of the wind at the end of the step; the ring begins with its start."""
+def _remember(
+    run: Floats, at: NDArray[np.int64], finest: float, x: float, y: float, z: float, dt: float
+) -> None:
+    """
+    Write time and run of the wind at the end of the step; the ring begins with its start.
+
+    """
     size = len(run)
     if at[1] == 0:
         run[0] = 0.0
         at[0], at[1] = 0, 1
     last = run[at[0]]
+    if at[1] > 2 and last[0] + dt - run[(at[0] - 1) % size, 0] <= finest:
+        last[0] += dt
+        last[1] += x * dt
+        last[2] += y * dt
+        last[3] += z * dt
+        return
     head = at[0] + 1
     if head == size:
         # Counted anew from here, lest the numbers grow with the days.

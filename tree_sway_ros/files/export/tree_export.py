@@ -1,33 +1,35 @@
 """
 Write a tree for other programs: our YAML, Wavefront OBJ, glTF.
 
-YAML is exact and reads back. OBJ and glTF hold the shape at rest, one object or node a segment,
-named as in `Tree.segment_names`, so that any engine can move the nodes by the poses of the
-segments. OBJ has z up, as the tree; glTF has y up by its specification, which its node ``tree``
-turns: the nodes inside it keep our frame.
+YAML is exact and reads back. OBJ holds the shape at rest, one object per segment, named as in
+`Tree.segment_names`, z up as the tree. glTF sways by a skin or by morph targets; see `gltf_tree`.
 
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-from scipy.spatial.transform import Rotation
-
+from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import FormatError, MissingDependencyError
-from tree_sway_ros.files.export.segment_mesh import cone_points, cone_triangles, rest_frames
-from tree_sway_ros.files.export.yaml_writing import write_yaml_tree
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.export.gltf_document import GltfDocument
+from tree_sway_ros.files.export.gltf_tree import skinned_tree
+from tree_sway_ros.files.export.tree_mesh import SIDES, rest_poses, wood_mesh
+from tree_sway_ros.files.export.yaml_writing import yaml_of_tree
+from tree_sway_ros.files.whole_file import whole_file, write_text_whole
 
-_Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=np.float64)
-_BARK = (0.36, 0.27, 0.2, 1.0)
+GLTF_SUFFIXES = (".glb", ".gltf")
+_SUFFIXES = (".yaml", ".yml", ".obj", *GLTF_SUFFIXES)
 
 
-def write_tree(path: str | Path, tree: Tree, species: Species | None = None) -> None:
+def write_tree(
+    path: str | Path,
+    tree: Tree,
+    species: Species | None = None,
+    leaves: LeafClusters | None = None,
+) -> None:
     """
     Write a tree in the format of the path's suffix.
 
@@ -39,93 +41,49 @@ def write_tree(path: str | Path, tree: Tree, species: Species | None = None) -> 
         The tree.
     species
         Its wood, if other than the table's; only YAML can carry it.
+    leaves
+        Clusters of leaves to draw; only glTF can carry them.
 
     Raises
     ------
     FormatError
-        Another suffix, or a file that cannot be written.
-    MissingDependencyError
-        If glTF is asked for and trimesh is not installed.
+        Another suffix, a forest as YAML, or a file that cannot be written.
+    SpeciesError
+        If the species table does not know the tree's species.
 
     """
-    path = Path(path)
-    writers: dict[str, Callable[[], None]] = {
-        ".yaml": lambda: write_yaml_tree(path, tree, species),
-        ".yml": lambda: write_yaml_tree(path, tree, species),
-        ".obj": lambda: write_obj(path, tree),
-        ".glb": lambda: write_gltf(path, tree),
-        ".gltf": lambda: write_gltf(path, tree),
-    }
-    writer = writers.get(path.suffix.lower())
-    if writer is None:
+    suffix = Path(path).suffix.lower()
+    if suffix not in _SUFFIXES:
         raise FormatError(
-            f"cannot write '{path.suffix}'", where=str(path), cure=f"use {', '.join(writers)}"
+            f"cannot write '{Path(path).suffix}'",
+            where=str(path),
+            cure=f"use {', '.join(_SUFFIXES)}",
         )
-    try:
-        writer()
-    except OSError as error:
-        raise FormatError(f"cannot be written: {error.strerror}", where=str(path)) from error
+    if suffix in GLTF_SUFFIXES:
+        write_gltf(path, skinned_tree(tree, leaves))
+    else:
+        text = obj_of_tree(tree) if suffix == ".obj" else yaml_of_tree(tree, species)
+        write_text_whole(path, text)
 
 
-def write_obj(path: Path, tree: Tree) -> None:
-    """Write the shape at rest as Wavefront OBJ, one object a segment, z up, in metres."""
-    frames, triangles = rest_frames(tree), cone_triangles()
-    lines = [f"# {tree.name}: z up, metres".replace("\n", " ")]
-    first = 1
-    for segment, name in enumerate(tree.segment_names):
-        points = cone_points(tree, segment) @ frames[segment, :3, :3].T + frames[segment, :3, 3]
-        lines.append(f"o {'_'.join(name.split())}")
-        lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in points]
-        lines += [f"f {a} {b} {c}" for a, b, c in triangles + first]
-        first += len(points)
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+def write_gltf(path: str | Path, document: GltfDocument) -> None:
+    """Write a document, in the binary form if the suffix is ``.glb``."""
+    binary = Path(path).suffix.lower() == ".glb"
+    with whole_file(path) as partial:
+        partial.write_bytes(document.glb() if binary else document.gltf())
 
 
-def write_gltf(path: Path, tree: Tree) -> None:
-    """
-    Write the shape at rest as glTF 2.0, binary if the suffix is ``.glb``, one node a segment.
-
-    Raises
-    ------
-    MissingDependencyError
-        If trimesh is not installed.
-
-    """
-    try:
-        import trimesh
-    except ImportError as error:
-        raise MissingDependencyError(
-            "glTF needs trimesh", where=str(path), cure="pip install trimesh"
-        ) from error
-    scene = trimesh.Scene(base_frame="world")
-    scene.graph.update(frame_from="world", frame_to="tree", matrix=_Y_UP)
-    triangles = cone_triangles()
-    bark = trimesh.visual.TextureVisuals(
-        material=trimesh.visual.material.PBRMaterial(
-            name="bark", baseColorFactor=_BARK, metallicFactor=0.0, roughnessFactor=1.0
-        )
-    )
-    for segment, (name, frame) in enumerate(
-        zip(tree.segment_names, rest_frames(tree), strict=True)
-    ):
-        mesh = trimesh.Trimesh(cone_points(tree, segment), triangles, process=False, visual=bark)
-        scene.add_geometry(
-            mesh, node_name=name, geom_name=name, parent_node_name="tree", transform=frame
-        )
-    gltf: Any = trimesh.exchange.gltf
-    if path.suffix.lower() == ".glb":
-        path.write_bytes(gltf.export_glb(scene, tree_postprocessor=_split_matrices))
-        return
-    files = gltf.export_gltf(
-        scene, merge_buffers=True, embed_buffers=True, tree_postprocessor=_split_matrices
-    )
-    path.write_bytes(files["model.gltf"])
-
-
-def _split_matrices(gltf: dict[str, Any]) -> None:
-    """Give nodes translation and rotation for their matrix, as only those can be animated."""
-    for node in gltf["nodes"]:
-        if "matrix" in node:
-            matrix = np.array(node.pop("matrix")).reshape(4, 4).T
-            node["translation"] = matrix[:3, 3].tolist()
-            node["rotation"] = Rotation.from_matrix(matrix[:3, :3]).as_quat().tolist()
+def obj_of_tree(tree: Tree) -> str:
+    """Return the shape at rest as Wavefront OBJ, one object per segment, z up, in metres."""
+    mesh, name = wood_mesh(tree), " ".join(tree.name.split())
+    # The two rings of the side; those of the ends, which differ in their normals, are the same.
+    size = 4 * SIDES
+    points = mesh.placed(rest_poses(tree)).reshape(tree.n_segments, size, 3)[:, : 2 * SIDES]
+    triangles = mesh.triangles[: size - 4] % (2 * SIDES)
+    lines, first = [f"# {name}: z up, metres"], 1
+    for segment, rings in zip(tree.segment_names, points.tolist(), strict=True):
+        lines.append(f"o {'_'.join(segment.split())}")
+        lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in rings]
+        lines += [f"f {a} {b} {c}" for a, b, c in (triangles + first).tolist()]
+        first += len(rings)
+    return "\n".join(lines) + "\n"

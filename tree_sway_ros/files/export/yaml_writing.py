@@ -9,8 +9,6 @@ written, so that a calibrated tree carries its values and an ordinary one follow
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from tree_sway_ros.core.tree.species import Species, species_named
@@ -19,14 +17,12 @@ from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.yaml_schema import tree_schema
 
 
-def write_yaml_tree(path: Path, tree: Tree, species: Species | None = None) -> None:
+def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
     """
-    Write a tree to a YAML file.
+    Return a tree as YAML text.
 
     Parameters
     ----------
-    path
-        The file; overwritten if it exists.
     tree
         The tree.
     species
@@ -40,11 +36,6 @@ def write_yaml_tree(path: Path, tree: Tree, species: Species | None = None) -> N
         If the species table does not know the tree's species.
 
     """
-    path.write_text(yaml_of_tree(tree, species), encoding="utf-8")
-
-
-def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
-    """Return a tree as YAML text; see `write_yaml_tree`."""
     if np.count_nonzero(tree.branch_parent < 0) > 1:
         raise FormatError(
             "a forest as the YAML of one tree",

@@ -11,8 +11,10 @@ from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import Simulator, make_simulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.plausibility import doubts, refuse_nonsense
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import TreeSwayError
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +44,32 @@ class TreeFile:
     notes: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about the tree, one sentence each, as of `doubts`."""
+        return doubts(self.tree, self.species)
+
     def of_species(self, species: Species) -> TreeFile:
         """Return the same tree of another wood, with that species' leaves."""
         return replace(self, tree=replace(self.tree, species=species.key), species=species)
+
+    def checked(self) -> TreeFile:
+        """
+        Return the same tree if its numbers can be those of one.
+
+        Raises
+        ------
+        TreeSwayError
+            As `refuse_nonsense`; names the source.
+
+        """
+        try:
+            refuse_nonsense(self.tree, self.species)
+        except TreeSwayError as error:
+            raise type(error)(
+                error.what, where=f"{self.source}: {error.where}", cure=error.cure
+            ) from None
+        return self
 
     def simulator(
         self,

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, forest_of_files
@@ -46,10 +47,12 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
             )
         tree = builtin_tree(text, seed)
         return TreeFile(tree, species_named(tree.species), text)
-    path = Path(text).expanduser()
+    path = path_of(text)
     if not path.exists():
         close = difflib.get_close_matches(text, BUILTIN_TREES, n=1)
         guess = f"did you mean '{close[0]}'? " if close else ""
+        if text in species_keys():
+            guess = f"it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml; "
         raise FormatError(
             f"no tree '{text}'",
             cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",
@@ -58,7 +61,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
         raise FormatError(
             "a forest, where one tree is asked for", where=text, cure="name one of its trees"
         )
-    return read_tree(path, **options)
+    return read_tree(path, **options).checked()
 
 
 def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile | ForestFile:
@@ -81,7 +84,7 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
         As `open_tree` and `read_forest`.
 
     """
-    path = Path(name_or_path).expanduser()
+    path = path_of(name_or_path)
     if str(name_or_path) not in BUILTIN_TREES and is_forest(path):
         if options:
             raise ParameterError(
@@ -92,5 +95,5 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
         return read_forest(path, open_tree)
     if str(name_or_path) in BUILTIN_TREES or not path.exists():
         return open_tree(name_or_path, seed, **options)
-    files = read_trees(path, **options)
+    files = [each.checked() for each in read_trees(path, **options)]
     return files[0] if len(files) == 1 else forest_of_files(files, path.stem)

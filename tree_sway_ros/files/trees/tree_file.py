@@ -15,16 +15,18 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.text_file import read_head
+from tree_sway_ros.files.text_file import path_of, read_head
 from tree_sway_ros.files.trees.cylinders.archi import read_archi_csv
 from tree_sway_ros.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+from tree_sway_ros.files.trees.cylinders.mat_file import looks_like_mat
 from tree_sway_ros.files.trees.cylinders.simpleforest import read_simpleforest_csv
-from tree_sway_ros.files.trees.cylinders.treeqsm_mat import looks_like_mat, read_treeqsm_mat
+from tree_sway_ros.files.trees.cylinders.treeqsm_mat import read_treeqsm_mat
 from tree_sway_ros.files.trees.cylinders.treeqsm_text import (
     looks_like_treeqsm_text,
     read_treeqsm_text,
 )
+from tree_sway_ros.files.trees.file_units import FileUnits
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.segment_table import read_csv_tree
 from tree_sway_ros.files.trees.skeletons.mtg import looks_like_mtg, read_mtg
@@ -65,9 +67,10 @@ class TreeFormat:
     @property
     def options(self) -> tuple[str, ...]:
         """Every option that the format takes."""
-        if "Cylinders" not in str(self.read.__annotations__["return"]):
-            return self.own_options
-        return (*self.own_options, *(field.name for field in fields(CylinderOptions)))
+        own = self.own_options
+        if "Cylinders" in str(self.read.__annotations__["return"]):
+            own = (*own, *(field.name for field in fields(CylinderOptions)))
+        return (*own, *(field.name for field in fields(FileUnits) if field.name not in own))
 
 
 def _columns(*names: str) -> Callable[[str], bool]:
@@ -114,7 +117,7 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
         Name of its format; found from content and suffix if None.
     **options
         What the reader of the format takes, such as ``species``; for cylinder and skeleton formats
-        also those of `CylinderOptions`.
+        also those of `CylinderOptions`; for all, those of `FileUnits` that it does not have itself.
 
     Raises
     ------
@@ -126,7 +129,7 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
         An option that this format does not have, or has otherwise.
 
     """
-    path = Path(path)
+    path = path_of(path)
     chosen = _format_of(path) if format is None else _format_named(format)
     for option in options:
         if option not in chosen.options:
@@ -136,11 +139,13 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
             )
     _check_kinds(chosen, options)
     own = {name: options.pop(name) for name in chosen.own_options if name in options}
+    shared = {field.name for field in fields(FileUnits)} & set(options)
+    units = FileUnits(**{name: options.pop(name) for name in shared})
     content = chosen.read(path, **own)
     if isinstance(content, TreeFile):
-        return (content,)
+        return (units.of_tree(content),)
     settings = CylinderOptions(**options)
-    return tuple(tree_of_cylinders(cylinders, path, settings) for cylinders in content)
+    return tuple(tree_of_cylinders(units.of_cylinders(c), path, settings) for c in content)
 
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:
@@ -159,6 +164,7 @@ def read_tree(path: str | Path, format: str | None = None, **options: Any) -> Tr
 def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
     """Refuse values of another kind than the option's."""
     kinds = {field.name: str(field.type) for field in fields(CylinderOptions)}
+    kinds |= {field.name: str(field.type) for field in fields(FileUnits)}
     kinds |= {name: str(kind) for name, kind in chosen.read.__annotations__.items()}
     for name, value in options.items():
         wanted = kinds[name].split(" ")[0]
@@ -187,6 +193,11 @@ def _format_named(name: str) -> TreeFormat:
 def _format_of(path: Path) -> TreeFormat:
     head = read_head(path).decode("utf-8", errors="replace")
     by_content = [known for known in TREE_FORMATS if known.recognise(head)]
+    with_points = re.sub(r"(?<=\d),(?=\d)", ".", head)
+    if not by_content and any(known.recognise(with_points) for known in TREE_FORMATS):
+        raise FormatError(
+            "numbers with a decimal comma", where=str(path), cure="export it with decimal points"
+        )
     by_suffix = [
         known for known in by_content or TREE_FORMATS if path.suffix.lower() in known.suffixes
     ]

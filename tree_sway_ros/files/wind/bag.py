@@ -13,9 +13,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.errors import FormatError, MissingDependencyError
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
-from tree_sway_ros.files.wind.units import check_convention
 
 WIND_TYPES = tuple(
     f"geometry_msgs/msg/{name}"
@@ -49,7 +49,7 @@ def read_bag_wind(
         If rosbags is not installed.
 
     """
-    check_convention(direction_convention)
+    WindConvention(direction_convention)  # refused before the file is read
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore

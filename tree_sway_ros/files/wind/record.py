@@ -11,17 +11,15 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.wind.convention import WindConvention
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.wind.units import turned
-
-MAX_SPEED = 150.0
-"""Refused above this [m/s]; the record gust is 113 m/s (Courtney et al., 2012, Barrow Island)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +59,10 @@ class WindRecord:
         """Make the arrays read-only."""
         self.time.setflags(write=False)
         self.velocity.setflags(write=False)
+
+    def with_note(self, note: str) -> WindRecord:
+        """Return the record with one more note."""
+        return replace(self, notes=(*self.notes, note))
 
     @property
     def duration(self) -> float:
@@ -138,7 +140,7 @@ class WindRows:
         notes
             Notes of the record.
         yaw, direction_convention
-            How the rows' velocities are to be turned; see `turned`.
+            How the rows' velocities are to be turned; see `WindConvention`.
 
         Raises
         ------
@@ -148,9 +150,9 @@ class WindRows:
         """
         time = np.array(self.time, dtype=np.float64)
         velocity = np.array(self.velocity, dtype=np.float64).reshape(-1, 3)
-        velocity = turned(velocity, yaw, direction_convention)
+        velocity = WindConvention(direction_convention, yaw_offset=yaw).velocities(velocity)
         speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
-        good = np.isfinite(time) & (speed <= MAX_SPEED)
+        good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
             self.refuse(self.number[index], f"{speed[index]:.3g} m/s at {time[index]:g} s")
         late = ~increasing(time[good])

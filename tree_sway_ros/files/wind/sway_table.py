@@ -45,7 +45,10 @@ _UNITS = {
         **{"g": 9.80665, "mg": 9.80665e-3},
     },
 }
-_HEADING = re.compile(r"([a-z_ ]*[a-z_0-9]+?)\s*(?:\[(.*)\]|\((.*)\))?", re.IGNORECASE)
+_NAME = re.compile(r"[a-z_ ]*[a-z_0-9]+", re.IGNORECASE)
+_UNIT = re.compile(r"\[(.*)\]|\((.*)\)|")
+MAX_VALUE = 1e12
+"""Larger times and motions are no measured ones, in whichever unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +118,16 @@ def read_csv_sway(path: Path) -> SwayRecord:
     indices = [i for i, _ in motion]
     names = [table.columns[i] for i in indices]
     values = [row_numbers(cells, indices, names, f"{source}:{line}") for line, cells in table.rows]
+    motion_values = np.array(values) * factors
+    for row, column in np.argwhere(np.abs(motion_values) > MAX_VALUE)[:1]:
+        raise FormatError(
+            f"{names[column]} is {values[row][column]:.3g}, which nothing measures",
+            where=f"{source}:{table.rows[row][0]}",
+            cure="mend the cell or remove the row",
+        )
     return SwayRecord(
         _times(table, clock, headings[clock][1]),
-        np.array(values) * factors,
+        motion_values,
         quantities[0],
         tuple(names),
         source,
@@ -126,10 +136,11 @@ def read_csv_sway(path: Path) -> SwayRecord:
 
 def _heading(column: str) -> tuple[str, str]:
     """Name in lower case, with _ for spaces, and unit of a column."""
-    match = _HEADING.fullmatch(column.strip())
-    if match is None:
+    begin = min((i for c in "[(" if (i := column.find(c)) >= 0), default=len(column))
+    name, unit = column[:begin].strip(), _UNIT.fullmatch(column[begin:].strip())
+    if unit is None or _NAME.fullmatch(name) is None:
         return "", ""
-    return match[1].strip().lower().replace(" ", "_"), (match[2] or match[3] or "").strip()
+    return name.lower().replace(" ", "_"), (unit[1] or unit[2] or "").strip()
 
 
 def _quantity(name: str) -> str | None:
@@ -145,9 +156,9 @@ def _times(table: TextTable, clock: int, unit: str) -> Floats:
         times = np.array([np.nan if n is None else n * factor for n in numbers])
     else:
         times = seconds_of_stamps(stamps)[0]
-    for row in np.flatnonzero(~np.isfinite(times))[:1]:
+    for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         raise FormatError(
-            f"time is '{stamps[row][:40]}', neither a number nor a date",
+            f"time is '{stamps[row][:40]}', neither seconds nor a date",
             where=f"{table.source}:{table.rows[row][0]}",
             cure="mend the cell or remove the row",
         )

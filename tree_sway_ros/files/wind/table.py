@@ -18,17 +18,16 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 
+from tree_sway_ros.core.wind.convention import WindConvention, velocity_of_bearing
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.table_file import TextTable, parse_table
-from tree_sway_ros.files.text_file import finite, read_lines
+from tree_sway_ros.files.text_file import finite, read_lines, why_no_number
 from tree_sway_ros.files.time_stamps import seconds_of_stamps
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
 from tree_sway_ros.files.wind.units import (
     ANGLE_UNITS,
     SPEED_UNITS,
     TIME_UNITS,
-    check_convention,
-    from_bearing,
     unit_factor,
 )
 
@@ -78,7 +77,7 @@ def read_csv_wind(
 
     """
     if direction_convention is not None:
-        check_convention(direction_convention)
+        WindConvention(direction_convention)  # refused before the file is read
     source = str(path)
     table = parse_table(read_lines(path), source)
     time = _column(table, _TIME, TIME_UNITS, 1.0)
@@ -96,7 +95,7 @@ def read_csv_wind(
     rows, stamps = WindRows(source), list[str]()
     chosen = [c for c in ((u, v, w) if u and v else (speed, direction)) if c is not None]
     for number, cells in table.rows:
-        values = _values(cells, chosen)
+        values = _values(table, cells, chosen)
         if isinstance(values, str) or time.index >= len(cells):
             rows.refuse(number, values if isinstance(values, str) else "no time")
             continue
@@ -108,7 +107,9 @@ def read_csv_wind(
             stamps.pop()
         else:
             bearing = values[1] - yaw
-            rows.add(number, 0.0, from_bearing(values[0], bearing, direction_convention or "from"))
+            rows.add(
+                number, 0.0, velocity_of_bearing(values[0], bearing, direction_convention or "from")
+            )
     seconds, epoch = _times(stamps, time.factor)
     rows.time = array("d", seconds)
     if u and v:
@@ -117,14 +118,14 @@ def read_csv_wind(
     return rows.record(epoch=epoch)
 
 
-def _values(cells: tuple[str, ...], columns: list[_Column]) -> list[float] | str:
+def _values(table: TextTable, cells: tuple[str, ...], columns: list[_Column]) -> list[float] | str:
     """Values in SI of some cells, or why not."""
     values = []
     for column in columns:
         cell = cells[column.index] if column.index < len(cells) else ""
         value = finite(cell)
         if value is None:
-            return f"'{cell[:20]}' is not a finite number"
+            return f"{table.columns[column.index]} is {why_no_number(cell)}"
         values.append(value * column.factor)
     return values
 

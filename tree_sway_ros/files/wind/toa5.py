@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.table_file import TextTable, split_row
 from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.time_stamps import seconds_of_stamps
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
-from tree_sway_ros.files.wind.units import SPEED_UNITS, check_convention, unit_factor
+from tree_sway_ros.files.wind.units import SPEED_UNITS, unit_factor
 
 _BLOCK = 1 << 16
 _COMPONENTS = (("Ux", "Uy", "Uz"), ("Ux_Avg", "Uy_Avg", "Uz_Avg"), ("U", "V", "W"))
@@ -53,7 +54,7 @@ def read_toa5_wind(
         Not TOA5, no such columns, or no good row.
 
     """
-    check_convention(direction_convention)
+    WindConvention(direction_convention)  # refused before the file is read
     source, lines = str(path), read_lines(path)
     if len(lines) < 4 or not lines[0].lstrip('"').startswith("TOA5"):
         raise FormatError("not TOA5: its 4 header lines are missing", where=f"{source}:1")

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from math import cos, pi, radians, sin
+from math import pi, radians
 
-import numpy as np
-
-from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.errors import FormatError
 
 Velocity = tuple[float, float, float]
 
@@ -48,52 +45,6 @@ def unit_factor(units: dict[str, float], text: str, default: float, where: str) 
             f"unknown unit '{text[:20]}'", where=where, cure=f"use {', '.join(units)}"
         )
     return units[key]
-
-
-def check_convention(direction_convention: str) -> None:
-    """Raise a ParameterError unless the convention is ``to`` or ``from``."""
-    if direction_convention not in ("to", "from"):
-        raise ParameterError(
-            f"direction_convention is '{direction_convention}'", cure="use 'to' or 'from'"
-        )
-
-
-def from_bearing(speed: float, bearing: float, direction_convention: str = "from") -> Velocity:
-    """
-    Velocity from a speed and a compass bearing.
-
-    Parameters
-    ----------
-    speed
-        Speed in [m/s].
-    bearing
-        Clockwise from north in [rad].
-    direction_convention
-        ``from``: where the wind comes from, as meteorology says it; ``to``: where it blows.
-
-    """
-    sign = -1.0 if direction_convention == "from" else 1.0
-    return sign * speed * sin(bearing), sign * speed * cos(bearing), 0.0
-
-
-def turned(velocity: Floats, yaw: float, direction_convention: str = "to") -> Floats:
-    """
-    Velocities from a sensor's axes to east, north, up.
-
-    Parameters
-    ----------
-    velocity
-        In the sensor's axes, z up, in [m/s], (n, 3).
-    yaw
-        From east to the sensor's x axis, counter-clockwise seen from above, in [rad].
-    direction_convention
-        ``to`` if the components are positive where the wind blows, ``from`` if where it comes from.
-
-    """
-    sign = -1.0 if direction_convention == "from" else 1.0
-    c, s = cos(yaw), sin(yaw)
-    rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray(sign * velocity @ rotation, dtype=np.float64)
 
 
 def degrees_to_bearing(degrees: float) -> float | None:

@@ -15,10 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.text_file import read_head
+from tree_sway_ros.files.text_file import path_of, read_head
 from tree_sway_ros.files.wind.bag import read_bag_wind
 from tree_sway_ros.files.wind.nmea import read_nmea_wind
 from tree_sway_ros.files.wind.record import WindRecord
+from tree_sway_ros.files.wind.sonic_ascii import read_sonic_wind
 from tree_sway_ros.files.wind.table import read_csv_wind
 from tree_sway_ros.files.wind.toa5 import read_toa5_wind
 
@@ -47,9 +48,14 @@ class WindFormat:
     read: Callable[..., WindRecord]
 
 
+_SONIC = re.compile(
+    rb"^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,|S2? +[\d.]+,? +D +\d)", re.M
+)
+
 WIND_FORMATS: tuple[WindFormat, ...] = (
     WindFormat("toa5", (".dat", ".toa5"), re.compile(rb'\A"?TOA5"?,'), read_toa5_wind),
     WindFormat("nmea", (".nmea", ".log"), re.compile(rb"\$[A-Z]{5},"), read_nmea_wind),
+    WindFormat("sonic", (), _SONIC, read_sonic_wind),
     WindFormat(
         "bag", (".db3", ".mcap"), re.compile(rb"\A(SQLite format 3\0|\x89MCAP0\r\n)"), read_bag_wind
     ),
@@ -83,7 +89,7 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
         An option that the reader of this format does not have, or has otherwise.
 
     """
-    path = Path(path)
+    path = path_of(path)
     chosen = _format_of(path) if format is None else _format_named(format)
     known = chosen.read.__annotations__
     for option in options:

@@ -22,6 +22,7 @@ from rcl_interfaces.msg import (
 
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 from tree_sway_ros.ros.parameters.parameter import (
+    QOS_PREFIX,
     Parameter,
     Table,
     Value,
@@ -48,11 +49,14 @@ class ParameterValues:
     check
         Called with all values by name, as they would be, before they are taken, at the start and at
         each change; raises where they do not go together.
+    is_own
+        Whether a name was given to this node alone. What was given to every node of a launch may be
+        unknown to this one, or out of its range: then there is a warning, and the default.
 
     Raises
     ------
     ParameterError
-        An unknown name or a refused value among what the user gave.
+        An unknown name or a refused value among what the user gave to this node.
 
     """
 
@@ -62,25 +66,41 @@ class ParameterValues:
         table: Table,
         on_change: Callable[[dict[str, Value]], None] | None = None,
         check: Callable[[dict[str, Value]], None] | None = None,
+        is_own: Callable[[str], bool] = lambda _name: True,
     ) -> None:
         self._by_name = {parameter.name: parameter for parameter in table}
         self._values: dict[str, Value] = {}
         self._on_change = on_change
         self._check_all = check or (lambda _values: None)
         given = {name: item.value for name, item in node.get_parameters_by_prefix("").items()}
-        name = node.get_name()
-        for unknown in unknown_names(table, given):
-            raise unknown_parameter(table, unknown, where=f"node '{name}'")
+        where = f"node '{node.get_name()}'"
+        for name in unknown_names(table, given):
+            error = unknown_parameter(table, name, where=where)
+            if is_own(name):
+                raise error
+            node.get_logger().warning(f"{error}; set for every node, ignored here")
+            node.undeclare_parameter(name)
+        for name in given:
+            if name.startswith(QOS_PREFIX):  # declared by the publisher or subscription it is for
+                node.undeclare_parameter(name)
         for parameter in table:
-            value = given.get(parameter.name, parameter.default)
-            self._values[parameter.name] = parameter.checked(value)
+            value = parameter.default
             if parameter.name in given:
                 node.undeclare_parameter(parameter.name)
-            shown = list(value) if isinstance(value, tuple) else value
+                value = given[parameter.name]
+            try:
+                value = parameter.checked(value)
+            except ParameterError as error:
+                if is_own(parameter.name):
+                    raise
+                node.get_logger().warning(f"{error}; set for every node, ignored here")
+                value = parameter.default
+            self._values[parameter.name] = value
             node.declare_parameter(
-                parameter.name, shown, _descriptor(parameter), ignore_override=True
+                parameter.name, _shown(value), _descriptor(parameter), ignore_override=True
             )
         self._check_all(dict(self._values))
+        node.add_pre_set_parameters_callback(self._convert)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
 
@@ -91,6 +111,19 @@ class ParameterValues:
     def __call__(self, *names: str) -> dict[str, Value]:
         """Values of some parameters, as keyword arguments."""
         return {name: self._values[name] for name in names}
+
+    def _convert(self, changes: list[Any]) -> list[Any]:
+        """Give each value its parameter's own kind: a double stays one when set to 1."""
+        return [self._converted(change) for change in changes]
+
+    def _converted(self, change: Any) -> Any:
+        parameter = self._by_name.get(change.name)
+        if parameter is None:
+            return change
+        try:
+            return type(change)(change.name, value=_shown(parameter.checked(change.value)))
+        except ParameterError:
+            return change  # refused next, with the reason
 
     def _check(self, changes: list[Any]) -> SetParametersResult:
         try:
@@ -103,18 +136,11 @@ class ParameterValues:
         return SetParametersResult(successful=True)
 
     def _checked(self, changes: list[Any]) -> dict[str, Value]:
-        new: dict[str, Value] = {}
-        for change in changes:
-            parameter = self._by_name.get(change.name)
-            if parameter is None:
-                continue
-            new[change.name] = parameter.checked(change.value)
-            if not parameter.live and new[change.name] != self._values[change.name]:
-                raise ParameterError(
-                    f"parameter '{change.name}' is read at start only",
-                    cure=f"restart with -p {change.name}:={change.value}",
-                )
-        return new
+        return {
+            change.name: self._by_name[change.name].checked(change.value)
+            for change in changes
+            if change.name in self._by_name
+        }
 
     def _apply(self, changes: list[Any]) -> None:
         new = self._checked(changes)
@@ -123,12 +149,17 @@ class ParameterValues:
             self._on_change(new)
 
 
+def _shown(value: Value) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
 def _descriptor(parameter: Parameter) -> ParameterDescriptor:
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     descriptor = ParameterDescriptor(
         description=f"{parameter.description}{unit}",
         additional_constraints=parameter.range_text
         + ("" if parameter.live else " (read at start only)"),
+        read_only=not parameter.live,
         dynamic_typing=True,
     )
     if parameter.minimum is None and parameter.maximum is None:

@@ -13,8 +13,9 @@ from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
-from tree_sway_ros.core.wind.simulated.turbulence import TURBULENCE_MODELS
+from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
 _MODEL = Settings()
@@ -55,7 +56,7 @@ ANEMOMETER: Table = (
         "turbulence",
         "kaimal",
         "Spectrum of the turbulence.",
-        choices=(*TURBULENCE_MODELS, "none"),
+        choices=(*SPECTRA, "none"),
         live=True,
         source="IEC 61400-1",
     ),
@@ -130,8 +131,8 @@ WIND: Table = (
         1.0,
         source="the paper, 3.2",
     ),
-    Parameter("fixed_frame", "map", "Frame of what is published; no transform is applied."),
-    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, 200.0),
+    _FRAME,
+    Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, FASTEST_WIND),
     Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
     Parameter("longest_refusal", 0.5, "After so long a change is taken as true.", "s", 0.05, 10.0),
     Parameter("frozen_after", 10.0, "Equal samples for so long are reported.", "s", 1.0, 3600.0),
@@ -274,8 +275,20 @@ SOLVER: Table = (
         "decay", 6.0, "Time constant of the wind after that; the force halves it.", "s", 0.1, 60.0
     ),
     _FRAME,
+    Parameter("x", 0.0, "Where the tree's own origin lies in the frame.", "m", -1e6, 1e6),
+    Parameter("y", 0.0, "The same to the north.", "m", -1e6, 1e6),
+    Parameter("z", 0.0, "The same upwards; the ground of the wind profile.", "m", -1e4, 1e4),
+    Parameter("yaw", 0.0, "Turn of the tree, counterclockwise from above.", "rad", -6.3, 6.3),
+    Parameter(
+        "hash_in_frame",
+        False,
+        "Poses say `frame_id#hash`, with the hash of `tree_description`: whose they are is seen.",
+    ),
     Parameter("marker_rate", 20.0, "Markers a second; 0 for none.", "Hz", 0.0, 20.0),
     Parameter("marker_classes", 6, "Line widths of the markers.", "", 1, 32),
+    Parameter(
+        "state_rate", 30.0, "States per second on `tree_state`; 0 for none.", "Hz", 0.0, 1000.0
+    ),
     Parameter("publish_tf", False, "Publish a frame a segment as well; needs tf2_msgs."),
 )
 
@@ -292,9 +305,20 @@ PLAYER: Table = (
     Parameter("wait_for_subscriber", True, "Start when somebody listens."),
 )
 
+VIEWER: Table = (
+    Parameter("address", "127.0.0.1", "To bind to; any but this machine's own needs a token."),
+    Parameter("port", 8765, "Of the page; 0 for a free one.", "", 0, 65535),
+    Parameter("token", "", "What pages must know, as `?token=`."),
+    Parameter("certificate", "", "PEM file, to serve the page over TLS."),
+    Parameter("private_key", "", "PEM file of the certificate's key."),
+    Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
+    Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
+)
+
 NODE_PARAMETERS: dict[str, Table] = {
     "anemometer": ANEMOMETER,
     "wind": WIND,
     "solver": SOLVER,
     "player": PLAYER,
+    "viewer": VIEWER,
 }

@@ -21,7 +21,8 @@ Value = Any  # bool | int | float | str | tuple[float, ...]
 
 # What every ROS 2 node has besides its own.
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
-_OF_EVERY_NODE_PREFIX = "qos_overrides."
+QOS_PREFIX = "qos_overrides."
+"""Of parameters that change the quality of service of one publisher or subscription."""
 
 
 @dataclass(frozen=True)
@@ -74,13 +75,15 @@ class Parameter:
         kind = type(self.default)
         if kind is tuple:
             return self._checked_tuple(value)
-        if kind is float and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
+        value = _of_kind(kind, value)
         if type(value) is not kind:
             raise self._error(f"{value!r} is not {_KINDS[kind]}")
         if kind in (float, int):
             self._check_range(value)
         if self.choices and value not in self.choices:
+            short = str(value).replace("/msg/", "/")  # either is a type's name to ROS
+            if short in self.choices:
+                return short
             raise self._error(f"'{value}' is not among its choices", _nearest(value, self.choices))
         return value
 
@@ -122,6 +125,18 @@ class Parameter:
         return ParameterError(what, where=f"parameter '{self.name}'", cure=cure)
 
 
+def _of_kind(kind: type, value: Value) -> Value:
+    """A value as the kind that is meant, where it can mean but one: 40 for 40.0, 1 for true."""
+    if kind is float and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if kind is int and isinstance(value, float) and value.is_integer():
+        return int(value)
+    if kind is bool and str(value).lower() in _TRUTH:
+        return _TRUTH[str(value).lower()]
+    return value
+
+
+_TRUTH = {"true": True, "1": True, "false": False, "0": False}
 _KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a string"}
 _KINDS[tuple] = "a list of numbers"
 
@@ -155,7 +170,7 @@ def checked_values(
 def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
     """Names that neither the table nor every ROS node has."""
     known = {parameter.name for parameter in table} | set(_OF_EVERY_NODE)
-    return [n for n in names if n not in known and not n.startswith(_OF_EVERY_NODE_PREFIX)]
+    return [n for n in names if n not in known and not n.startswith(QOS_PREFIX)]
 
 
 def unknown_parameter(table: Table, name: str, *, where: str = "") -> ParameterError:

@@ -17,7 +17,9 @@ import threading
 from types import FrameType, TracebackType
 
 LONGEST = 1.5
-"""From the signal to the end of the process [s], if it does not end by itself before."""
+"""From the signal to the end of a process that runs [s], if it does not end by itself before."""
+SHORTEST = 0.3
+"""The same of a process that only starts: nothing is open that would have to be closed."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -25,16 +27,14 @@ class Ending:
     """
     A context that hears SIGINT and SIGTERM; in the main thread only, elsewhere it does nothing.
 
-    Parameters
-    ----------
-    limit
-        Time from the signal to the end of the process in [s]; None for no limit.
+    Once told to end, nothing that is raised leaves it: what is broken off amid its work may
+    complain of anything.
 
     """
 
-    def __init__(self, limit: float | None = LONGEST) -> None:
+    def __init__(self) -> None:
         self.is_asked = False
-        self._limit = limit
+        self.limit = SHORTEST
         self._breaks_in = True
         self._over = threading.Event()
         self._pipe: tuple[int, int] | None = None
@@ -43,6 +43,7 @@ class Ending:
     def look(self) -> None:
         """From now on a loop looks at `is_asked`: break into nothing any more."""
         self._breaks_in = False
+        self.limit = LONGEST
         if self.is_asked:
             raise KeyboardInterrupt
 
@@ -50,11 +51,10 @@ class Ending:
         if threading.current_thread() is not threading.main_thread():
             return self
         self._before = [signal.signal(number, self._hear) for number in _SIGNALS]
-        if self._limit is not None:
-            self._pipe = os.pipe()
-            os.set_blocking(self._pipe[1], False)
-            signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
-            threading.Thread(target=self._watch, name="ending", daemon=True).start()
+        self._pipe = os.pipe()
+        os.set_blocking(self._pipe[1], False)
+        signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
+        threading.Thread(target=self._watch, name="ending", daemon=True).start()
         return self
 
     def __exit__(
@@ -62,9 +62,9 @@ class Ending:
         kind: type[BaseException] | None,
         error: BaseException | None,
         trace: TracebackType | None,
-    ) -> None:
+    ) -> bool:
         if not self._before:
-            return
+            return False
         self._over.set()
         for number, before in zip(_SIGNALS, self._before, strict=True):
             # What was told to end stays deaf: a second Ctrl-C amid the last lines is no error.
@@ -72,16 +72,18 @@ class Ending:
         if self._pipe is not None:
             signal.set_wakeup_fd(-1)
             os.close(self._pipe[1])
+        return self.is_asked
 
     def _hear(self, _number: int, _frame: FrameType | None) -> None:
         is_first, self.is_asked = not self.is_asked, True
         if is_first and self._breaks_in:
+            sys.unraisablehook = lambda _args: None  # nor does what cannot raise complain
             raise KeyboardInterrupt
 
     def _watch(self) -> None:
         assert self._pipe is not None
         while heard := os.read(self._pipe[0], 1):
-            if heard[0] in _SIGNALS and not self._over.wait(self._limit):
+            if heard[0] in _SIGNALS and not self._over.wait(self.limit):
                 sys.stdout.flush()
                 os._exit(0)
         os.close(self._pipe[0])

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.node import Node
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
+from tree_sway_ros.core.wind.gate import LARGEST_LEAD
 from tree_sway_ros.ros.parameters.declaration import ParameterValues
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.parameters.origin import own_names
 from tree_sway_ros.ros.process.guard import CallbackGuard
 from tree_sway_ros.ros.process.topics import Topic, message_class, qos_profile
 from tree_sway_ros.ros.reports.diagnostics import WARN, Reporter, Status
@@ -30,6 +34,9 @@ class TreeSwayNode(Node):  # type: ignore[misc]
     def __init__(self, name: str, **options: Any) -> None:
         # Made first: rclpy's own subscriptions and services are guarded as well.
         self.guard = CallbackGuard(lambda text: self.get_logger().error(text))
+        told = {each.name for each in options.get("parameter_overrides") or ()}
+        if options.get("use_global_arguments", True):
+            told |= own_names([*sys.argv, *(options.get("cli_args") or ())], name)
         super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
         self.failure: Exception | None = None
         self.is_done = False
@@ -37,7 +44,11 @@ class TreeSwayNode(Node):  # type: ignore[misc]
         self._closers: list[Callable[[], None]] = []
         try:
             self.values = ParameterValues(
-                self, NODE_PARAMETERS[name], self.on_change, self.check_values
+                self,
+                NODE_PARAMETERS[name],
+                self.on_change,
+                self.check_values,
+                lambda parameter: parameter in told,
             )
         except Exception:
             self.destroy_node()
@@ -73,7 +84,12 @@ class TreeSwayNode(Node):  # type: ignore[misc]
             Whether a second publisher on the topic is a fault, to be told of.
 
         """
-        made = self.create_publisher(kind or message_class(topic), topic.name, qos_profile(topic))
+        made = self.create_publisher(
+            kind or message_class(topic),
+            topic.name,
+            qos_profile(topic),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
         if alone:
             self._alone[made.topic_name] = set()
         return made
@@ -81,7 +97,18 @@ class TreeSwayNode(Node):  # type: ignore[misc]
     def subscription(self, topic: Topic, callback: Callable[[Any], None], kind: Any = None) -> Any:
         """Subscription to a topic of the table; `kind` where a parameter chooses the type."""
         kind = kind or message_class(topic)
-        return self.create_subscription(kind, topic.name, callback, qos_profile(topic))
+        return self.create_subscription(
+            kind,
+            topic.name,
+            callback,
+            qos_profile(topic),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+
+    @property
+    def clock_lead(self) -> int:
+        """How far stamps may be ahead of the clock in [ns]: simulated time stands between ticks."""
+        return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
         """Publish what `collect` returns on `/diagnostics`."""

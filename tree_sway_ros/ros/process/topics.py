@@ -85,6 +85,12 @@ TREE_DESCRIPTION = Topic(
     "JSON: name, parent, length, radii and branch of each segment; repeated every 5 s.",
     latched=True,
 )
+TREE_STATE = Topic(
+    "tree_state",
+    "sensor_msgs/msg/JointState",
+    "The wind [m/s] and the few coordinates that, with `tree_description`, all poses follow from.",
+    depth=10,
+)
 DIAGNOSTICS = Topic(
     "/diagnostics",
     "diagnostic_msgs/msg/DiagnosticArray",
@@ -115,6 +121,7 @@ TOPICS = (
     SEGMENT_POSES,
     MARKERS,
     TREE_DESCRIPTION,
+    TREE_STATE,
     CAMERA,
     DIAGNOSTICS,
     CLOCK,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import json
 import math
 from typing import Any
 
@@ -16,7 +17,7 @@ from tree_sway_ros.ros.process.topics import MARKERS, SEGMENT_POSES, TF, TREE_DE
 from tree_sway_ros.ros.timing.stepping import Divider
 from tree_sway_ros.ros.wire.cdr import pose_array_template
 from tree_sway_ros.ros.wire.markers import TreeMarkers
-from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD, describe
+from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD, describe, tree_hash
 from tree_sway_ros.ros.wire.wind_messages import fill_stamp
 
 
@@ -39,7 +40,9 @@ class PoseStream:
         values = node.values
         frame_id = values["frame_id"]
         self.frames = 0
-        self._template = pose_array_template(tree.n_segments, frame_id)
+        self.hash = tree_hash(tree)
+        shown = f"{frame_id}#{self.hash}" if values["hash_in_frame"] else frame_id
+        self._template = pose_array_template(tree.n_segments, shown)
         self.poses = self._template.blocks[0]
         self._pose_publisher = node.publisher(SEGMENT_POSES, alone=True)
         self._pose_divider, self._marker_divider = Divider(), Divider()
@@ -54,6 +57,12 @@ class PoseStream:
         self._timer = node.create_timer(
             REPEAT_PERIOD, self.publish_description, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
+        self.publish_description()
+
+    def tell_more(self, content: dict[str, Any]) -> None:
+        """Add to the description, from any thread, and publish it."""
+        whole = {**json.loads(self._description.data), **content}
+        self._description = String(data=json.dumps(whole, separators=(",", ":")))
         self.publish_description()
 
     def publish_description(self) -> None:

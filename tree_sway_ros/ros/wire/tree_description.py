@@ -13,6 +13,7 @@ from typing import Any
 
 from tree_sway_ros.core.leaves.flutter import leaf_list
 from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.state.tree_state import digest_of
 from tree_sway_ros.core.tree.tree import Tree
 
 VERSION = 1
@@ -30,6 +31,11 @@ SCHEMA: dict[str, Any] = {
     "properties": {
         "version": {"const": VERSION},
         "name": {"type": "string"},
+        "hash": {
+            "type": "string",
+            "pattern": "^[0-9a-f]{16}$",
+            "description": "of the segments: another tree in the stream has another",
+        },
         "species": {"type": "string"},
         "frame_id": {"type": "string"},
         "segments": {
@@ -51,6 +57,11 @@ SCHEMA: dict[str, Any] = {
             "required": ["names", "parents", "first_segments"],
             "properties": {"names": _NAMES, "parents": _INDICES, "first_segments": _INDICES},
         },
+        "state": {
+            "type": "object",
+            "description": "how to read `tree_state`; absent until somebody listens to it",
+            "required": ["format", "base64"],
+        },
         "leaves": {
             "type": "object",
             "description": "one item a leaf cluster, carried by its segment; absent without leaves",
@@ -58,6 +69,11 @@ SCHEMA: dict[str, Any] = {
         },
     },
 }
+
+
+def tree_hash(tree: Tree) -> str:
+    """Sixteen hexadecimal digits that change with the tree: with any segment, name or place."""
+    return digest_of(tree)
 
 
 def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
@@ -79,6 +95,7 @@ def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> s
             **({} if leaves is None else {"leaves": leaf_list(leaves)}),
             "version": VERSION,
             "name": tree.name,
+            "hash": tree_hash(tree),
             "species": tree.species,
             "frame_id": frame_id,
             "segments": {

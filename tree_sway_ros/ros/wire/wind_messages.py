@@ -20,6 +20,7 @@ from geometry_msgs.msg import (
 )
 from rosgraph_msgs.msg import Clock
 
+from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.ros.parameters.node_parameters import WIND_TYPE_NAMES
 
@@ -118,13 +119,13 @@ class WindWriter:
 
     def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:
         self.message_class = wind_class(output_type)
-        self._sign = 1.0 if direction_convention == "to" else -1.0
+        self._convention = WindConvention(direction_convention)
         self._frame_id = frame_id
 
     def message(self, stamp: int, velocity: Any) -> Any:
         """Write a velocity, blowing to, ENU in [m/s], (3,), stamped with a time in [ns]."""
-        u, v, w = (self._sign * float(component) for component in velocity)
-        return wind_to_message(self.message_class, WindSample(stamp, self._frame_id, u, v, w))
+        components = self._convention.components(velocity)
+        return wind_to_message(self.message_class, WindSample(stamp, self._frame_id, *components))
 
 
 def plane_message(stamp: int, frame_id: str, wxyz: Any) -> Any:

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.study.battery.row import Row
 
 CASES = {
@@ -81,5 +82,5 @@ def run_battery(
     print(f"{total - failed} of {total} rows as they should be")
     if json is not None:
         document = {"full": full, "failed": failed, "cases": report}
-        Path(json).write_text(json_module.dumps(document, indent=1) + "\n", encoding="utf-8")
+        write_text_whole(json, json_module.dumps(document, indent=1) + "\n")
     return 1 if failed else 0

@@ -91,7 +91,7 @@ def run_ida(chain: PlanarChain, loads: Array, dt: float, first: Array) -> IdaRun
     """
     if not is_installed():
         raise MissingDependencyError(
-            "scikit-sundae is not installed", where=NAME, cure="pip install tree_sway_ros[sundials]"
+            "scikit-sundae is not installed", where=NAME, cure="pip install scikit-sundae"
         )
     from sksundae.ida import IDA
 

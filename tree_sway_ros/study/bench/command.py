@@ -78,7 +78,5 @@ def core_name() -> str:
 
 def _row(timing: StepTiming) -> str:
     own = f"  {timing.model:19} {1e6 * timing.median:7.1f}  {1e6 * timing.minimum:7.1f}"
-    if timing.twin_median is None or timing.twin_minimum is None:
-        return f"{own}                     -        -       -"
     twin = f"{1e6 * timing.twin_median:9.0f}  {1e6 * timing.twin_minimum:7.0f}"
     return f"{own}            {twin} {timing.ratio:7.1f}   {timing.difference:.1e}"

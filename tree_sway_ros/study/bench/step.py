@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TreeSwayError
-from tree_sway_ros.study.bench.numpy_twin import NumpyTwin
 
 _DT = 1.0 / 60.0
 _STEPS_A_ROUND, _TWIN_STEPS_A_ROUND = 200, 10
@@ -39,7 +39,7 @@ class StepTiming:
     median, minimum
         Of the compiled step.
     twin_median, twin_minimum
-        Of the step in numpy; None where there is no twin.
+        Of the step in numpy.
     difference
         Largest difference of the two pose blocks over the steps that were compared.
 
@@ -48,14 +48,14 @@ class StepTiming:
     model: str
     median: float
     minimum: float
-    twin_median: float | None = None
-    twin_minimum: float | None = None
-    difference: float = 0.0
+    twin_median: float
+    twin_minimum: float
+    difference: float
 
     @property
-    def ratio(self) -> float | None:
-        """How many times faster than numpy, by the medians; None without a twin."""
-        return None if self.twin_median is None else self.twin_median / self.median
+    def ratio(self) -> float:
+        """How many times faster than numpy, by the medians."""
+        return self.twin_median / self.median
 
 
 def time_steps(tree: Tree, model: str, rounds: int) -> StepTiming:
@@ -67,7 +67,7 @@ def time_steps(tree: Tree, model: str, rounds: int) -> StepTiming:
     tree
         The tree; no twig of it copies another.
     model
-        Model; ``branch`` and ``subtree`` have a twin to race.
+        Model.
     rounds
         Of 200 steps each.
 
@@ -83,17 +83,17 @@ def time_steps(tree: Tree, model: str, rounds: int) -> StepTiming:
 
     """
     simulator = SwaySimulator(tree, model=model, twig_tolerance=-1.0)
-    twin = NumpyTwin(simulator) if model in ("branch", "subtree") else None
+    plain = CalibratedTree(tree, simulator.species, simulator.settings, plain=True)
+    twin = SwaySimulator(tree, settings=simulator.settings, calibrated=plain)
     winds = gusts(_STEPS_A_ROUND)
     poses = np.zeros((tree.n_segments, 7))
-    difference = 0.0 if twin is None else _agree(simulator, twin, winds, poses)
+    difference = _agree(simulator, twin, winds, poses)
 
     def own_step(wind: Floats) -> None:
         simulator.step(wind, _DT)
         simulator.place(poses)
 
     def twin_step(wind: Floats) -> None:
-        assert twin is not None
         twin.step(wind, _DT)
         twin.place(poses)
 
@@ -102,10 +102,7 @@ def time_steps(tree: Tree, model: str, rounds: int) -> StepTiming:
     others: list[float] = []
     for _ in range(rounds):
         own += _timed(own_step, winds)
-        if twin is not None:
-            others += _timed(twin_step, winds[:_TWIN_STEPS_A_ROUND])
-    if not others:
-        return StepTiming(model, float(np.median(own)), min(own))
+        others += _timed(twin_step, winds[:_TWIN_STEPS_A_ROUND])
     return StepTiming(
         model, float(np.median(own)), min(own), float(np.median(others)), min(others), difference
     )
@@ -117,7 +114,7 @@ def gusts(count: int) -> Floats:
     return np.array([8.0, 0.0, 0.0]) + rng.normal(0.0, [2.0, 1.5, 0.5], (count, 3))
 
 
-def _agree(simulator: SwaySimulator, twin: NumpyTwin, winds: Floats, poses: Floats) -> float:
+def _agree(simulator: SwaySimulator, twin: SwaySimulator, winds: Floats, poses: Floats) -> float:
     """Largest difference over some steps; raises where it is more than rounding."""
     difference = 0.0
     for wind in winds[:_STEPS_TO_AGREE]:

@@ -20,6 +20,7 @@ from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import Swaying
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.chart.fidelity import DAMPING_RATIO, EXAMPLE_WOOD, FRAME
 from tree_sway_ros.study.example_trees import RATIOS, forked_tree
@@ -80,7 +81,7 @@ def chart_cost(
             points += _costs(forked_tree(*RATIOS[1], generations=generation), 6, frames)
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "cost.csv").open("w", newline="") as file:
+    with whole_file(folder / "cost.csv") as partial, partial.open("w", newline="") as file:
         writer = csv.DictWriter(file, list(Cost.__annotations__))
         writer.writeheader()
         writer.writerows(asdict(point) for point in points)

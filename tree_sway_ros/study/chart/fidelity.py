@@ -24,6 +24,7 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, RATIOS, forked_tree
 from tree_sway_ros.view.plotting import new_figure, save_figure
@@ -92,7 +93,7 @@ def chart_fidelity(
     points = [point for tree in forest for point in climb(tree, means, gravity)]
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "fidelity.csv").open("w", newline="") as file:
+    with whole_file(folder / "fidelity.csv") as partial, partial.open("w", newline="") as file:
         writer = csv.DictWriter(file, ["tree", "model", "error", "nanoseconds"])
         writer.writeheader()
         writer.writerows(asdict(point) for point in points)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.battery.work_precision import Point, measure
 
 SHOWN_RATE = 60
@@ -43,14 +44,14 @@ def chart_methods(out_dir: str | Path, points: list[Point] | None = None) -> lis
         import matplotlib
     except ImportError as error:
         raise MissingDependencyError(
-            "matplotlib is not installed", where="chart", cure="pip install tree_sway_ros[plot]"
+            "matplotlib is not installed", where="chart", cure="pip install matplotlib"
         ) from error
     matplotlib.use("Agg")
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
     points = measure() if points is None else points
     table = folder / "methods.csv"
-    with table.open("w", newline="", encoding="utf-8") as sheet:
+    with whole_file(table) as partial, partial.open("w", newline="") as sheet:
         writer = csv.DictWriter(sheet, list(asdict(points[0])))
         writer.writeheader()
         writer.writerows(
@@ -131,7 +132,8 @@ def _draw(points: list[Point], cost: str, label: str, file: Path) -> None:
         ha="center",
         fontsize=13,
     )
-    figure.savefig(file, dpi=100)
+    with whole_file(file) as partial:
+        figure.savefig(partial, dpi=100)
     plt.close(figure)
 
 

@@ -9,6 +9,7 @@ from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.study.chart.fidelity import simulated_wind
+from tree_sway_ros.study.compare.mujoco_tree import take_warnings
 from tree_sway_ros.study.compare.with_mujoco import FRAME, compare_with_mujoco
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
 
@@ -35,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run both and print how they compare."""
     if not 0.1 <= arguments.seconds <= 600.0:
-        raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give .1 to 600")
+        raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0.1 to 600")
     tree_file = opened_tree(arguments)
     if arguments.wind is None:
         time, velocity = simulated_wind(arguments.seconds, seed=1)
@@ -44,4 +45,6 @@ def run(arguments: argparse.Namespace) -> int:
         time, velocity = record.time, record.velocity
     wind = frame_means(time, velocity, FRAME)[: round(arguments.seconds / FRAME)]
     print(compare_with_mujoco(tree_file.tree, tree_file.species, wind, model=arguments.model))
+    for warning in take_warnings():
+        print(f"MuJoCo warned: {warning}")
     return 0

@@ -24,6 +24,7 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import MissingDependencyError
 from tree_sway_ros.study.frame.frame import frame_model
 
+_WARNINGS: list[str] = []
 _NO_TWIST = 500.0
 """Shear modulus over Young's by which the beam does not twist either: the hinges do not."""
 
@@ -44,7 +45,15 @@ def mujoco_module() -> Any:
         raise MissingDependencyError(
             "MuJoCo is not installed", cure="pip install mujoco"
         ) from error
+    mujoco.set_mju_user_warning(_WARNINGS.append)  # else it writes a log where it stands
     return mujoco
+
+
+def take_warnings() -> list[str]:
+    """What MuJoCo has warned of since this was last asked, each warning once."""
+    taken = list(dict.fromkeys(_WARNINGS))
+    _WARNINGS.clear()
+    return taken
 
 
 class MujocoTree:

@@ -25,6 +25,7 @@ from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
 from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
+from tree_sway_ros.tools.progress import bar, waiting
 
 FRAME = 1.0 / 60.0
 AUTO = 0.05
@@ -59,7 +60,7 @@ class Comparison:
     error_at_60
         MuJoCo's at 1/60 s.
     cost, mujoco_cost
-        CPU time a simulated second at 60 Hz in [s].
+        CPU time per simulated second at 60 Hz in [s].
 
     """
 
@@ -90,7 +91,7 @@ class Comparison:
                 f"{self.static_sway:.4f}, error at twice the truth's step {self.step_error:.4f}",
                 f"tip error over tip motion: {self.model} {self.error:.4f}, MuJoCo at 1/60 s "
                 f"{self.error_at_60:.4f}",
-                f"CPU time a simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, "
+                f"CPU time per simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, "
                 f"MuJoCo "
                 f"{1e3 * self.mujoco_cost:.1f} ms, {self.speed_up:.0f} times as much",
             )
@@ -122,7 +123,7 @@ def compare_with_mujoco(
     damping_ratio
         In [-].
     steps
-        MuJoCo's steps a frame, for the truth.
+        MuJoCo's steps per frame, for the truth.
 
     Raises
     ------
@@ -131,7 +132,8 @@ def compare_with_mujoco(
 
     """
     wood = _without_twist(species)
-    truth_model = MujocoTree(tree, wood, damping_ratio)
+    with waiting("building MuJoCo's model"):
+        truth_model = MujocoTree(tree, wood, damping_ratio)
     first_frequency, static_sway = truth_model.agreement()
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
@@ -170,7 +172,7 @@ def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
     """Tips at each frame in [m], (t, b, 3), with so many steps a frame."""
     model.reset()
     tips = np.empty((len(wind), model.tree.n_branches, 3))
-    for frame, blowing in enumerate(wind):
+    for frame, blowing in enumerate(bar(wind, f"MuJoCo, {steps} steps per frame")):
         for _ in range(steps):
             model.step(blowing, FRAME / steps)
         tips[frame] = model.tips()
@@ -179,14 +181,14 @@ def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
 
 def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float, float]:
     """
-    MuJoCo's tips at one step a frame, and CPU time a simulated second of both, in turn by blocks of
-    frames.
+    MuJoCo's tips at one step per frame, and CPU time per simulated second of both, in turn by
+    blocks of frames.
 
     """
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     poses = np.empty((model.tree.n_segments, 7))
     spent, spent_there = np.empty((2, len(wind)))
-    for first in range(0, len(wind), _BLOCK):
+    for first in bar(range(0, len(wind), _BLOCK), "both, one step per frame"):
         block = range(first, min(first + _BLOCK, len(wind)))
         for frame in block:
             begin = time.process_time_ns()

@@ -181,7 +181,7 @@ def frame_model(
     shapes = element.element_shapes(length)
     stiffness = element.elastic_stiffness(shapes, length, diameter, modulus, shear_ratio * modulus)
     mass = element.consistent_mass(shapes, length, diameter, density)
-    axes = _element_axes(np.repeat((tree.end - tree.start) / tree.length[:, None], sub, axis=0))
+    axes = _element_axes(np.repeat(tree.direction, sub, axis=0))
     at_node = np.zeros((0, 3, 3))
     if gravity != 0.0:
         weight = self_weight(start_node, offset, axes[:, 0], length, width, step, density * gravity)

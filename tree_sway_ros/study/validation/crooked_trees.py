@@ -107,12 +107,17 @@ class _Shoot(NamedTuple):
 
 def _drawn(habit: _Habit, rng: np.random.Generator, name: str) -> Tree:
     height = rng.uniform(4.0, 8.0)
-    stem = _Shoot(np.zeros(3), np.array([0.0, 0.0, 1.0]), height, height / rng.uniform(*habit.slender), 0, -1)
-    shoots, rows, branch, parents = [stem], [], [], []
+    stem = _Shoot(
+        np.zeros(3), np.array([0.0, 0.0, 1.0]), height, height / rng.uniform(*habit.slender), 0, -1
+    )
+    shoots: list[_Shoot] = [stem]
+    rows: list[list[float]] = []
+    branch: list[int] = []
+    parents: list[int] = []
     for number, shoot in enumerate(shoots):
         nodes, widths = _axis(habit, rng, shoot)
         first = len(rows)
-        rows += [(*a, *b, *w) for a, b, w in zip(nodes, nodes[1:], zip(widths, widths[1:]))]
+        rows += np.hstack([nodes[:-1], nodes[1:], widths[:-1, None], widths[1:, None]]).tolist()
         branch += [number] * (len(nodes) - 1)
         parents += [shoot.seat, *range(first, len(rows) - 1)]
         if shoot.order < len(habit.children):
@@ -126,9 +131,7 @@ def _drawn(habit: _Habit, rng: np.random.Generator, name: str) -> Tree:
     )  # fmt: skip
 
 
-def _axis(
-    habit: _Habit, rng: np.random.Generator, shoot: _Shoot
-) -> tuple[Floats, Floats]:
+def _axis(habit: _Habit, rng: np.random.Generator, shoot: _Shoot) -> tuple[Floats, Floats]:
     """Nodes (m + 1, 3) and diameters (m + 1,) of a branch."""
     m = int(rng.integers(3, 7)) if shoot.order < 2 else int(rng.integers(2, 5))
     m += 3 * (shoot.order == 0)

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.core.wind.gate import SECOND, WindGate
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.core.wind.simulated.gust_event import GustEvent
 from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
@@ -66,7 +66,7 @@ def test_a_small_live_change_makes_a_small_change():
 def test_the_gate_takes_all_of_it():
     gate = WindGate()
     wind = read(AnemometerModel(10.0, rate=50.0, events=(GustEvent("one_minus_cos", 8, 3),)), 2000)
-    assert all(gate.offer(i / 50.0, w).accepted for i, w in enumerate(wind))
+    assert all(gate.offer(i * SECOND // 50, w).accepted for i, w in enumerate(wind))
 
 
 @pytest.mark.parametrize(

@@ -108,16 +108,6 @@ def test_merging_keeps_volume_and_reach(seed, below):
     assert tree.volume.sum() == pytest.approx((np.pi / 4 * width**2 * reach).sum(), rel=1e-9)
 
 
-def test_y_up_files_stand_upright():
-    rows = [
-        ((0, 5, 0), (0, 6, 0), 0.1, -1),
-        ((0, 6, 0), (1, 6, 0), 0.1, 0),
-        ((0, 6, 0), (0, 6, 1), 0.1, 0),
-    ]
-    tree = built(rows, [False, True, False], up="y").tree
-    np.testing.assert_allclose(tree.end, [[0, 0, 1], [1, 0, 1], [0, -1, 1]], atol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
@@ -135,9 +125,7 @@ def test_what_cannot_be(rows, message):
         built(rows)
 
 
-@pytest.mark.parametrize(
-    "options", [{"up": "x"}, {"merge_below": -1.0}, {"twig_diameter": float("nan")}]
-)
+@pytest.mark.parametrize("options", [{"merge_below": -1.0}, {"twig_diameter": float("nan")}])
 def test_options_are_checked(options):
     with pytest.raises(ParameterError, match=next(iter(options))):
         CylinderOptions(**options)

@@ -110,7 +110,7 @@ def test_matlab_without_a_model(tmp_path):
         read_tree(tmp_path / "part.mat")
     text = {**columns_of_fork(), "axis": "up"}
     savemat(tmp_path / "text.mat", {"QSM": {"cylinder": text}})
-    with pytest.raises(FormatError, match="'axis' is not numeric"):
+    with pytest.raises(FormatError, match="QSM: 'axis' is not numeric"):
         read_tree(tmp_path / "text.mat")
     (tmp_path / "cut.mat").write_bytes((tmp_path / "text.mat").read_bytes()[:300])
     with pytest.raises(FormatError, match="not a MATLAB file that can be read"):
@@ -145,3 +145,44 @@ def test_errors_name_the_line(tmp_path, name, old, new, kind, message):
     with pytest.raises(TreeSwayError, match=message) as caught:
         read_tree(tmp_path / name)
     assert isinstance(caught.value, kind)
+
+
+def cyl_data():
+    """The fork as a bare matrix of 14 columns, as TreeQSM 2.0 and older keep it."""
+    columns = columns_of_fork()
+    branch, order = [1, 2, 1, 2], [0, 1, 0, 1]
+    return np.column_stack([columns["radius"], columns["length"], columns["start"], columns["axis"],
+                            columns["parent"], columns["extension"], branch, order, [1, 1, 2, 2],
+                            np.zeros(4)])  # fmt: skip
+
+
+@pytest.mark.parametrize("stretch", [1.0, 3.0])
+def test_a_bare_matrix_of_cylinders(tmp_path, stretch):
+    matrix = cyl_data()
+    matrix[:, 5:8] *= stretch  # axes need not be of length 1
+    savemat(tmp_path / "a.mat", {"CylData": matrix, "Other": np.zeros((20, 14))})
+    assert_is_the_fork(read_tree(tmp_path / "a.mat"))
+    for separator in ("\t", " ", ",", "; "):
+        rows = [separator.join(f"{value:.9g}" for value in row) for row in matrix]
+        (tmp_path / "a.txt").write_text("\n".join(rows))
+        assert_is_the_fork(read_tree(tmp_path / "a.txt"))
+        (tmp_path / "b.txt").write_text("\n".join([separator.join("abcdefghijklmn"), *rows]))
+        assert_is_the_fork(read_tree(tmp_path / "b.txt"))
+
+
+def test_a_first_row_does_not_mislead(tmp_path):
+    text = (DATA / "fork.treeqsm23.txt").read_text().replace("0\t0\t1\t0\t3", "0\t0\t0.5\t0\t3", 1)
+    (tmp_path / "a.txt").write_text(text)
+    assert_is_the_fork(read_tree(tmp_path / "a.txt"))
+    (tmp_path / "a.txt").write_text(text.replace("0\t0\t0.5\t0\t3", "0\t0\t0\t0\t3", 1))
+    with pytest.raises(FormatError, match=r"a.txt:1: cylinder 1: an axis of no direction"):
+        read_tree(tmp_path / "a.txt")
+
+
+def test_decimal_commas_say_so(tmp_path):
+    text = (DATA / "fork.treeqsm23.txt").read_text().replace(".", ",")
+    (tmp_path / "a.txt").write_text(text)
+    with pytest.raises(FormatError, match="a decimal comma; export it with decimal points"):
+        read_tree(tmp_path / "a.txt")
+    with pytest.raises(FormatError, match=r":1: 9 good numbers of 10: '0,1', with a decimal comma"):
+        read_tree(tmp_path / "a.txt", format="treeqsm-text")

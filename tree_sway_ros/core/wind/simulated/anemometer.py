@@ -9,11 +9,8 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.wind.simulated.gust_event import GustEvent, with_events
-from tree_sway_ros.core.wind.simulated.turbulence import (
-    TURBULENCE_MODELS,
-    Turbulence,
-    along_bearing,
-)
+from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
+from tree_sway_ros.core.wind.simulated.turbulence import Turbulence, along_bearing
 from tree_sway_ros.core.wind.simulated.turbulence_stream import TurbulenceStream
 from tree_sway_ros.errors import ParameterError
 
@@ -64,11 +61,11 @@ class AnemometerModel:
     ) -> None:
         """Check the parameters."""
         within("mean_speed", mean_speed, 0.0, 40.0, "m/s")
-        if turbulence not in (*TURBULENCE_MODELS, "none"):
+        if turbulence not in (*SPECTRA, "none"):
             raise ParameterError(
                 f"unknown spectrum '{turbulence}'",
                 where="turbulence",
-                cure=f"use one of: {', '.join((*TURBULENCE_MODELS, 'none'))}",
+                cure=f"use one of: {', '.join((*SPECTRA, 'none'))}",
             )
         self._rate = within("rate", rate, 1.0, 100.0, "Hz")
         self._bearing_to = within("bearing_to", bearing_to, -1e3, 1e3, "rad")

@@ -1,5 +1,5 @@
 """
-Turbulent wind at one point: the Kaimal and von Karman spectra, and records drawn from them.
+Turbulent wind at one point: records drawn from a spectrum of `SPECTRA`.
 
 A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
 Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by line
@@ -26,87 +26,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.errors import ParameterError
 
 Floats = NDArray[np.float64]
 
-TURBULENCE_MODELS = ("kaimal", "von_karman")
-
-# IEC 61400-1: standard deviations over that of u, and Kaimal scales over Lambda1, for u, v, w.
+# IEC 61400-1: standard deviations over that of u, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
-_KAIMAL_SCALES = np.array([8.1, 2.7, 0.66])
-# Von Karman scales that share the inertial subrange of Kaimal, and so its rate of dissipation. For
-# u this is IEC's own 3.5 Lambda1; for v and w the standard's 4/3 S_u of local isotropy is kept.
-_SUBRANGE_KAIMAL = 4.0 / 6.0 ** (5 / 3)
-_SUBRANGE_VON_KARMAN = np.array([4.0 / 70.8 ** (5 / 6)] + [4.0 * 755.2 / 283.2 ** (11 / 6)] * 2)
-_VON_KARMAN_SCALES = _KAIMAL_SCALES * (_SUBRANGE_VON_KARMAN / _SUBRANGE_KAIMAL) ** 1.5
 
 SHORTEST_PERIOD = 600.0
 """Shortest period of a record in [s]: the ten minutes over which IEC defines the deviations."""
-
-
-def kaimal_spectrum(
-    frequency: ArrayLike, mean_speed: float, deviation: float, scale: float
-) -> Floats:
-    """
-    Kaimal spectrum of one component, one-sided.
-
-    Parameters
-    ----------
-    frequency
-        Frequencies in [Hz], (n,).
-    mean_speed
-        Mean wind speed in [m/s].
-    deviation
-        Standard deviation of the component in [m/s].
-    scale
-        Its integral scale in [m].
-
-    Returns
-    -------
-    Floats
-        Power spectral density in [m^2/s^2/Hz], (n,); its integral from 0 is ``deviation**2``.
-        Source: Kaimal et al. (1972) as in IEC 61400-1:2005, annex B, equation B.14.
-
-    """
-    time = scale / mean_speed
-    x = np.asarray(frequency, dtype=np.float64) * time
-    return deviation**2 * 4.0 * time / (1.0 + 6.0 * x) ** (5 / 3)
-
-
-def von_karman_spectrum(
-    frequency: ArrayLike, mean_speed: float, deviation: float, scale: float, *, across: bool = False
-) -> Floats:
-    """
-    Von Karman spectrum of one component, one-sided.
-
-    Parameters
-    ----------
-    frequency
-        Frequencies in [Hz], (n,).
-    mean_speed
-        Mean wind speed in [m/s].
-    deviation
-        Standard deviation of the component in [m/s].
-    scale
-        Its integral scale in [m].
-    across
-        False for u, true for v and w.
-
-    Returns
-    -------
-    Floats
-        Power spectral density in [m^2/s^2/Hz], (n,); its integral from 0 is ``deviation**2``
-        (to 2e-4, for the rounding of the constants). Source: von Karman (1948) as in ESDU 85020.
-
-    """
-    time = scale / mean_speed
-    x2 = (np.asarray(frequency, dtype=np.float64) * time) ** 2
-    if across:
-        shape = (1.0 + 755.2 * x2) / (1.0 + 283.2 * x2) ** (11 / 6)
-    else:
-        shape = (1.0 + 70.8 * x2) ** (-5 / 6)
-    return deviation**2 * 4.0 * time * shape
 
 
 @dataclass(frozen=True)
@@ -119,7 +48,7 @@ class Turbulence:
     mean_speed
         Mean wind speed in [m/s], above 0 and up to 40.
     model
-        Spectrum: ``kaimal`` or ``von_karman``.
+        Spectrum, one of `SPECTRA`.
     height
         Height above the ground in [m]; sets the integral scales.
     intensity
@@ -142,11 +71,11 @@ class Turbulence:
 
     def __post_init__(self) -> None:
         """Refuse what no wind can be."""
-        if self.model not in TURBULENCE_MODELS:
+        if self.model not in SPECTRA:
             raise ParameterError(
                 f"unknown spectrum '{self.model}'",
                 where="turbulence model",
-                cure=f"use one of: {', '.join(TURBULENCE_MODELS)}",
+                cure=f"use one of: {', '.join(SPECTRA)}",
             )
         within("mean_speed", self.mean_speed, 0.0, 40.0, "m/s", above=True)
         within("height", self.height, 0.0, 1000.0, "m", above=True)
@@ -169,25 +98,20 @@ class Turbulence:
     @cached_property
     def scales(self) -> Floats:
         """Integral scales of u, v, w in [m], (3,)."""
-        ratios = _KAIMAL_SCALES if self.model == "kaimal" else _VON_KARMAN_SCALES
-        return turbulence_scale(self.height) * ratios
+        return turbulence_scale(self.height) * np.array(SPECTRA[self.model].scales)
 
     def spectrum(self, frequency: ArrayLike) -> Floats:
         """
         Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3).
 
         """
-        columns = []
-        for component, (deviation, scale) in enumerate(
-            zip(self.deviations.tolist(), self.scales.tolist(), strict=True)
-        ):
-            if self.model == "kaimal":
-                column = kaimal_spectrum(frequency, self.mean_speed, deviation, scale)
-            else:
-                column = von_karman_spectrum(
-                    frequency, self.mean_speed, deviation, scale, across=component > 0
-                )
-            columns.append(column)
+        of_component = SPECTRA[self.model].of_component
+        columns = [
+            of_component(frequency, self.mean_speed, deviation, scale, across=component > 0)
+            for component, (deviation, scale) in enumerate(
+                zip(self.deviations.tolist(), self.scales.tolist(), strict=True)
+            )
+        ]
         return np.stack(columns, axis=-1)
 
     def record(self, n_samples: int, rate: float, rng: np.random.Generator) -> Floats:

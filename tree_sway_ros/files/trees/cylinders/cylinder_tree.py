@@ -15,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, ParameterError, TreeError
@@ -24,11 +23,14 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.diameter_fit import corrected_twigs, fitted_taper
 from tree_sway_ros.files.trees.cylinders.joining import (
     branch_keys,
+    checked_order,
     join_loose_branches,
-    parents_first,
 )
 from tree_sway_ros.files.trees.cylinders.merging import merge_tiny
 from tree_sway_ros.files.trees.imported_tree import TreeFile
+
+_LONGEST = {"merge_below": 10.0, "twig_diameter": 0.1, "trusted_diameter": 2.0}
+"""Largest value of each option in [m]."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,6 @@ class CylinderOptions:
         Diameter from which on a scan is trusted in [m]; only used with `twig_diameter`.
     to_origin
         Whether to move the base of the stem to the origin.
-    up
-        Axis of the file that points up, ``z`` or ``y``.
 
     """
 
@@ -62,16 +62,14 @@ class CylinderOptions:
     twig_diameter: float | None = None
     trusted_diameter: float = 0.05
     to_origin: bool = True
-    up: str = "z"
 
     def __post_init__(self) -> None:
         """Check the values."""
-        if self.up not in ("z", "y"):
-            raise ParameterError(f"up is '{self.up}'", cure="use 'z' or 'y'")
-        for name in ("merge_below", "twig_diameter", "trusted_diameter"):
+        for name in _LONGEST:
             value = getattr(self, name)
-            if value is not None and not 0.0 <= value < 10.0:
-                raise ParameterError(f"{name} is {value:g} m", cure="give 0 to 10 m")
+            if value is not None and not 0.0 <= value <= _LONGEST[name]:
+                cure = f"give 0 to {_LONGEST[name]:g} m, 0.003 for 3 mm"
+                raise ParameterError(f"{name} is {value:g} m", cure=cure)
 
 
 def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions) -> TreeFile:
@@ -87,15 +85,13 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
     source, notes = str(path), list(cylinders.notes)
     species = species_named(options.species)
     _check(cylinders, source)
-    start, end = _upright(cylinders.start, options.up), _upright(cylinders.end, options.up)
-    cylinders = replace(cylinders, start=start, end=end)
     if (loose := join_loose_branches(cylinders)) is not None:
         cylinders = replace(cylinders, parent=loose.parent)
         notes.append(
             f"{loose.count} branches had no parent and were set on the nearest cylinder, "
             f"at most {loose.distance:.3g} m away"
         )
-    order = parents_first(cylinders.parent, cylinders.labels)
+    order = checked_order(cylinders.parent, cylinders.labels)
     merged = merge_tiny(cylinders, order, options.merge_below)
     cylinders = merged.cylinders
     if merged.count:
@@ -127,10 +123,6 @@ def _check(cylinders: Cylinders, source: str) -> None:
             where=cylinders.labels[index],
             cure="check that the columns are what they should be, in metres",
         )
-
-
-def _upright(points: Floats, up: str) -> Floats:
-    return points if up == "z" else np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
 
 
 def _table(cylinders: Cylinders) -> SegmentTable:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import TreeError
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
@@ -36,7 +37,7 @@ class JoinedBranches:
     distance: float
 
 
-def parents_first(parent: Ints, labels: list[str]) -> list[int]:
+def checked_order(parent: Ints, labels: list[str]) -> list[int]:
     """
     Order in which parents come before what they carry.
 
@@ -51,12 +52,7 @@ def parents_first(parent: Ints, labels: list[str]) -> list[int]:
         raise TreeError(
             "orphan: its parent does not exist", where=labels[index], cure="name a cylinder"
         )
-    children: list[list[int]] = [[] for _ in range(n)]
-    order: list[int] = []
-    for index, above in enumerate(parent.tolist()):
-        (children[above] if above >= 0 else order).append(index)
-    for index in order:
-        order.extend(children[index])
+    order = parents_first(parent.tolist())
     if len(order) < n:
         lost = int(np.setdiff1d(np.arange(n), order)[0])
         raise TreeError(
@@ -74,12 +70,12 @@ def join_loose_branches(cylinders: Cylinders) -> JoinedBranches | None:
     Raises
     ------
     TreeError
-        As `parents_first`; also if a loose part is so large that it is a tree of its own.
+        As `checked_order`; also if a loose part is so large that it is a tree of its own.
 
     """
     parent = cylinders.parent
     roots = np.flatnonzero(parent == -1)
-    order = parents_first(parent, cylinders.labels)
+    order = checked_order(parent, cylinders.labels)
     if len(roots) <= 1:
         return None
     root_of = np.empty(len(parent), dtype=np.int64)
@@ -138,7 +134,7 @@ def branch_keys(cylinders: Cylinders) -> Ints | None:
         return None
     heir = heirs(cylinders)
     keys = np.arange(len(heir), dtype=np.int64)
-    for index in parents_first(cylinders.parent, cylinders.labels):
+    for index in checked_order(cylinders.parent, cylinders.labels):
         above = cylinders.parent[index]
         if above >= 0 and heir[above] == index:
             keys[index] = keys[above]

@@ -11,72 +11,80 @@ any other starts one, on its parent's axis or skin and not at its end. Sources: 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
+USED_COLUMNS = 10
+"""Columns from the left that are used: radius, length, start (3), axis (3), parent, extension."""
+_LEAST_COLUMNS = 13
+"""Fewer columns do not tell a matrix of cylinders from other tables."""
+_LARGEST_NUMBER = 2**53
 
-def treeqsm_cylinders(
-    radius: ArrayLike,
-    length: ArrayLike,
-    start: ArrayLike,
-    axis: ArrayLike,
-    parent: ArrayLike,
-    extension: ArrayLike,
-    labels: list[str],
-    source: str,
-) -> Cylinders:
+
+def looks_like_cylinders(table: NDArray[np.generic]) -> bool:
+    """
+    Whether a matrix is a table of cylinders, judged by all its rows: seven of ten must fit.
+
+    A fitting row has a positive radius, a length, an axis of some direction and whole numbers from
+    -1 for its parent and extension. Axes need not be of length 1.
+
+    """
+    if len(table) == 0 or not _LEAST_COLUMNS <= table.shape[1] <= 2 * _LEAST_COLUMNS:
+        return False
+    used = table[:, :USED_COLUMNS].astype(np.float64)
+    numbers = used[:, 8:]
+    fits = np.isfinite(used).all(axis=1) & (used[:, 0] > 0.0) & (used[:, 1] >= 0.0)
+    fits &= (used[:, 5:8] != 0.0).any(axis=1) & (np.abs(used[:, 5:8]) <= 100.0).all(axis=1)
+    fits &= (numbers == np.round(numbers)).all(axis=1) & (numbers >= -1.0).all(axis=1)
+    return bool(np.mean(fits) >= 0.7) and bool((numbers > 0.0).any() or len(table) == 1)
+
+
+def treeqsm_cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     """
     Cylinders from the columns of TreeQSM.
 
     Parameters
     ----------
-    radius, length
-        In [m], (n,).
-    start, axis
-        Start in [m] and direction of the axis, (n, 3).
-    parent, extension
-        Numbers of other cylinders, (n,).
+    table
+        Radius and length in [m], start in [m], direction of the axis, and numbers of parent and
+        extension, (n, 10).
     labels
-        What an error calls each.
+        What an error calls each row.
     source
         The file.
 
     Raises
     ------
     FormatError
-        Columns that do not match, numbers that are not whole, or no root.
+        Numbers that are not whole, an axis of no direction, or no root.
 
     """
-    width = 2.0 * np.asarray(radius, dtype=np.float64).ravel()
-    reach = np.asarray(length, dtype=np.float64).ravel()
-    starts, axes = np.asarray(start, dtype=np.float64), np.asarray(axis, dtype=np.float64)
-    n = len(width)
-    numbers = [np.asarray(column, dtype=np.float64).ravel() for column in (parent, extension)]
+    n = len(table)
     if n == 0:
         raise FormatError("no cylinders", where=source)
-    if starts.shape != (n, 3) or axes.shape != (n, 3) or {len(x) for x in (reach, *numbers)} != {n}:
-        raise FormatError("columns of different lengths", where=source, cure="export it anew")
-    for column in numbers:
-        for index in np.flatnonzero((column != np.round(column)) | (np.abs(column) > 2**53))[:1]:
-            raise FormatError(
-                f"parent or extension is {column[index]:g}, not a whole number", where=labels[index]
-            )
-    if not np.isfinite(np.concatenate(numbers)).all():
-        raise FormatError("a parent or extension that is not a number", where=source)
-    first = 1 + int(numbers[0].min())
+    reach, starts, axes, numbers = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
+    is_whole = (numbers == np.round(numbers)) & (np.abs(numbers) <= _LARGEST_NUMBER)
+    for row, column in np.argwhere(~is_whole)[:1]:
+        raise FormatError(
+            f"parent or extension is {numbers[row, column]:g}, not a whole number",
+            where=labels[row],
+        )
+    first = 1 + int(numbers[:, 0].min())
     if first not in (0, 1):
         raise FormatError(
             f"the least parent is {first - 1}", where=source, cure="the root has parent 0, or -1"
         )
-    above, after = (column.astype(np.int64) - first for column in numbers)
+    above, after = numbers.T.astype(np.int64) - first
     norm = np.linalg.norm(axes, axis=1)
-    for index in np.flatnonzero((norm == 0.0) & (reach > 0.0))[:1]:
-        raise FormatError("an axis of no direction", where=labels[index])
+    for row in np.flatnonzero((norm == 0.0) & (reach > 0.0))[:1]:
+        raise FormatError("an axis of no direction", where=labels[row])
     ends = starts + (reach / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
     valid = (after >= 0) & (after < n)
     continues = np.zeros(n, dtype=np.bool_)
     child = after[valid]
     continues[child[above[child] == np.flatnonzero(valid)]] = True
+    width = 2.0 * table[:, 0]
     return Cylinders(starts, ends, np.stack([width, width], axis=1), above, continues, labels)

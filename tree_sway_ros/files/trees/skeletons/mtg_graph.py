@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from tree_sway_ros.errors import FormatError, TreeError
 from tree_sway_ros.files.text_file import finite
 
-_CODE = re.compile(r"([/<+])([A-Za-z]\w*?)(\d*)(?=[/<+]|$)")
+_CODE = re.compile(r"([/<+])([A-Za-z]\w*)(?=[/<+]|$)", re.ASCII)
 
 
 @dataclass(slots=True)
@@ -119,11 +119,12 @@ def _add(
         raise FormatError(
             f"'{code[:20]}' is not a code", where=where, cure="such as /P1, <S2 or +A1"
         )
-    for edge, symbol, number in (part.groups() for part in parts):
+    for edge, name in (part.groups() for part in parts):
+        symbol = name.rstrip("0123456789")
         if symbol not in scales:
             raise FormatError(f"no class '{symbol}'", where=where, cure="list it under CLASSES")
         scale, above = scales[symbol], vertices[reference].scale if reference >= 0 else 0
-        label = f"{where}: {symbol}{number}"
+        label = f"{where}: {name}"
         if edge == "/":
             if scale != above + 1:
                 raise TreeError(f"scale {scale} in scale {above}", where=label)

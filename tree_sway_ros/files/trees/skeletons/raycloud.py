@@ -59,12 +59,14 @@ def read_treefile(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
     number, header = lines[0]
     of_tree, found, fields = header.partition("x,y,z,radius")
     columns = [name.strip() for name in (found + fields).split(",") if name.strip()]
-    if "parent_id" not in columns:
-        raise FormatError(
-            "no field parent_id: trunks without branches",
-            where=f"{source}:{number}",
-            cure="extract the trees with rayextract trees",
-        )
+    for name in _FIELDS:
+        if name not in columns:
+            trunks = ": trunks without branches" if name == "parent_id" else ""
+            raise FormatError(
+                f"no field {name}{trunks}",
+                where=f"{source}:{number}",
+                cure="extract the trees with rayextract trees",
+            )
     n_of_tree = sum(bool(name.strip()) for name in of_tree.split(","))
     trees = []
     for index, (number, line) in enumerate(lines[1:], start=1):

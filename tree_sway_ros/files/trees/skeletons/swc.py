@@ -16,7 +16,7 @@ from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.table_file import row_numbers, whole
 from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.cylinders.joining import parents_first
+from tree_sway_ros.files.trees.cylinders.joining import checked_order
 from tree_sway_ros.files.trees.cylinders.numbering import positions_of_parents
 from tree_sway_ros.files.trees.skeletons.node_skeleton import Skeleton
 
@@ -70,7 +70,7 @@ def read_swc(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
     point, width = unit * np.array(rows)[:, 2:5], 2.0 * unit * np.array(rows)[:, 5]
     trees: dict[int, Skeleton] = {}
     place = np.zeros((len(rows), 2), dtype=np.int64)
-    for index in parents_first(parent, labels):
+    for index in checked_order(parent, labels):
         root, above = (index, -1) if parent[index] < 0 else place[parent[index]].tolist()
         tree = trees.setdefault(root, Skeleton())
         place[index] = root, len(tree.point)

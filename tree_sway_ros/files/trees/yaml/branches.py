@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import FormatError, TreeError
 from tree_sway_ros.files.trees.assembly import SegmentTable
 
@@ -57,7 +58,7 @@ def branch_segments(
     parents = _parents(branches, index, where)
     table = SegmentTable(branch_names=[branch["name"] for branch in branches])
     placed: dict[int, _Placed] = {}
-    for number in _parents_first(parents, branches, where):
+    for number in _checked_order(parents, where):
         branch, its_parent = branches[number], placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
         sits_on, origin = -1, np.zeros(3)
@@ -111,13 +112,8 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
     return parents
 
 
-def _parents_first(parents: list[int], branches: list[Values], where: list[str]) -> list[int]:
-    children: dict[int, list[int]] = {}
-    for number, its_parent in enumerate(parents):
-        children.setdefault(its_parent, []).append(number)
-    order = list(children.get(-1, ()))
-    for number in order:
-        order.extend(children.get(number, ()))
+def _checked_order(parents: list[int], where: list[str]) -> list[int]:
+    order = parents_first(parents)
     if len(order) < len(parents):
         lost = min(set(range(len(parents))) - set(order))
         raise TreeError(

@@ -19,7 +19,8 @@ from tree_sway_ros.core.leaves.foliage import (
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.plausibility import doubts
+from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
@@ -61,6 +62,22 @@ class ForestFile:
 
         """
         return joined([each.placed() for each in self.trees], self.name)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about each tree, as `TreeFile.warnings`."""
+        return tuple(
+            f"{each.name}: {doubt}"
+            for each in self.trees
+            for doubt in doubts(each.tree, each.species or species_named(each.tree.species))
+        )
+
+    def checked(self) -> ForestFile:
+        """Return the same forest if every tree's numbers can be those of one."""
+        for each in self.trees:
+            species = each.species or species_named(each.tree.species)
+            TreeFile(each.tree, species, f"{self.source}: {each.name}").checked()
+        return self
 
     def of_species(self, species: Species) -> ForestFile:
         """Return the same forest, all of one wood."""

@@ -23,7 +23,7 @@ from typing import Any
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import FormatError, TreeSwayError
-from tree_sway_ros.files.text_file import read_head, read_text
+from tree_sway_ros.files.text_file import path_of, read_head, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
@@ -65,12 +65,12 @@ def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) ->
 
     @cache
     def opened(name: str, seed: int) -> TreeFile:
-        beside = path.parent / Path(name).expanduser()
+        beside = path.parent / path_of(name)
         return open_tree(beside if beside.is_file() else name, seed)
 
     @cache
     def opened_species(name: str) -> Species:
-        beside = path.parent / Path(name).expanduser()
+        beside = path.parent / path_of(name)
         return open_species(beside if beside.is_file() else name)
 
     return parse_forest(

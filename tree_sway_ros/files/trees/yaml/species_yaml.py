@@ -18,7 +18,7 @@ from typing import Any
 
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import SpeciesError
-from tree_sway_ros.files.text_file import read_text
+from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.yaml.tree_yaml import species_of
 from tree_sway_ros.files.yaml_nodes import parse_yaml
 from tree_sway_ros.files.yaml_schema import Schema, SchemaCheck, tree_schema
@@ -44,7 +44,7 @@ def open_species(key_or_path: str | Path) -> Species:
 
     """
     text = str(key_or_path)
-    path = Path(text).expanduser()
+    path = path_of(text)
     if text in species_keys() or path.suffix.lower() not in _SUFFIXES:
         return species_named(text)
     if not path.exists():

@@ -22,7 +22,7 @@ def _mpmath() -> Any:
         import mpmath  # type: ignore[import-untyped]
     except ImportError as error:
         raise MissingDependencyError(
-            "mpmath is not installed", where="battery T16", cure="pip install tree_sway_ros[test]"
+            "mpmath is not installed", where="battery T16", cure="pip install mpmath"
         ) from error
     return mpmath
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.core.wind.gate import SECOND, WindGate
 from tree_sway_ros.study.battery.branch_runs import Branch
 from tree_sway_ros.study.battery.row import Row, holds
 
@@ -62,7 +62,7 @@ def _gated(bad: float | None, kind: type) -> NDArray[np.float64]:
         wind = np.array([5 + np.sin(1.5 * t), 2 * np.sin(1.1 * t), 0.3 * np.cos(2 * t)])
         if n == AT and bad is not None:
             wind[0] = bad
-        if gate.offer(t + 1.0, wind).accepted:
+        if gate.offer(round((t + 1.0) * SECOND), wind).accepted:
             held = wind
         loads[n] = 0.004 * np.linalg.norm(held) * held[[2, 0, 1]]
     return branch.run(loads, dtype=kind)

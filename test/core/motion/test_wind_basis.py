@@ -1,0 +1,173 @@
+"""The model `wind_basis`: a tree out of its table, against the same modes on all branches."""
+
+from __future__ import annotations
+
+import time
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.growth.builtin import builtin_tree
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.wind_basis import step_instance
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.errors import ParameterError
+
+DT = 1.0 / 60.0
+
+
+def crooked(seed, n_branches=40, cuts=6):
+    """A random crooked tree, its branches 25 to 45 times as long as thick."""
+    rng = np.random.default_rng(seed)
+    start, end, thick, parent, number, branches = [], [], [], [], [], []
+
+    def add(on, root, along, length, base, tip):
+        nodes, along = [root], along / np.linalg.norm(along)
+        for _ in range(cuts):
+            along = along + rng.normal(0.0, 0.18, 3)
+            along /= np.linalg.norm(along)
+            nodes.append(nodes[-1] + along * length / cuts)
+        width, first = np.linspace(base, tip, cuts + 1), len(start)
+        start.extend(nodes[:-1]), end.extend(nodes[1:])
+        thick.extend(pairwise(width))
+        parent.extend([on, *range(first, first + cuts - 1)])
+        number.extend([len(branches)] * cuts)
+        branches.append((first, nodes, length, width, along))
+
+    add(-1, np.zeros(3), np.array([*rng.normal(0.0, 0.1, 2), 1.0]), 6.0, 0.13, 0.04)
+    while len(branches) < n_branches:
+        lengths = np.array([each[2] for each in branches])
+        first, nodes, below, width, along = branches[
+            rng.choice(len(branches), p=lengths / lengths.sum())
+        ]
+        node, length = int(rng.integers(2, cuts + 1)), below * rng.uniform(0.3, 0.6)
+        base = min(width[node] * rng.uniform(0.6, 0.9), length / rng.uniform(25.0, 45.0))
+        if length >= 0.15 and base >= 0.004:
+            ahead = 0.6 * along + rng.normal(0.0, 1.0, 3) + [0.0, 0.0, 0.3]
+            add(first + node - 1, nodes[node], ahead, length, base, base * rng.uniform(0.3, 0.6))
+    return tree_from_segments(start, end, thick, parent=np.array(parent), branch=np.array(number))
+
+
+def gusty(speed, seconds=20.0, seed=5):
+    """Turbulence, a gust of 1.6 times, a slow turn and a sudden one by 90 degrees."""
+    n = round(seconds / DT)
+    wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=np.random.default_rng(seed))
+    at = np.arange(n) * DT
+    wind *= (1.0 + 0.6 * np.exp(-0.5 * ((at - 10.0) / 0.4) ** 2))[:, None]
+    turn = 0.65 + 0.03 * at + np.where(at > 14.0, 0.5 * np.pi, 0.0)
+    x, y, z = wind.T
+    cosine, sine = np.cos(turn), np.sin(turn)
+    return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=1)
+
+
+def against_modes(tree, winds):
+    """Error over motion of all segments, root mean squares; and the simulator on the table."""
+    one, other = (SwaySimulator(tree, model=model) for model in ("wind_basis", "modes"))
+    placed, gaps = [], []
+    for number, wind in enumerate(winds):
+        one.step(wind, DT), other.step(wind, DT)
+        if number >= 60 and number % 6 == 0:
+            placed.append(other.place()[:, :3].copy())
+            gaps.append(one.place()[:, :3] - placed[-1])
+    motion = np.array(placed) - np.mean(placed, axis=0)
+    share = np.sqrt(np.square(gaps).sum(axis=2).mean() / np.square(motion).sum(axis=2).mean())
+    return share, one
+
+
+TREES = {
+    "benjamina": lambda: builtin_tree("benjamina"),
+    "goldcrest": lambda: builtin_tree("goldcrest"),
+    "crooked 1": lambda: crooked(1),
+    "crooked 2": lambda: crooked(2),
+}
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_it_errs_by_no_more_than_three_percent_of_the_motion(name):
+    tree = TREES[name]()
+    for speed in (5.0, 12.0):
+        share, sim = against_modes(tree, gusty(speed))
+        assert share <= 0.03
+        assert sim.bank.oscillators.n_outside == 0
+
+
+def test_a_steep_wind_is_outside_of_the_table_and_stepped_by_branches(fork):
+    one, other = (SwaySimulator(fork(), model=m, n_modes=4) for m in ("wind_basis", "modes"))
+    for _ in range(200):
+        one.step((0.5, 0.2, 3.0), DT), other.step((0.5, 0.2, 3.0), DT)
+    assert one.bank.oscillators.n_outside == 200
+    rest = one.place_rotations(np.zeros_like(one.rotations()))[:, :3]
+    moved = np.linalg.norm(other.place()[:, :3] - rest, axis=1).max()
+    assert np.linalg.norm(one.place()[:, :3] - other.place()[:, :3], axis=1).max() <= 0.02 * moved
+    one.step((3.0, 0.0, 0.0), DT)
+    assert one.bank.oscillators.n_outside == 200
+
+
+def test_a_storm_beyond_the_table_is_stepped_by_branches_and_stays_bounded(fork):
+    sim = SwaySimulator(fork(), model="wind_basis")
+    for wind in gusty(40.0):
+        sim.step(wind, DT)
+    assert sim.bank.oscillators.n_outside > 0
+    assert np.isfinite(sim.place()).all()
+    for _ in range(3000):
+        sim.step((0.0, 0.0, 0.0), DT)
+    assert np.abs(sim.rotations()).max() < 0.01
+
+
+def test_the_base_moment_is_that_of_the_modes():
+    one, other = (SwaySimulator(crooked(1), model=m) for m in ("wind_basis", "modes"))
+    for wind in gusty(6.0, seconds=3.0):
+        one.step(wind, DT), other.step(wind, DT)
+    before = one.place()
+    assert one.base_moment == pytest.approx(
+        other.base_moment, abs=0.03 * np.abs(other.base_moment).max()
+    )
+    assert (one.place() == before).all()
+
+
+def test_a_tree_too_soft_for_the_table_is_told():
+    steps = np.linspace(0.0, 3.0, 9)[:, None] * [0.0, 0.0, 1.0]
+    soft = tree_from_segments(
+        steps[:-1], steps[1:], np.full((8, 2), 0.012), parent=np.arange(-1, 7)
+    )
+    stiff = tree_from_segments(
+        steps[:-1], steps[1:], np.full((8, 2), 0.06), parent=np.arange(-1, 7)
+    )
+    tables = [
+        SwaySimulator(tree, model="wind_basis").bank.oscillators.table for tree in (soft, stiff)
+    ]
+    assert tables[1].error < 0.02
+    assert tables[0].record["most_pressure"][0] < tables[1].record["most_pressure"][0]
+
+
+@pytest.mark.parametrize("degree", [0, 2, 4, 7])
+def test_a_degree_that_is_none_is_refused(fork, degree):
+    with pytest.raises(ParameterError, match=f"degree {degree}"):
+        SwaySimulator(fork(), model="wind_basis", degree=degree)
+
+
+@fused
+def _many(tables, instances, winds):
+    for k in range(len(winds)):
+        step_instance(tables[0], instances[0], winds[k, 0], winds[k, 1], winds[k, 2], 0.7)
+
+
+def test_a_step_costs_the_same_whatever_the_size():
+    winds = np.vstack([gusty(6.0)] * 4)
+    banks = []
+    for tree in (crooked(1, n_branches=20), builtin_tree("broadleaf")):
+        sim = SwaySimulator(tree, model="wind_basis")
+        sim.step((1.0, 0.0, 0.0), DT)
+        bank = sim.bank.oscillators
+        banks.append((bank.record, bank.instance))
+        _many(*banks[-1], winds[:5])
+    times = np.full(2, np.inf)
+    for _ in range(20):
+        for row, (record, instance) in enumerate(banks):
+            begun = time.perf_counter()
+            _many(record, instance, winds)
+            times[row] = min(times[row], time.perf_counter() - begun)
+    assert times.max() <= 1.2 * times.min()

@@ -1,0 +1,138 @@
+"""What every simulator refuses before a kernel runs, and what it goes on from."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway_ros.core.scene.forest import Forest
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.simulator.segments import SegmentsSimulator
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.simulator.simulator import RESTARTED, SwaySimulator
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.errors import ParameterError
+
+DT = 1.0 / 60.0
+KINDS = (*MODELS, "segments", "auto", "forest")
+
+
+def simulator(tree, kind, **changes):
+    wood = species_named("broadleaf")
+    if kind == "segments":
+        return SegmentsSimulator(tree, wood, Settings(**changes))
+    if kind == "auto":
+        return AdaptiveSimulator(tree, wood, Settings(**changes))
+    if kind == "forest":
+        return Forest([PlacedTree("one", tree), PlacedTree("two", tree, 3.0)])
+    return SwaySimulator(tree, wood, Settings(model=kind, n_modes=4, **changes))
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def sim(fork, request):
+    return simulator(fork(), request.param)
+
+
+def bad_blocks(n):
+    whole = np.zeros((n, 7))
+    return {
+        "short": np.zeros((n - 1, 7)),
+        "narrow": np.zeros((n, 6)),
+        "turned": np.zeros((7, n)),
+        "flat": np.zeros(7 * n),
+        "single": np.zeros((n, 7), np.float32),
+        "whole numbers": np.zeros((n, 7), np.int64),
+        "swapped": np.zeros((n, 7), ">f8"),
+        "by columns": np.zeros((n, 7), order="F"),
+        "every second": np.zeros((2 * n, 7))[::2],
+        "read only": np.broadcast_to(0.0, (n, 7)),
+        "crooked": np.zeros(n * 56 + 4, np.uint8)[4:].view(np.float64).reshape(n, 7),
+        "list": whole.tolist(),
+    }
+
+
+@pytest.mark.parametrize("bad", bad_blocks(2))
+def test_an_array_that_cannot_hold_the_poses_is_refused(sim, bad):
+    sim.step((5.0, 0.0, 0.0), DT)
+    block = bad_blocks(sim.tree.n_segments)[bad]
+    with pytest.raises(ParameterError, match=r"out: .*cannot be filled; give np.empty"):
+        sim.place(block)
+    if hasattr(sim, "place_rotations"):
+        with pytest.raises(ParameterError, match="out: "):
+            sim.place_rotations(sim.rotations(), block)
+
+
+def test_placed_frames_are_kept(sim):
+    sim.step((5.0, 0.0, 0.0), DT)
+    first = sim.place()
+    kept = first.copy()
+    for _ in range(30):
+        sim.step((9.0, 2.0, 0.0), DT)
+    assert sim.place() is not first
+    assert (first == kept).all()
+
+
+def test_the_tip_is_told_without_placing(sim):
+    for _ in range(20):
+        sim.step((9.0, 2.0, 0.0), DT)
+    told = np.array(sim.tip_displacement)
+    sim.place()
+    assert (told == sim.tip_displacement).all()
+    assert (np.abs(told).max() > 1e-6) == (sim.model != "frozen")
+
+
+@pytest.mark.parametrize("dt", [0.0, -DT, np.nan, np.inf])
+def test_a_step_of_no_time_is_refused_at_once_and_later(fork, sim, dt):
+    for one in (sim, simulator(fork(), "subtree")):
+        with pytest.raises(ParameterError, match=r"step"):
+            one.step((1.0, 0.0, 0.0), dt)
+
+
+@pytest.mark.parametrize("name", ["leaf_mass", "leaf_area"])
+@pytest.mark.parametrize("kind", ["subtree", "modes", "segments"])
+def test_leaves_are_one_number_per_branch(fork, kind, name):
+    n = fork().n_branches
+    for bad in (np.zeros(n - 1), np.zeros((n, 1)), [-1.0] * n, [np.nan] * n, ["x"] * n):
+        with pytest.raises(ParameterError, match=r"lea(f|ves)"):
+            simulator(fork(), kind, **{name: bad})
+    simulator(fork(), kind, **{name: [0.1] * n})
+
+
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+def test_motion_that_is_not_finite_goes_on_from_rest(fork, model):
+    sim = simulator(fork(), model)
+    sim.step((5.0, 0.0, 0.0), DT)
+    for array in sim.memory()[1:]:
+        array.flat[0] = np.nan
+    assert sim.step((5.0, 0.0, 0.0), DT) & RESTARTED
+    assert sim.counts.restarted == 1
+    assert np.isfinite(sim.place()).all()
+    for _ in range(60):
+        assert sim.step((5.0, 0.0, 0.0), DT) == 0
+    assert sim.tip_displacement[0] > 0.0
+
+
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled", "segments"])
+def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
+    """Half a millimetre across and a kilometre long, with its weight left out."""
+    nodes = np.array([(0, 0, 0), (0, 0, 2), (0, 0, 4), (1e3, 0, 4)], float)
+    tree = tree_from_segments(
+        nodes[:-1], nodes[1:], np.array([0.1, 0.08, 5e-4]), parent=np.array([-1, 0, 1])
+    )
+    sim = simulator(tree, model, gravity=0.0)
+    for k in range(120):
+        sim.step((8.0, np.sin(k), 0.0), DT)
+        assert np.isfinite(sim.place()).all()
+
+
+def test_every_segment_stands_gusts_of_a_hurricane(fork):
+    """Explicit drag on its twigs blew up from 28 m/s on; it is taken in finer steps there."""
+    sim = simulator(fork(), "segments")
+    rng = np.random.default_rng(0)
+    for k in range(240):
+        speed = 44.0 + 16.0 * np.sin(0.5 * k)
+        sim.step((speed, 10.0 * rng.standard_normal(), 0.0), DT)
+        assert np.isfinite(sim.place()).all()
+    assert sim.counts.restarted == 0

@@ -1,0 +1,60 @@
+"""The same poses bit for bit in every process: compiling or not, on one thread or on two."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from tree_sway_ros.core.kernel import WHY_PLAIN
+from tree_sway_ros.core.reduction.one_thread import _switches, one_thread
+
+#: Prints a digest of the poses of each model; the tree has enough branches for threads to matter.
+PROGRAM = """
+import hashlib
+import numpy as np
+from tree_sway_ros.core.growth.builtin import builtin_tree
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+tree = builtin_tree("benjamina")
+for model in ("subtree", "modes", "coupled"):
+    sim, digest = SwaySimulator(tree, model=model), hashlib.blake2b(digest_size=8)
+    for wind in np.random.default_rng(1).normal(4.0, 2.0, (100, 3)):
+        sim.step(wind, 1.0 / 60.0)
+        digest.update(sim.place().tobytes())
+    print(model, digest.hexdigest())
+"""
+
+
+def digests(threads, cache):
+    environment = {
+        **os.environ,
+        **{"OPENBLAS_NUM_THREADS": str(threads), "TREE_SWAY_CACHE": str(cache)},
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env=environment, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return done.stdout
+
+
+def test_two_processes_give_the_same_bits_on_any_number_of_threads(tmp_path):
+    """The first process compiles (where there is a compiler), the second finds it done."""
+    first = digests(2, tmp_path)
+    assert first.count("\n") == 3
+    assert digests(1, tmp_path) == first
+    if not WHY_PLAIN:
+        assert list(tmp_path.glob("*.kernel"))
+
+
+def test_what_is_within_runs_on_one_thread_and_the_number_comes_back():
+    if not _switches():
+        pytest.skip("numpy and scipy are linked with another BLAS")
+    before = [get() for _, get in _switches()]
+    with one_thread():
+        assert [get() for _, get in _switches()] == [1] * len(before)
+    assert [get() for _, get in _switches()] == before
+    with pytest.raises(ZeroDivisionError), one_thread():
+        raise ZeroDivisionError
+    assert [get() for _, get in _switches()] == before

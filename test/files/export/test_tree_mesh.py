@@ -1,0 +1,70 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tree_sway_ros.core.growth.builtin import builtin_tree
+from tree_sway_ros.core.leaves.foliage import leaf_clusters
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.files.export.tree_mesh import SIDES, leaf_mesh, rest_poses, wood_mesh
+from tree_sway_ros.files.trees.tree_file import read_tree
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+@pytest.fixture
+def tree():
+    return read_tree(DATA / "fork.archi.csv").tree
+
+
+@pytest.mark.parametrize("name", ["benjamina", "goldcrest"])
+def test_rest_poses_are_the_solvers(name):
+    """Not only the direction of each segment: its roll too, or a driven mesh is twisted."""
+    tree = builtin_tree(name, 0)
+    simulator = make_simulator(tree, species_named(tree.species), fidelity="modes")
+    np.testing.assert_allclose(rest_poses(tree), simulator.place(), atol=1e-12)
+
+
+def test_upright_and_slanted_segments_alike():
+    ends = [[0, 0, 1], [0, 0, -1], [-1, 0, 0], [1, 0, 0], [0, 1, 0]]
+    tree = tree_from_segments([[0, 0, 0]] * 5, ends, [0.1] * 5, parent=[-1, 0, 0, 0, 0])
+    poses = rest_poses(tree)
+    tips = Rotation.from_quat(poses[:, 3:]).apply([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(tips, tree.end - tree.start, atol=1e-12)
+
+
+def test_cones_are_closed_and_face_outward(tree):
+    mesh = wood_mesh(tree)
+    places = np.unique(np.round(mesh.placed(rest_poses(tree)), 9), axis=0, return_inverse=True)[1]
+    triangles = places.ravel()[mesh.triangles]
+    edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    assert {tuple(edge) for edge in edges} == {tuple(edge[::-1]) for edge in edges}
+    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
+    polygon = SIDES / (2.0 * np.pi) * np.sin(2.0 * np.pi / SIDES)
+    assert volume == pytest.approx(polygon * tree.volume.sum(), rel=1e-12)
+
+
+def test_normals_are_across_the_surface(tree):
+    mesh = wood_mesh(tree)
+    np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-12)
+    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    agreement = np.einsum("ij,ikj->ik", across, mesh.normals[mesh.triangles])
+    assert agreement.min() > np.cos(np.pi / SIDES) - 1e-6
+
+
+def test_leaves_lie_as_their_clusters(tree):
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=20)
+    mesh = leaf_mesh(leaves)
+    assert len(mesh.points) == 4 * len(leaves.size)
+    assert (mesh.segment[::4] == leaves.segment).all()
+    long = np.linalg.norm(mesh.points[2::4] - mesh.points[::4], axis=1)
+    np.testing.assert_allclose(long, leaves.size, rtol=1e-12)
+    np.testing.assert_allclose(
+        (mesh.points[::4] + mesh.points[2::4]) / 2, leaves.offset, atol=1e-12
+    )

@@ -1,0 +1,207 @@
+"""The page in a real browser: what is drawn, what hands do, what it says when the line is cut."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+from collections.abc import Callable, Coroutine, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+Image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
+
+from tree_sway_ros.core.simulator.settings import Settings  # noqa: E402
+from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
+from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
+from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway_ros.page.session import Choices, Session  # noqa: E402
+from tree_sway_ros.page.wind_source import SimulatedWind  # noqa: E402
+
+Browser = Any
+Script = Callable[[Browser], Coroutine[Any, Any, None]]
+Visit = Callable[..., None]
+
+
+class Live:
+    """A tree in wind and the server of its page, which can be killed and started again."""
+
+    def __init__(self) -> None:
+        source = open_tree("goldcrest")
+        simulator = source.simulator(Settings(), fidelity="modes")
+        leaves = source.leaves(None, 400)
+        self.wind = SimulatedWind(9.0)
+        self.session = Session(lambda _: (simulator, leaves), Choices("goldcrest"), self.wind)
+        controls = (
+            Control("mean_speed", "Wind", 9.0, "Mean", "m/s", 0.0, 40.0),
+            Control("pause", "Pause", False),
+            Control("reset", "Reset", None, is_action=True),
+        )
+        self.panel = ControlPanel(controls, self.session.apply)
+        self.port = 0
+        self.start()
+
+    def start(self) -> None:
+        self.server = PageServer(PageSettings(port=self.port), self.panel, self.session.status)
+        self.server.start()
+        self.port = self.server.port
+        self.session.serve(self.server)
+
+
+@pytest.fixture(scope="module")
+def live() -> Iterator[Live]:
+    """One for all tests, as finding the basis takes a while."""
+    made = Live()
+    yield made
+    made.session.stop()
+    made.server.close()
+
+
+@pytest.fixture
+def visit(live: Live, browser_class: Any) -> Visit:
+    """Open the page, wait until it is live, run a script, and see that nothing went wrong."""
+
+    def visited(script: Script, **size: Any) -> None:
+        async def whole() -> None:
+            async with browser_class() as browser:
+                await browser.open(live.server.url, **size)
+                await browser.until("window.treeSway && treeSway.state === 'live'")
+                await browser.until("treeSway.fps > 0")
+                await script(browser)
+                assert browser.console == []
+                others = [url for url in browser.requests if not url.startswith(live.server.url)]
+                assert [url for url in others if not url.startswith("data:")] == []
+
+        asyncio.run(whole())
+
+    return visited
+
+
+def picture(data: bytes) -> Any:
+    """A screenshot as (h, w, 3)."""
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=np.int16)
+
+
+def test_the_tree_is_drawn_where_it_projects(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        await browser.run("document.getElementById('leaves').click()")
+        await browser.run("document.getElementById('control-pause').click()")
+        await browser.until("treeSway.state === 'paused'")
+        await asyncio.sleep(0)
+        await browser.until("treeSway.fps > 0")
+        stem = await browser.run(
+            "Array.from({length: 8}, (_, s) => treeSway.scene.camera.project("
+            "treeSway.scene.position(s + 1)))"
+        )
+        image = picture(await browser.screenshot())
+        high, wide, _ = image.shape
+        for x, y in stem:
+            row, column = round(y * high), round(x * wide)
+            near = image[row - 1 : row + 2, column - 1 : column + 2].reshape(-1, 3)
+            beside = image[row, column + 330]
+            assert (np.abs(near - beside).sum(axis=1) > 60).any(), (x, y)
+        await browser.run("document.getElementById('control-pause').click()")
+
+    visit(script)
+
+
+def test_it_moves_in_wind_and_stands_still_when_paused(visit: Visit) -> None:
+    async def change(browser: Browser) -> float:
+        before = picture(await browser.screenshot())[100:600, 380:900]
+        drawn = await browser.run("treeSway.scene._frame")
+        await browser.until(f"treeSway.scene._frame > {drawn} + 8")
+        after = picture(await browser.screenshot())[100:600, 380:900]
+        return float((np.abs(after - before).sum(axis=2) > 30).mean())
+
+    async def script(browser: Browser) -> None:
+        assert await change(browser) > 0.005
+        await browser.run("document.getElementById('control-pause').click()")
+        await browser.until("treeSway.state === 'paused'")
+        drawn = await browser.run("treeSway.scene._frame")
+        await browser.until(f"treeSway.scene._frame > {drawn} + 12")
+        assert await change(browser) == 0.0
+        await browser.run("document.getElementById('control-pause').click()")
+        await browser.until("treeSway.state === 'live'")
+
+    visit(script)
+
+
+def test_the_slider_moves_the_wind(live: Live, visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        await browser.run(
+            "{const s = document.getElementById('control-mean_speed'); s.value = 30;"
+            " s.dispatchEvent(new Event('input'));}"
+        )
+        await browser.until("Math.hypot(...treeSway.playout.wind) < 5.5")
+        assert live.wind.values["mean_speed"] == 3.0
+        await browser.run(
+            "{const s = document.getElementById('control-mean_speed'); s.value = 90;"
+            " s.dispatchEvent(new Event('input'));}"
+        )
+        await browser.until("Math.hypot(...treeSway.playout.wind) > 5.5")
+
+    visit(script)
+
+
+def test_a_lost_server_is_told_and_found_again(live: Live, visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        live.server.close()
+        await browser.until("treeSway.state === 'lost'")
+        await browser.until("!document.getElementById('notice').hidden")
+        told = await browser.run("document.getElementById('notice').innerText")
+        assert "Connection lost" in told
+        live.start()
+        await browser.until("treeSway.state === 'live'")
+        assert await browser.run("document.getElementById('notice').hidden")
+
+    visit(script)
+
+
+def test_everything_has_a_name_and_keys_turn_the_tree(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        nameless = await browser.run(
+            "[...document.querySelectorAll('button, input, select, canvas')].filter((e) =>"
+            " !(e.ariaLabel || e.innerText || e.labels?.length)).map((e) => e.outerHTML)"
+        )
+        assert nameless == []
+        before = await browser.run("treeSway.scene.camera.azimuth")
+        await browser.run("document.getElementById('view').focus()")
+        key = {"key": "ArrowRight", "code": "ArrowRight", "windowsVirtualKeyCode": 39}
+        await browser.call("Input.dispatchKeyEvent", type="keyDown", **key)
+        assert await browser.run("treeSway.scene.camera.azimuth") != before
+        for kind, x in (("mousePressed", 500), ("mouseMoved", 620), ("mouseReleased", 620)):
+            await browser.call(
+                "Input.dispatchMouseEvent", type=kind, x=x, y=300, button="left", buttons=1,
+                clickCount=1,
+            )  # fmt: skip
+        assert abs(await browser.run("treeSway.scene.camera.azimuth") - before) > 0.3
+        await browser.call(
+            "Input.dispatchMouseEvent", type="mouseWheel", x=600, y=300, deltaX=0, deltaY=-300
+        )
+        far = await browser.run("treeSway.scene.camera.distance")
+        await browser.run("document.getElementById('home').click()")
+        assert await browser.run("treeSway.scene.camera.distance") > far
+
+    visit(script)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_it_fits_a_phone(visit: Visit, dark: bool) -> None:
+    async def script(browser: Browser) -> None:
+        assert await browser.run("document.documentElement.scrollWidth") == 390
+        boxes = await browser.run(
+            "['head', 'traces', 'panel', 'tools'].map((id) => {"
+            " const b = document.getElementById(id).getBoundingClientRect();"
+            " return [b.left, b.top, b.right, b.bottom]; })"
+        )
+        for left, top, right, bottom in boxes:
+            assert left >= 0 and top >= 0 and right <= 390 and bottom <= 844  # noqa: PT018
+        (head, traces, panel, tools) = boxes
+        assert head[3] < traces[1] < traces[3] <= panel[1]
+        assert panel[2] <= tools[0]
+        back = picture(await browser.screenshot())[200, 5].mean()
+        assert (back < 80) == dark
+
+    visit(script, width=390, height=844, dark=dark)

@@ -1,0 +1,139 @@
+"""The binary form: the vectors read in Python and in JavaScript, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import struct
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.page.placer import Placer
+from tree_sway_ros.page.protocol import (
+    BEYOND_SCALE,
+    WIND_UNIT,
+    Frame,
+    decode_description,
+    decode_frame,
+    encode_description,
+    encode_frame,
+    quantised,
+)
+
+HERE = Path(__file__).parent
+VECTORS = HERE / "vectors"
+
+
+def vector(name: str) -> bytes:
+    """Content of a test vector."""
+    return (VECTORS / name).read_bytes()
+
+
+EXPECTED: dict[str, Any] = json.loads(vector("expected.json"))
+
+
+def test_a_frame_is_small() -> None:
+    assert len(vector("frame0.bin")) == 28 + 2 * 10
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_the_vectors_read_as_they_were_written(number: int) -> None:
+    description = decode_description(vector("description.bin"))
+    assert description.identity == EXPECTED["identity"]
+    frame, expected = decode_frame(vector(f"frame{number}.bin")), EXPECTED["frames"][number]
+    assert frame.sequence == expected["sequence"]
+    assert frame.stamp == int(expected["stamp_ns"])
+    assert frame.flags == expected["flags"]
+    np.testing.assert_allclose(frame.wind, expected["wind"], atol=0.5 * WIND_UNIT + 1e-9)
+    poses, exact = Placer(description).place(frame), np.array(expected["poses"])
+    np.testing.assert_allclose(poses[:, :3], exact[:, :3], atol=2e-6)
+    dots = np.abs((poses[:, 3:] * exact[:, 3:]).sum(axis=1))
+    np.testing.assert_allclose(dots, 1.0, atol=1e-6)
+
+
+def test_javascript_reads_the_same_vectors() -> None:
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not installed here")
+    command = [node, "--test", *map(str, sorted(HERE.glob("*.test.mjs")))]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_vectors_are_what_their_program_makes(tmp_path: Path) -> None:
+    source = (VECTORS / "make_vectors.py").read_text(encoding="utf-8")
+    names: dict[str, Any] = {"__file__": str(tmp_path / "make_vectors.py"), "__name__": "made"}
+    exec(compile(source, "make_vectors.py", "exec"), names)
+    names["main"]()
+    made = decode_description((tmp_path / "description.bin").read_bytes())
+    kept = decode_description(vector("description.bin"))
+    assert made.header == kept.header
+    for name, array in kept.arrays.items():
+        np.testing.assert_allclose(made.arrays[name], array, atol=1e-6, err_msg=name)
+
+
+@given(
+    wind=st.tuples(*[st.floats(-160.0, 160.0)] * 3),
+    values=st.lists(st.integers(-32767, 32767), max_size=64),
+    sequence=st.integers(0, 2**32 - 1),
+    stamp=st.integers(-(2**63), 2**63 - 1),
+)
+def test_frames_come_back(
+    wind: tuple[float, float, float], values: list[int], sequence: int, stamp: int
+) -> None:
+    frame = Frame(7, sequence, stamp, 0, np.array(wind), np.array(values, dtype="<i2"))
+    back = decode_frame(encode_frame(frame))
+    assert back[:4] == frame[:4]
+    np.testing.assert_allclose(back.wind, wind, atol=0.5 * WIND_UNIT + 1e-9)
+    np.testing.assert_array_equal(back.coordinates, values)
+
+
+def test_what_is_cut_is_told() -> None:
+    steps, is_cut = quantised([0.5, -3.0], [1.0, 1.0])
+    assert is_cut
+    assert steps.tolist() == [16384, -32767]
+    storm = Frame(0, 0, 0, 0, np.array([400.0, 0.0, 0.0]), steps)
+    assert decode_frame(encode_frame(storm)).flags == BEYOND_SCALE
+    assert not quantised([0.5, -1.0], [1.0, 1.0])[1]
+
+
+@given(st.binary(max_size=200))
+def test_random_bytes_are_refused(data: bytes) -> None:
+    with pytest.raises(FormatError):
+        decode_description(data)
+    with pytest.raises(FormatError):
+        decode_frame(b"\0" + data)
+
+
+def test_a_changed_or_newer_description_is_refused() -> None:
+    whole = vector("description.bin")
+    changed = bytearray(whole)
+    changed[-20] ^= 1
+    with pytest.raises(FormatError, match="identity"):
+        decode_description(bytes(changed))
+    newer = whole[:4] + struct.pack("<I", 2) + whole[8:]
+    with pytest.raises(FormatError, match="version 2"):
+        decode_description(newer)
+    with pytest.raises(FormatError):
+        decode_description(whole[:-9])
+
+
+def test_a_frame_of_another_tree_is_refused() -> None:
+    description = decode_description(vector("description.bin"))
+    other = decode_frame(vector("frame0.bin"))._replace(identity=1)
+    with pytest.raises(FormatError, match="description 00000001"):
+        Placer(description).place(other)
+
+
+def test_a_description_with_an_array_missing_is_refused() -> None:
+    description = decode_description(vector("description.bin"))
+    arrays = {name: value for name, value in description.arrays.items() if name != "branch_skew"}
+    with pytest.raises(FormatError, match="branch_skew"):
+        Placer(decode_description(encode_description(description.header, arrays)))

@@ -1,0 +1,306 @@
+"""The page's server as clients meet it: frames by credit, controls, and those who mean no good."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+
+from tree_sway_ros.errors import ParameterError, TransportError  # noqa: E402
+from tree_sway_ros.page import doorkeeper  # noqa: E402
+from tree_sway_ros.page.access import is_loopback, refusal, require_token  # noqa: E402
+from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
+from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
+
+DEADLINE = 10.0
+DESCRIPTION = b"TSWD" + bytes(96)
+
+
+def until(holds: Callable[[], bool]) -> None:
+    """Wait for a condition, no longer than the deadline."""
+    end = time.monotonic() + DEADLINE
+    while not holds():
+        assert time.monotonic() < end, "it did not come to pass"
+        time.sleep(0.005)
+
+
+class Viewer:
+    """A client of the stream that says only what a test has it say."""
+
+    def __init__(self, session: Any, ws: Any) -> None:
+        self.session, self.ws = session, ws
+
+    async def say(self, **message: Any) -> None:
+        await self.ws.send_str(json.dumps(message))
+
+    async def binary(self) -> bytes:
+        while True:
+            message = await asyncio.wait_for(self.ws.receive(), DEADLINE)
+            assert message.type in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY), message
+            if message.type is aiohttp.WSMsgType.BINARY:
+                return bytes(message.data)
+
+    async def text(self, key: str) -> Any:
+        while True:
+            message = await asyncio.wait_for(self.ws.receive(), DEADLINE)
+            assert message.type in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY), message
+            if message.type is aiohttp.WSMsgType.TEXT and key in json.loads(message.data):
+                return json.loads(message.data)[key]
+
+
+def run(server: PageServer, script: Callable[[Viewer], Any], **options: Any) -> Any:
+    """Run a script with a connected viewer."""
+
+    async def whole() -> Any:
+        async with aiohttp.ClientSession() as session:
+            async with session.ws_connect(f"{server.url}stream", **options) as ws:
+                return await script(Viewer(session, ws))
+
+    return asyncio.run(whole())
+
+
+@pytest.fixture
+def server() -> Iterator[PageServer]:
+    with PageServer(PageSettings(port=0)) as server:
+        server.describe(DESCRIPTION)
+        yield server
+
+
+def test_a_viewer_gets_the_description_and_then_a_frame_per_credit(server: PageServer) -> None:
+    async def script(viewer: Viewer) -> None:
+        assert await viewer.binary() == DESCRIPTION
+        server.publish(b"F1")
+        await viewer.say(credit=1)
+        assert await viewer.binary() == b"F1"
+        for number in range(2, 9):
+            server.publish(f"F{number}".encode())
+        await viewer.say(ping=1)
+        await viewer.text("pong")  # nothing came before it: no credit was left
+        await viewer.say(credit=5)
+        assert await viewer.binary() == b"F8"  # the newest, not those between
+        server.publish(b"F9")
+        assert await viewer.binary() == b"F9"
+
+    run(server, script)
+
+
+def test_a_slow_viewer_sees_new_frames_and_holds_up_nobody(server: PageServer) -> None:
+    stop = threading.Event()
+
+    def solve() -> None:
+        while not stop.wait(1.0 / 120.0):
+            server.publish(f"{time.monotonic():.6f}".encode())
+
+    solver = threading.Thread(target=solve)
+    solver.start()
+
+    async def script(viewer: Viewer) -> list[float]:
+        await viewer.binary()
+        await viewer.say(credit=2)
+        ages = []
+        for _ in range(8):
+            await asyncio.sleep(0.1)
+            ages.append(time.monotonic() - float(await viewer.binary()))
+            await viewer.say(credit=1)
+        return ages
+
+    try:
+        ages = run(server, script)
+    finally:
+        stop.set()
+        solver.join()
+    assert max(ages[2:]) < 0.5
+
+
+def test_a_new_description_reaches_who_is_there(server: PageServer) -> None:
+    async def script(viewer: Viewer) -> None:
+        await viewer.binary()
+        server.describe(b"TSWD other")
+        assert await viewer.binary() == b"TSWD other"
+
+    run(server, script)
+
+
+def panel(applied: list[Any]) -> ControlPanel:
+    """A slider, a choice and a button."""
+
+    def apply(name: str, value: Any) -> None:
+        if value == "segments":
+            raise ParameterError("leaves on model 'segments'", cure="use 'coupled'")
+        applied.append((name, value))
+
+    return ControlPanel(
+        (
+            Control("wind", "Wind", 6.0, unit="m/s", minimum=0.0, maximum=40.0),
+            Control("fidelity", "Model", "modes", choices=("modes", "segments")),
+            Control("reset", "Reset", None, is_action=True),
+        ),
+        apply,
+    )
+
+
+def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
+    applied: list[Any] = []
+
+    async def script(viewer: Viewer) -> None:
+        hello = await viewer.text("hello")
+        assert [control["name"] for control in hello["controls"]] == ["wind", "fidelity", "reset"]
+        await viewer.say(set={"name": "wind", "value": 12})
+        assert (await viewer.text("values"))["wind"] == 12.0
+        for name, value, reason in (
+            ("wind", 41.0, "out of range; give 0 .. 40 m/s"),
+            ("wind", "strong", "is not a number"),
+            ("wind", float("nan"), "out of range"),
+            ("fidelity", "best", "not among its choices; use one of: modes, segments"),
+            ("fidelity", "segments", "leaves on model 'segments'; use 'coupled'"),
+            ("gravity", 0.0, "nothing called 'gravity'"),
+            (None, None, "nothing called"),
+        ):
+            await viewer.say(set={"name": name, "value": value})
+            assert reason in (await viewer.text("refused"))["reason"]
+        await viewer.say(set={"name": "reset"})
+        await viewer.text("values")
+
+    with PageServer(PageSettings(port=0), panel(applied)) as server:
+        run(server, script)
+    assert applied == [("wind", 12.0), ("reset", None)]
+
+
+def test_without_a_panel_nothing_can_be_changed(server: PageServer) -> None:
+    async def script(viewer: Viewer) -> None:
+        await viewer.say(set={"name": "wind", "value": 1.0})
+        assert "nothing called 'wind'" in (await viewer.text("refused"))["reason"]
+
+    run(server, script)
+
+
+def test_other_pages_and_names_are_refused(server: PageServer) -> None:
+    for headers in ({"Origin": "http://evil.example"}, {"Host": "evil.example"}):
+        with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
+            run(server, lambda viewer: viewer.binary(), headers=headers)
+    origin = server.url.rstrip("/")
+    assert run(server, lambda viewer: viewer.binary(), headers={"Origin": origin}) == DESCRIPTION
+
+
+def test_a_token_is_asked_for_elsewhere_than_here() -> None:
+    with pytest.raises(ParameterError, match="without a token"):
+        PageServer(PageSettings(address="0.0.0.0"))
+    require_token("127.0.0.1", "")
+    asked = {"address": "0.0.0.0", "token": "long enough"}
+    assert "token" in str(refusal({"Host": "tree.example"}, "", **asked))
+    assert "token" in str(refusal({"Host": "tree.example"}, "lóng", **asked))
+    assert refusal({"Host": "tree.example"}, "long enough", **asked) is None
+    assert is_loopback("::1")
+    assert is_loopback("localhost")
+    assert not is_loopback("10.0.0.1")
+
+
+def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
+    with pytest.raises(TransportError, match="another port"):
+        PageServer(PageSettings(port=server.port)).start()
+
+
+def test_health_metrics_and_headers(server: PageServer) -> None:
+    async def script(viewer: Viewer) -> None:
+        await viewer.binary()
+        async with viewer.session.get(f"{server.url}healthz") as answer:
+            assert (await answer.json())["status"] == "ok"
+        async with viewer.session.get(f"{server.url}metrics") as answer:
+            assert "tree_sway_page_clients 1" in await answer.text()
+        async with viewer.session.get(server.url) as answer:
+            assert answer.headers["Content-Security-Policy"].startswith("default-src 'self'")
+            assert "<!doctype html>" in (await answer.text()).lower()
+        async with viewer.session.get(f"{server.url}static/../server.py") as answer:
+            assert answer.status == 404
+
+    run(server, script)
+
+
+HOSTILE = (
+    b"\x16\x03\x01" + bytes(range(256)),
+    b"GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 4611686018427387904\r\n\r\n",
+    b"GET / HTTP/1.1\r\nHost: " + b"a" * 100_000 + b"\r\n\r\n",
+    b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFF\r\n",
+)
+UPGRADE = (
+    b"GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+    b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+)
+BAD_FRAMES = (
+    b"\x82\xff\x40" + bytes(7) + bytes(4),  # 2^62 bytes are to follow
+    b"\x81\x85\0\0\0\0hello",  # not JSON
+    b"\x81\x86\0\0\0\0[1, 2]",
+    b"\x83\x80\0\0\0\0",  # a reserved kind
+    b"\x01\x81\0\0\0\0{\x81\x81\0\0\0\0}",  # a message within another
+    b"\x82\x81\0\0\0\0x",  # bytes where text is spoken
+)
+
+
+def is_closed_by_the_server(port: int, *parts: bytes) -> bool:
+    """Whether the server ends a connection that sent this."""
+    with socket.create_connection(("127.0.0.1", port), timeout=DEADLINE) as connection:
+        try:
+            for part in parts:
+                connection.sendall(part)
+                connection.recv(1)
+            while connection.recv(65536):
+                pass
+        except ConnectionError:
+            pass
+        except TimeoutError:
+            return False
+    return True
+
+
+@pytest.mark.parametrize("data", HOSTILE, ids=range(len(HOSTILE)))
+def test_what_is_no_request_is_closed(
+    server: PageServer, data: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(doorkeeper, "ASKING_TIME", 0.3)
+    assert is_closed_by_the_server(server.port, data)
+
+
+@pytest.mark.parametrize("frame", BAD_FRAMES, ids=range(len(BAD_FRAMES)))
+def test_bad_frames_are_closed(server: PageServer, frame: bytes) -> None:
+    assert is_closed_by_the_server(server.port, UPGRADE, frame)
+    until(lambda: server.n_clients == 0)
+
+
+def test_slow_headers_are_closed(server: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doorkeeper, "ASKING_TIME", 0.2)
+    began = time.monotonic()
+    assert is_closed_by_the_server(server.port, b"GET / HTTP/1.1\r\nHost: 127")
+    assert time.monotonic() - began < DEADLINE / 2
+
+
+def test_too_many_pages_are_refused() -> None:
+    with PageServer(PageSettings(port=0, max_clients=1)) as server:
+        server.describe(DESCRIPTION)
+
+        async def script(viewer: Viewer) -> None:
+            await viewer.binary()
+            with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
+                await viewer.session.ws_connect(f"{server.url}stream")
+
+        run(server, script)
+
+
+def test_publishing_does_not_wait_for_anybody(server: PageServer) -> None:
+    """A viewer that never reads costs the solver's thread nothing."""
+
+    async def script(viewer: Viewer) -> float:
+        await viewer.say(credit=64)
+        begin = time.thread_time()
+        for _ in range(1000):
+            server.publish(bytes(96))
+        return time.thread_time() - begin
+
+    assert run(server, script) / 1000 < 1e-3

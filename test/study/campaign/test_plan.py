@@ -1,0 +1,67 @@
+"""Study files: every combination once, and what is wrong with one is named."""
+
+from __future__ import annotations
+
+import pytest
+
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.study.campaign.plan import read_study
+
+
+@pytest.fixture
+def study(tmp_path):
+    def write(text):
+        path = tmp_path / "study.yaml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_every_tree_meets_every_wind_with_every_setting(study):
+    cases = read_study(
+        study("""
+            trees: [goldcrest, {grow: {species: [oak, birch], height: [6, 8], seeds: 3}}]
+            winds: [{speed: [3, 6, 9], seeds: 2}]
+            settings: {fidelity: modes, damping_ratio: [0.02, 0.05]}
+            seconds: 5
+        """)
+    )
+    assert len(cases) == (1 + 2 * 2 * 3) * 6 * 2
+    assert len({case.name for case in cases}) == len(cases)
+    assert cases[0].tree == {"name": "goldcrest"}
+    assert cases[0].settings == {"fidelity": "modes", "damping_ratio": 0.02}
+    assert {case.seconds for case in cases} == {5}
+
+
+def test_a_case_is_named_after_the_content_of_what_it_reads(study, tmp_path):
+    wind = tmp_path / "wind.csv"
+    path = study("trees: [goldcrest]\nwinds: [{file: wind.csv}]\n")
+    names = set()
+    for content in ("time,u,v\n0,1,0\n1,2,0\n", "time,u,v\n0,1,0\n1,3,0\n"):
+        wind.write_text(content, encoding="utf-8")
+        names.add(read_study(path)[0].name)
+    assert len(names) == 2
+    assert read_study(path)[0].name in names
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "words"),
+    [
+        ("trees: [goldcrest]\n", FormatError, "'winds' is a required property"),
+        ("trees: []\nwinds: [{speed: 3}]", FormatError, r"\[trees\]"),
+        ("trees: [a]\nwinds: [{speed: fast}]", FormatError, r"\[winds\]\[0\]"),
+        ("trees: [a]\nwinds: [{speed: 3}]\nseconds: 0", FormatError, r"\[seconds\]"),
+        ("trees: [a]\nwinds: [{speed: 3}]\nsettings: {wobble: 1}", ParameterError, "'wobble'"),
+        ("trees: [a]\nwinds: [{file: gone.csv}]", FormatError, "cannot be read"),
+        ("trees: [", FormatError, "is no YAML"),
+    ],
+)
+def test_what_is_wrong_is_named(study, text, kind, words):
+    with pytest.raises(kind, match=words):
+        read_study(study(text))
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(FormatError, match=r"none\.yaml: cannot be read"):
+        read_study(tmp_path / "none.yaml")

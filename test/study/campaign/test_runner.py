@@ -1,0 +1,124 @@
+"""Studies over processes: the same numbers in any number of them; what is killed loses nothing."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from tree_sway_ros.errors import FormatError, TreeSwayError
+from tree_sway_ros.study.campaign.plan import Case
+from tree_sway_ros.study.campaign.runner import compute_to_file, result_path, run_study
+from tree_sway_ros.study.campaign.table import write_table
+
+SEEDLING = Path(__file__).parents[2] / "files" / "data" / "seedling.yaml"
+
+
+def cases(seeds=4, **changes):
+    given = {"settings": {"fidelity": "branch"}, "seconds": 1.0, **changes}
+    tree = {"file": str(SEEDLING)}
+    return [Case(tree, {"speed": 4.0, "intensity": 0.2, "seed": k}, **given) for k in range(seeds)]
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """Rows computed in this process, one after the other."""
+    folder = tmp_path_factory.mktemp("alone")
+    for case in cases():
+        compute_to_file(case, folder)
+    return run_study(cases(), folder)
+
+
+def test_two_processes_give_the_same_numbers_bit_for_bit(alone, tmp_path):
+    told = []
+    rows = run_study(cases(), tmp_path, workers=2, progress=lambda *done: told.append(done))
+    assert rows == alone
+    assert told[0] == (0, 4)
+    assert told[-1] == (4, 4)
+    assert {"frequency", "tip_largest", "base_moment_rms", "strain_largest"} <= set(rows[0])
+    assert rows[0]["tip_largest"] > 0.0
+
+
+def test_what_is_finished_is_not_computed_again(alone, tmp_path):
+    run_study(cases(2), tmp_path, workers=1)
+    stamps = {case.name: result_path(tmp_path, case).stat().st_mtime_ns for case in cases(2)}
+    assert run_study(cases(), tmp_path, workers=2) == alone
+    assert all(
+        result_path(tmp_path, case).stat().st_mtime_ns == stamps[case.name] for case in cases(2)
+    )
+
+
+def workers_of(parent: int) -> list[int]:
+    """Processes that a process has spawned to compute."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = path.read_text().rpartition(")")[2].split()
+            command = (path.parent / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if int(fields[1]) == parent and b"spawn_main" in command:
+            found.append(int(path.parent.name))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc to find a worker to kill")
+def test_a_killed_worker_loses_nothing(alone, tmp_path):
+    killed = []
+
+    def kill_one(done, total):
+        if done == 1:
+            killed.append(workers_of(os.getpid())[0])
+            os.kill(killed[0], signal.SIGKILL)
+
+    rows = run_study(cases(6), tmp_path, workers=2, progress=kill_one)
+    assert killed
+    assert len(rows) == 6
+    assert rows[:4] == alone
+
+
+def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
+    wrong = cases(1, settings={"fidelity": "best"})
+    with pytest.raises(TreeSwayError, match="unknown fidelity 'best'"):
+        run_study([*wrong, *cases(2)], tmp_path, workers=1)
+    assert all(result_path(tmp_path, case).is_file() for case in cases(2))
+
+
+def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
+    case = cases(1, series=True)[0]
+    compute_to_file(case, tmp_path)
+    lines = (tmp_path / f"{case.name}.csv").read_text().splitlines()
+    assert len(lines) == 61
+
+
+def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path):
+    distributed = pytest.importorskip("distributed", reason="needs dask.distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+    ) as cluster:
+        doomed = next(iter(cluster.workers.values())).pid
+        told = []
+
+        def progress(done, total):
+            told.append(done)
+            if done == 2:
+                os.kill(doomed, signal.SIGKILL)
+
+        rows = run_study(cases(6), tmp_path, scheduler=cluster.scheduler_address, progress=progress)
+    assert rows[:4] == alone
+    assert len(rows) == 6
+
+
+def test_tables_are_csv_or_parquet(alone, tmp_path):
+    write_table(alone, tmp_path / "rows.csv")
+    with (tmp_path / "rows.csv").open() as file:
+        read = list(csv.DictReader(file))
+    assert [float(row["tip_rms"]) for row in read] == [row["tip_rms"] for row in alone]
+    parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow")
+    write_table(alone, tmp_path / "rows.parquet")
+    assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == alone
+    with pytest.raises(FormatError, match=r"end it with \.csv or \.parquet"):
+        write_table(alone, tmp_path / "rows.xlsx")

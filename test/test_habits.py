@@ -1,0 +1,55 @@
+"""What keeps the repository in order: its settings are files that their programs can read."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import yaml
+
+import tree_sway_ros
+
+ROOT = Path(__file__).resolve().parent.parent
+YAML = [
+    *(".pre-commit-config.yaml", "CITATION.cff", ".github/workflows/checks.yml"),
+    *(".github/ISSUE_TEMPLATE/fault.yml", ".github/ISSUE_TEMPLATE/wish.yml"),
+]
+
+
+@pytest.mark.parametrize("name", YAML)
+def test_it_is_yaml(name: str) -> None:
+    assert isinstance(yaml.safe_load((ROOT / name).read_text(encoding="utf-8")), dict)
+
+
+def test_the_citation_names_this_version() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["version"] == tree_sway_ros.__version__
+    assert citation["license"] == "Apache-2.0"
+    assert {name["family-names"] for name in citation["references"][0]["authors"]} == {
+        *("Kanda", "Ohya"),
+    }
+
+
+def test_the_container_for_editors_is_described() -> None:
+    described = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
+    assert ".ci/in_venv.py" in described["postCreateCommand"]
+
+
+def test_what_the_workflow_runs_is_there() -> None:
+    jobs = yaml.safe_load((ROOT / YAML[2]).read_text(encoding="utf-8"))["jobs"]
+    assert jobs["test"]["strategy"]["matrix"]["python"] == [f"3.{k}" for k in range(10, 15)]
+    assert jobs["jazzy"]["container"] == "ros:jazzy"
+    assert jobs["bounds"]["env"] == {"NUMBA_BOUNDSCHECK": "1"}
+    commands = [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
+    for path in re.findall(r"(?<![\w/])(?:test|\.ci|tree_sway_ros)/[\w./]+", " ".join(commands)):
+        assert (ROOT / path).exists(), path
+
+
+def test_scripts_can_be_run_and_are_sound_shell() -> None:
+    script = ROOT / ".ci" / "run"
+    assert os.access(script, os.X_OK)
+    assert subprocess.run(["bash", "-n", str(script)], check=False).returncode == 0

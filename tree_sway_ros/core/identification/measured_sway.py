@@ -1,0 +1,243 @@
+"""
+From a record of a swaying tree to its natural frequency and damping ratio.
+
+A record is a pull-and-release (one large swing that dies away, quiet before and after) or ambient
+(the tree in natural wind). Both are scale-free: displacement, tilt and acceleration give the same
+answer.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import signal
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.identification.ambient_sway import AmbientSway, ambient_sway
+from tree_sway_ros.core.identification.free_decay import FreeDecay, free_decay
+from tree_sway_ros.core.identification.spectral_peaks import Band, Spectrum
+from tree_sway_ros.errors import FormatError, ParameterError
+
+KINDS = ("release", "ambient")
+"""Kinds of record."""
+
+_MIN_SAMPLES = 16
+_LARGEST = 1e100
+_EXPLAINED, _QUIET = 0.6, 0.5
+_STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
+
+
+@dataclass(frozen=True)
+class SwayEstimate:
+    """
+    What a record says of the slowest sway.
+
+    Parameters
+    ----------
+    frequency
+        Natural frequency, undamped, in [Hz].
+    damping_ratio
+        Share of critical damping in [-], that of the air included.
+    frequency_error, damping_error
+        Their standard errors.
+    kind
+        ``release`` or ``ambient``.
+    cycles
+        How many cycles the answer rests on.
+
+    """
+
+    frequency: float
+    damping_ratio: float
+    frequency_error: float
+    damping_error: float
+    kind: str
+    cycles: float
+
+
+def estimate_sway(
+    time: ArrayLike,
+    motion: ArrayLike,
+    kind: str | None = None,
+    band: Band = None,
+) -> SwayEstimate:
+    """
+    Find frequency and damping of the slowest sway in a record.
+
+    Parameters
+    ----------
+    time
+        Time of each sample in [s], rising, (n,).
+    motion
+        Displacement, tilt or acceleration, one column an axis, all of one unit, (n,) or (n, c).
+    kind
+        ``release`` or ``ambient``; found from the record if None.
+    band
+        Lowest and highest frequency to look at in [Hz]; all if None.
+
+    Returns
+    -------
+    SwayEstimate
+        Frequency and damping ratio with their standard errors.
+
+    Raises
+    ------
+    FormatError
+        A record that is too short, too coarse, not finite, not rising in time, or without a sway.
+    ParameterError
+        An unknown kind or an empty band.
+
+    """
+    if kind is not None and kind not in KINDS:
+        raise ParameterError(f"unknown kind '{kind}'", cure=f"use one of: {', '.join(KINDS)}")
+    if band is not None and not 0.0 < band[0] < band[1] < np.inf:
+        raise ParameterError(
+            f"band {band[0]:g} to {band[1]:g} Hz", cure="give two rising frequencies above 0"
+        )
+    even, dt, gap = _even(*_checked(time, motion))
+    if kind == "ambient":
+        return _estimate(_ambient(even, dt, gap, band), "ambient")
+    refusal = "the motion does not die away from one swing"
+    try:
+        decay = _release(even, dt, gap, band)
+        if kind == "release" or _is_release(decay):
+            return _estimate(decay, "release")
+    except FormatError as error:
+        if kind == "release":
+            raise
+        refusal = error.what
+    try:
+        return _estimate(_ambient(even, dt, gap, band), "ambient")
+    except FormatError as error:
+        raise FormatError(
+            f"neither a release ({refusal}) nor ambient ({error.what})", cure=error.cure
+        ) from None
+
+
+def _estimate(found: FreeDecay | AmbientSway, kind: str) -> SwayEstimate:
+    return SwayEstimate(
+        found.frequency,
+        found.damping_ratio,
+        found.frequency_error,
+        found.damping_error,
+        kind,
+        found.cycles,
+    )
+
+
+def _is_release(decay: FreeDecay) -> bool:
+    """
+    Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it.
+
+    """
+    return decay.explained > _EXPLAINED and decay.quiet < _QUIET
+
+
+def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
+    """Arrays (n,) and (n, c) that can be worked with."""
+    t = np.asarray(time, dtype=np.float64)
+    x = np.asarray(motion, dtype=np.float64)
+    x = x[:, None] if x.ndim == 1 else x
+    if t.ndim != 1 or x.ndim != 2 or len(t) != len(x):
+        raise FormatError(
+            f"times of shape {t.shape}, motion of shape {x.shape}", cure="give (n,) and (n, c)"
+        )
+    if len(t) < _MIN_SAMPLES:
+        raise FormatError(f"{len(t)} samples", cure=f"record {_MIN_SAMPLES} at the very least")
+    for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
+        raise FormatError(
+            "not a finite number, or one that nothing measures",
+            where=f"sample {bad}",
+            cure="remove that sample",
+        )
+    for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
+        raise FormatError(
+            f"time {t[bad + 1]:g} s after {t[bad]:g} s",
+            where=f"sample {bad + 1}",
+            cure="put the samples in the order of time, each time once",
+        )
+    if not (np.ptp(x, axis=0) > 1e-12 * np.abs(x).max(axis=0)).any():
+        raise FormatError("nothing moves", cure="check the sensor and the column")
+    return t, x
+
+
+def _is_measurable(values: Floats) -> NDArray[np.bool_]:
+    """Whether each value is finite, and so far from overflow that sums of squares are too."""
+    return np.abs(values) < _LARGEST
+
+
+def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
+    """Motion at even steps without its mean and drift, the step and the longest gap in [s]."""
+    steps = np.diff(time)
+    dt = float(np.median(steps))
+    if time[-1] - time[0] > 4.0 * len(time) * dt:
+        raise FormatError(
+            f"gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart",
+            cure="give one record without the gaps",
+        )
+    grid = np.arange(time[0], time[-1] + 0.5 * dt, dt)
+    even = np.stack([np.interp(grid, time, x) for x in motion.T], axis=1)
+    return signal.detrend(even, axis=0), dt, float(steps.max())
+
+
+def _refuse_coarse(gap: float, rough: float) -> None:
+    if gap * rough > 0.25:
+        raise FormatError(
+            f"{gap:.3g} s between samples, for a sway of {rough:.3g} Hz",
+            cure="record at least four samples a cycle, without gaps",
+        )
+
+
+def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
+    """
+    Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest
+    does not hide.
+
+    """
+    padded = 4 * len(motion)
+    frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
+    power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
+    spectrum = Spectrum(frequency, power, len(motion) * dt)
+    peaks, level = spectrum.peaks(band, width=0.06)
+    found: list[FreeDecay] = []
+    refusals: list[FormatError] = []
+    strong = level > _STRONG * level.max()
+    for rough in peaks[strong]:
+        try:
+            _refuse_coarse(gap, float(rough))
+            found.append(free_decay(motion, dt, float(rough)))
+        except FormatError as refusal:
+            refusals.append(refusal)
+    if not found:
+        raise refusals[int(np.argmax(level[strong]))]
+    # Beside the sway, a step of the rest has slow parts that die away too; they move little a
+    # second.
+    fastest = max(found, key=lambda decay: decay.speed)
+    fast = [one for one in found if one.speed > _FAST * fastest.speed]
+    clearest = max(fast, key=lambda decay: decay.explained)
+    return next(filter(_is_release, fast), clearest) if fastest.quiet < _QUIET else fastest
+
+
+def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
+    """Slowest resonance that is clear next to the clearest."""
+    taper = signal.windows.hann(len(motion))
+    frequency = np.fft.rfftfreq(len(motion), dt).astype(np.float64)
+    power = (np.abs(np.fft.rfft(taper[:, None] * motion, axis=0)) ** 2).sum(axis=1)
+    peaks, _ = Spectrum(frequency, power, len(motion) * dt).peaks(band, width=0.08, min_bins=8)
+    found: list[AmbientSway] = []
+    refusals: list[FormatError] = []
+    for rough in peaks:
+        try:
+            _refuse_coarse(gap, float(rough))
+            found.append(ambient_sway(motion, dt, float(rough)))
+        except FormatError as refusal:
+            refusals.append(refusal)
+    if not found and len(refusals) > 1:
+        raise FormatError("no sway stands out of the spectrum", cure=refusals[-1].cure)
+    if not found:
+        raise refusals[0]
+    clearest = max(sway.gain for sway in found)
+    return next(sway for sway in found if sway.gain > _CLEAR * clearest)

@@ -1,0 +1,122 @@
+"""
+Key rotations to poses in plain numpy: `placing` and `rigid_placing` where nothing is compiled.
+
+The same formulas on the same records, whole levels of the tree at a time, with sines and cosines in
+place of series.
+
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.branch.shapes import N_SHAPES
+from tree_sway_ros.core.motion.numpy_passes import NumpyPasses
+from tree_sway_ros.core.motion.numpy_rotation import (
+    quaternion_product,
+    quaternion_rotated,
+    quaternions_of,
+)
+from tree_sway_ros.core.motion.rigid_placing import RigidParts
+
+_BLEND_FROM, _BLEND_TO, _STRETCH_TO = np.deg2rad([30.0, 45.0, 90.0]) ** 2
+
+
+class NumpyPlacing:
+    """
+    What places the segments of a tree.
+
+    Parameters
+    ----------
+    branches, segments
+        Records of `BRANCH`, (b,), and `SEGMENT`.
+    frozen
+        What moves with its parent as one body.
+
+    """
+
+    def __init__(self, branches: Any, segments: Any, frozen: RigidParts | None) -> None:
+        """Lay out the segments in the order of the branches."""
+        names = ("parent", "skew", "tip_skew", "base_slope", "offset")
+        self._branch: dict[str, Any] = {name: branches[name].copy() for name in names}
+        self._frozen, self._passes = frozen, NumpyPasses(branches)
+        counts = branches["end"] - branches["first"]
+        self._owner = np.repeat(np.arange(len(branches)), counts)
+        begin = np.cumsum(counts) - counts
+        rank = np.arange(int(counts.sum())) - begin[self._owner]
+        self._begin, self._rows = begin, branches["first"][self._owner] + rank
+        at, lane = branches["block"][self._owner] + rank, branches["lane"][self._owner]
+        self._segment: dict[str, Any] = {
+            name: segments[name][at, ..., lane] for name in ("slope", "tip_slope", "chord", "rest")
+        }
+        place = np.zeros(int(self._rows.max()) + 1, dtype=np.int64)
+        place[self._rows] = np.arange(len(self._rows))
+        self._on = place[np.maximum(branches["base_segment"], 0)]
+        # Coordinates are pairs that share a shape, then twists; those that are not there come last
+        # and stand still.
+        column, pairs = np.arange(branches["push"].shape[1]), branches["n_pairs"][:, None]
+        shape = np.where(column < 2 * pairs, column // 2, N_SHAPES + column - 2 * pairs)
+        self._shape = np.where(self._passes.is_there, shape, 0)
+        chord, e1, e2 = (branches["frame"][:, None, k] for k in range(3))
+        bends = np.where((column % 2 == 0)[:, None], e2, -e1)
+        self._axis = np.where((column < 2 * pairs)[..., None], bends, chord)
+
+    def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
+        """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+        branch, segment, owner = self._branch, self._segment, self._owner
+        angles = self._passes.per_branch(rotations)
+        t = np.square(angles[:, :2]).sum(axis=1)
+        blend = np.clip((t - _BLEND_FROM) / (_BLEND_TO - _BLEND_FROM), 0.0, 1.0)
+        stretch = 1.0 + np.minimum(t, _STRETCH_TO) * (
+            branch["skew"] + blend * (branch["tip_skew"] - branch["skew"])
+        )
+        slope = np.take_along_axis(segment["slope"], self._shape[owner], axis=1)
+        bent = slope[:, 0] + blend[owner] * (segment["tip_slope"] - slope[:, 0])
+        slope[:, :2] = (stretch[owner] * bent)[:, None]
+        bend = quaternions_of(np.einsum("jc,jc,jck->jk", slope, angles[owner], self._axis[owner]))
+
+        angles[:, :2] *= (1.0 + np.minimum(t, _STRETCH_TO) * branch["skew"])[:, None]
+        base = np.zeros((len(t), 4))
+        base[0, 0] = 1.0
+        for level in self._passes.levels:
+            parent = branch["parent"][level]
+            turn = self._turns(parent, branch["base_slope"][level], angles)
+            base[level] = quaternion_product(base[parent], turn)
+        turned = quaternion_product(base[owner], bend)
+        pose = quaternion_product(turned, segment["rest"])
+
+        ahead = quaternion_rotated(turned, segment["chord"])
+        reached = np.vstack([np.zeros(3), np.cumsum(ahead, axis=0)])
+        within = reached[:-1] - reached[self._begin][owner]
+        start = np.zeros((len(t), 3))
+        start[0] = origin
+        for level in self._passes.levels:
+            on = self._on[level]
+            offset = quaternion_rotated(pose[on], branch["offset"][level])
+            start[level] = start[owner[on]] + within[on] + offset
+
+        out[self._rows, :3] = start[owner] + within
+        out[self._rows, 3:] = pose[:, [1, 2, 3, 0]]
+        if self._frozen is not None:
+            self._place_frozen(self._frozen, base, angles, out)
+
+    def _turns(self, parent: Ints, slope: Floats, angles: Floats) -> Floats:
+        """Rotation of places on branches by their angles, stretched, from the parents' bases."""
+        at = np.take_along_axis(slope, self._shape[parent], axis=1)
+        return quaternions_of(np.einsum("bc,bck->bk", at * angles[parent], self._axis[parent]))
+
+    def _place_frozen(self, parts: RigidParts, base: Floats, angles: Floats, out: Floats) -> None:
+        """Place subtrees that move with the segment they sit on as one body."""
+        on, first, end = parts.rows.T
+        turn = self._turns(parts.parent, parts.base_slope, angles)
+        turn = quaternion_product(base[parts.parent], turn)
+        seat = out[on]
+        place = seat[:, :3] + quaternion_rotated(seat[:, [6, 3, 4, 5]], parts.offset)
+        part = np.repeat(np.arange(len(on)), end - first)
+        count = np.cumsum(end - first) - (end - first)
+        rows = np.arange(len(part)) - count[part] + first[part]
+        out[rows, :3] = place[part] + quaternion_rotated(turn[part], parts.arm[rows])
+        out[rows, 3:] = quaternion_product(turn[part], parts.rest[rows])[:, [1, 2, 3, 0]]

@@ -1,0 +1,129 @@
+"""
+Key rotations that come nearest to given poses: the way back from segments to branches.
+
+From the root out, each branch's base is turned as placing would turn it; what its segments are
+turned by beyond that is fitted by the branch's shapes and twists, by least squares weighted with
+the lengths of the segments.
+
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.branch.shapes import N_SHAPES
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.placing import turn_at
+from tree_sway_ros.core.rotation import product
+from tree_sway_ros.core.tree.tree import Tree
+
+
+class RotationFit:
+    """
+    Finds the key rotations of poses.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    branches, segments
+        Its records of `BRANCH` (b,) and `segment_layout`.
+
+    """
+
+    def __init__(self, tree: Tree, branches: Any, segments: Any) -> None:
+        """Invert the shapes of every branch."""
+        self._branches = branches
+        self._rest = tree.rest_frame
+        n_slopes = segments["slope"].shape[1]
+        self._inverse = np.zeros((tree.n_segments, n_slopes))
+        for b, branch in enumerate(branches):
+            here = tree.segments_of(b)
+            rows = slice(branch["block"], branch["block"] + here.stop - here.start)
+            slopes = segments["slope"][rows, :, branch["lane"]]
+            root = np.sqrt(tree.length[here])[:, None]
+            pairs = int(branch["n_pairs"])
+            twists = int(branch["n_coordinates"]) - 2 * pairs
+            for columns in (range(pairs), range(N_SHAPES, N_SHAPES + twists)):
+                if columns:
+                    inverse = np.linalg.pinv(root * slopes[:, columns]) * root.T
+                    self._inverse[here, columns.start : columns.stop] = inverse.T
+        self._base = np.zeros((len(branches), 4))
+        self._x = np.zeros(int(branches["n_coordinates"].sum()))
+
+    def of(self, poses: Floats) -> Floats:
+        """
+        Return the key rotations of a pose block (n, 7) in [rad], (N,); the same array each time.
+
+        """
+        _fit(self._branches, self._inverse, self._rest, poses, self._base, self._x)
+        return self._x
+
+
+@fused
+def _fit(
+    branches: Any, inverse: Floats, rest: Floats, poses: Floats, bases: Floats, x: Floats
+) -> None:
+    x[:] = 0.0
+    for b in range(len(branches)):
+        branch = branches[b]
+        i, pairs, frame, base = branch.coordinate, branch.n_pairs, branch.frame, bases[b]
+        twists = branch.n_coordinates - 2 * pairs
+        base[0], base[1], base[2], base[3] = 1.0, 0.0, 0.0, 0.0
+        if branch.parent >= 0:
+            w, a, c, d = turn_at(branches[branch.parent], branch.base_slope, x)
+            p = bases[branch.parent]
+            base[0], base[1], base[2], base[3] = product(p[0], p[1], p[2], p[3], w, a, c, d)
+        for s in range(branch.first, branch.end):
+            q, r = poses[s], rest[s]
+            w, a, c, d = product(base[0], -base[1], -base[2], -base[3], q[6], q[3], q[4], q[5])
+            w, a, c, d = product(w, a, c, d, r[0], -r[1], -r[2], -r[3])
+            sine = np.sqrt(a * a + c * c + d * d)
+            if w < 0.0:
+                w, a, c, d = -w, -a, -c, -d
+            factor = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
+            a, c, d = factor * a, factor * c, factor * d
+            ux = a * frame[2, 0] + c * frame[2, 1] + d * frame[2, 2]
+            uy = -(a * frame[1, 0] + c * frame[1, 1] + d * frame[1, 2])
+            spin = a * frame[0, 0] + c * frame[0, 1] + d * frame[0, 2]
+            for k in range(pairs):
+                x[i + 2 * k] += inverse[s, k] * ux
+                x[i + 2 * k + 1] += inverse[s, k] * uy
+            for k in range(twists):
+                x[i + 2 * pairs + k] += inverse[s, N_SHAPES + k] * spin
+        # Placing stretches the first shape by 1 + skew t: take that back.
+        ux, uy = x[i], x[i + 1]
+        for _ in range(4):
+            stretch = 1.0 + branch.skew * (x[i] * x[i] + x[i + 1] * x[i + 1])
+            x[i], x[i + 1] = ux / stretch, uy / stretch
+
+
+def coordinates_within(branches: Any, moving: Ints, whole: Any) -> Any:
+    """
+    Lay the coordinates of a part of a tree out among those of the whole, sparse (N, M).
+
+    Parameters
+    ----------
+    branches
+        Records of `BRANCH` of the part, (m,), some with less shapes or other axes.
+    moving
+        Which branch of the whole each of them is, (m,).
+    whole
+        Records of `BRANCH` of the whole, (b,).
+
+    """
+    rows, columns, values = [], [], []
+    for local, b in zip(branches, moving, strict=True):
+        row, column = int(whole["coordinate"][b]), int(local["coordinate"])
+        further = np.arange(2, int(local["n_coordinates"]))
+        # x turns about e2 and y about -e1, as in `BRANCH`.
+        axes, own = (each["frame"][[2, 1]] * [[1.0], [-1.0]] for each in (whole[b], local))
+        rows += [row, row, row + 1, row + 1, *(row + further)]
+        columns += [column, column + 1, column, column + 1, *(column + further)]
+        values += [*(axes @ own.T).ravel(), *np.ones(len(further))]
+    shape = (int(whole["n_coordinates"].sum()), int(branches["n_coordinates"].sum()))
+    return sparse.csr_matrix((values, (rows, columns)), shape=shape)

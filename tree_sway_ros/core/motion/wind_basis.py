@@ -1,0 +1,279 @@
+"""
+Model `wind_basis`: a tree as a dozen oscillators, driven by a table of all even winds.
+
+What a step costs does not depend on the tree's size. The oscillators and the static rest are those
+of `modes`, and so is the order of work: the load is that of the state half a step on. Only the load
+comes from a table (`wind_basis_table`) and not from the branches. Where a wind or a lean leaves the
+table, the step is one of `modes`, told by `outside`.
+
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
+from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.wind_basis_force import N_REST, table_layout, wind_force, wind_rest
+from tree_sway_ros.core.motion.wind_basis_table import STEEPEST, WindBasisTable
+
+
+def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+    """State of one tree on a table, and room to work in."""
+    m = table_layout(n_modes, n_harmonics)["stiffness"].shape[0]
+    return np.dtype(
+        [
+            ("table", "i8"),  # its row among the tables
+            ("outside", "i8"),  # whether the last wind was outside of the table
+            ("eta", "f8", (m,)),
+            ("rate", "f8", (m,)),
+            ("force", "f8", (m,)),
+            ("rest", "f8", (N_REST,)),
+            ("wind", "f8", (3,)),  # [m/s]
+            ("pressure", "f8"),  # drag per area and speed squared [kg/m^3]
+            ("middle", "f8", (m,)),
+            ("middle_rate", "f8", (m,)),
+            ("wanted", "f8", (m,)),
+            ("room", "f8", (3, m)),
+            ("values", "f8", (n_harmonics,)),
+        ]
+    )
+
+
+CARRIED = ("eta", "rate", "force", "rest", "middle", "middle_rate", "wind", "pressure", "outside")
+"""Fields of an instance that a state holds."""
+
+
+class WindBasisBank:
+    """
+    Oscillators of natural modes in even winds.
+
+    Parameters
+    ----------
+    modal
+        The same modes on the loads of all branches.
+    table
+        What the wind does to them.
+
+    """
+
+    carries = True
+    is_tabled = True
+
+    def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
+        """Stand at rest."""
+        self.modal, self.table = modal, table
+        self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
+        n, m = modal.shapes.shape
+        self.record = table.record.copy()
+        layout = instance_layout(m, COUNT[int(table.record["degree"][0])])
+        self.instance = np.zeros(1, dtype=layout)
+        self._shapes = np.vstack([modal.shapes.T, table.rest_shapes])
+        self._x = np.zeros(n)
+        self.n_outside = 0
+        """Steps whose wind or lean was outside of the table."""
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        self.modal.set_step(dt)
+        set_table_step(self.record[0], self.modal)
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `ModalBank.advance`."""
+        if not _advance(self.record, self.instance, wx, wy, wz, per_speed_squared):
+            return 0
+        self.n_outside += 1
+        return step_outside(self.instance[0], self.modal, self._shapes, self._x)
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """As `ModalBank.response`."""
+        return self.modal.response(moments, circular)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Views of what is carried from one step to the next."""
+        return tuple(self.instance[name] for name in CARRIED)
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        _rotations(self.record, self.instance, self._shapes, self._x)
+        return self._x
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3); a pass over all branches."""
+        m, now = self.modal.shapes.shape[1], self.instance[0]
+        self.modal.take(now["eta"][:m], now["rate"][:m], now["force"][:m], self.rotations())
+        wx, wy, wz = now["wind"].tolist()
+        self.modal.advance(wx, wy, wz, float(now["pressure"]))
+        return self.modal.forces()
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        m = self.modal.shapes.shape[1]
+        return self.rotations().copy(), self.modal.shapes @ self.instance[0]["rate"][:m]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal.take_over(x, v)
+        m = self.modal.shapes.shape[1]
+        self.instance["eta"][0, :m], self.instance["rate"][0, :m] = self.modal.modal[:2]
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        for array in self.memory():
+            array[...] = 0.0
+        self.modal.reset()
+
+
+def set_table_step(table: Any, modal: ModalBank) -> None:
+    """Take the coefficients of a time step over into a record of `table_layout`."""
+    m = int(table["n_modes"])
+    table["whole"], table["half"] = 0.0, 0.0
+    table["whole"][:, :m] = modal.whole.T
+    half = modal.half
+    table["half"][:, :m] = np.stack(
+        [half[:, 0], half[:, 1], half[:, 2] + half[:, 3],
+         half[:, 4], half[:, 5], half[:, 6] + half[:, 7]]
+    )  # fmt: skip
+
+
+def step_outside(instance: Any, modal: ModalBank, shapes: Floats, rotations: Floats) -> int:
+    """
+    Step a tree that is outside of its table on the loads of its branches.
+
+    Parameters
+    ----------
+    instance
+        Record of `instance_layout`.
+    modal
+        The modes of the tree.
+    shapes, rotations
+        As of `expand`; the rotations are written.
+
+    Returns
+    -------
+    int
+        How many loads were held at their limit.
+
+    """
+    m = modal.shapes.shape[1]
+    rotations[:] = instance["eta"][:m] @ shapes[:m] + instance["rest"] @ shapes[m:]
+    wx, wy, wz = instance["wind"].tolist()
+    load = float(instance["pressure"])
+    modal.take(instance["eta"][:m], instance["rate"][:m], instance["force"][:m], rotations)
+    held = modal.advance(wx, wy, wz, load)
+    for row, name in enumerate(("eta", "rate")):
+        instance[name][:m] = modal.modal[row]
+    instance["force"][:m] = modal.modal[3]
+    rest = modal.rotations() - instance["eta"][:m] @ shapes[:m]
+    instance["rest"] = np.linalg.lstsq(shapes[m:].T, rest, rcond=1e-10)[0]
+    return held
+
+
+@fused
+def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
+    """
+    Key rotations of an instance: by its modes and by its static rest.
+
+    Parameters
+    ----------
+    table, instance
+        Records of `table_layout` and `instance_layout`; the rest of the latter is written.
+    shapes
+        Of the modes, then of the rest, (m + r, N).
+    x
+        Written, (N,).
+
+    """
+    if not instance.outside:
+        wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        drag = instance.pressure * speed
+        if speed > 0.0:
+            fill_harmonics(wx / speed, wy / speed, wz / speed, table.degree, instance.values)
+        wind_rest(
+            table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
+            instance.values, instance.rest,
+        )  # fmt: skip
+    x[:] = 0.0
+    for k in range(len(shapes)):
+        n = table.n_modes
+        amount = instance.eta[k] if k < n else instance.rest[k - n]
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * amount
+
+
+@fused
+def _rotations(tables: Any, instances: Any, shapes: Floats, x: Floats) -> None:
+    expand(tables[0], instances[0], shapes, x)
+
+
+@fused
+def step_instance(
+    table: Any, instance: Any, wx: float, wy: float, wz: float, per_speed_squared: float
+) -> int:
+    """
+    Step one tree on its table.
+
+    Parameters
+    ----------
+    table, instance
+        Records of `table_layout` and `instance_layout`.
+    wx, wy, wz
+        Mean wind over the step in [m/s].
+    per_speed_squared
+        `drag.pressure` in [kg/m^3].
+
+    Returns
+    -------
+    int
+        1 where wind or lean is outside of the table: then the modes stay as they are.
+
+    """
+    speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+    x, y, z = 1.0, 0.0, 0.0
+    if speed > 0.0:
+        x, y, z = wx / speed, wy / speed, wz / speed
+    push, drag = per_speed_squared * speed * speed, per_speed_squared * speed
+    eta, rate, force, half, whole = (
+        instance.eta, instance.rate, instance.force, table.half, table.whole,
+    )  # fmt: skip
+    middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
+    energy = 0.0
+    for i in range(len(eta)):
+        q, v, f = eta[i], rate[i], force[i]
+        middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
+        middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
+        energy += table.stiffness[i] * middle[i] * middle[i]
+    wind_force(
+        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.room, wanted
+    )
+    instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
+    instance.pressure = per_speed_squared
+    inside = push <= table.most_pressure and energy <= table.most_energy
+    instance.outside = 0 if inside and abs(z) * push <= STEEPEST * push else 1
+    if instance.outside:
+        return 1
+    diagonal = instance.room[2]
+    for i in range(len(eta)):
+        # Implicit in the mode's own damping: stable for any wind and step.
+        own = diagonal[i] * half[5, i]
+        f = (wanted[i] - own * force[i]) / (1.0 - own)
+        q, v = eta[i], rate[i]
+        eta[i] = whole[0, i] * q + whole[1, i] * v + (whole[2, i] + whole[3, i]) * f
+        rate[i] = whole[4, i] * q + whole[5, i] * v + (whole[6, i] + whole[7, i]) * f
+        force[i] = f
+    return 0
+
+
+@fused
+def _advance(
+    tables: Any, instances: Any, wx: float, wy: float, wz: float, per_speed_squared: float
+) -> int:
+    return step_instance(tables[0], instances[0], wx, wy, wz, per_speed_squared)

@@ -1,0 +1,205 @@
+"""
+A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, Protocol, cast, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
+from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.sway_record import SwayRecord
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
+
+
+class GrownTree(Protocol):
+    """A tree with the species it is made of, as `open_tree` gives."""
+
+    @property
+    def tree(self) -> Tree:
+        """The segments."""
+
+    @property
+    def species(self) -> Species:
+        """The wood."""
+
+
+class TreeSimulator(Simulator, Protocol):
+    """A simulator of one tree, whose key rotations are one array."""
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+
+
+@runtime_checkable
+class WindSamples(Protocol):
+    """Wind over time, as `read_wind` gives."""
+
+    @property
+    def time(self) -> Floats:
+        """Times in [s], rising, (m,)."""
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocities in [m/s], (m, 3)."""
+
+
+def simulate(
+    tree: Tree | GrownTree,
+    wind: WindSamples | ArrayLike,
+    *,
+    rate: float = 60.0,
+    seconds: float | None = None,
+    branches: Sequence[int] | None = None,
+    fidelity: str = "auto",
+    settings: Settings | None = None,
+    progress: Callable[[float], None] | None = None,
+    **changes: Any,
+) -> SwayRecord:
+    """
+    Let a tree sway in a wind from rest.
+
+    Parameters
+    ----------
+    tree
+        A tree, or one with its species.
+    wind
+        A record with ``time`` and ``velocity``, whose samples are joined by straight lines; or the
+        mean wind of each step in [m/s], (t, 3).
+    rate
+        Steps per second in [Hz].
+    seconds
+        Length of what is simulated in [s]; all of the wind if None.
+    branches
+        Branches whose tips are told; the one that bears the highest tip if None.
+    fidelity, settings, **changes
+        The model, as for `make_simulator`.
+    progress
+        Called now and then with the part that is done, from 0 to 1.
+
+    Returns
+    -------
+    SwayRecord
+        Wind, tips, moment and strain at the base, one row per step.
+
+    Raises
+    ------
+    ParameterError
+        A wind that is empty, not finite or of another shape, a branch that is not there, or a
+        setting out of its range.
+    TreeError
+        A tree that cannot stand.
+
+    """
+    species = species_named(tree.species) if isinstance(tree, Tree) else tree.species
+    body = tree if isinstance(tree, Tree) else tree.tree
+    means = _step_means(wind, rate, seconds)
+    chosen = _chosen(body, branches)
+    model = replace(settings or Settings(), **changes)
+    simulator = cast(TreeSimulator, make_simulator(body, species, model, fidelity=fidelity))
+    base = BaseMoment(body, species, model, fidelity)
+    rest = tips_of_poses(body, simulator.place())[chosen]
+    tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
+    poses, every = np.empty((body.n_segments, 7)), max(len(means) // 100, 1)
+    for step, mean in enumerate(means):
+        simulator.step(mean, 1.0 / rate)
+        tips[step] = tips_of_poses(body, simulator.place(poses))[chosen] - rest
+        moment[step] = base.of(simulator.rotations())
+        if progress is not None and step % every == 0:
+            progress(step / len(means))
+    return SwayRecord(
+        body.name,
+        simulator.model,
+        np.arange(1, len(means) + 1) / rate,
+        means,
+        chosen,
+        tuple(body.branch_names[branch] for branch in chosen),
+        tips,
+        moment,
+        base.strain(moment),
+    )
+
+
+class BaseMoment:
+    """
+    Bending moment at the base of the stem from the curvature of its shapes there.
+
+    What a strain gauge tells: the moment of wind and inertia together, as the wood carries it.
+
+    Parameters
+    ----------
+    tree, species, settings, fidelity
+        As for the simulator that is asked.
+
+    """
+
+    def __init__(self, tree: Tree, species: Species, settings: Settings, fidelity: str) -> None:
+        """Find the moment per unit of each coordinate of the stem."""
+        layer = CalibratedTree(tree, species, settings).layer(
+            fidelity if fidelity in ("branch", "subtree") else "coupled"
+        )
+        stem = layer.models[0]
+        beam = stem.beam
+        self._per_unit = np.zeros((len(stem.coordinates), 3))
+        for k, coordinate in enumerate(stem.coordinates):
+            if not coordinate.is_twist:
+                bending = beam.second_moment[0] * coordinate.shape.curvature[0]
+                at_base = np.polyval(np.polyfit(beam.place[0], bending, 2), 0.0)
+                self._per_unit[k] = species.modulus * at_base * coordinate.axis
+        radius = 0.5 * float(tree.base_diameter[0])
+        self._strain_per_moment = radius / (species.modulus * np.pi / 4.0 * radius**4)
+
+    def of(self, rotations: Floats) -> Floats:
+        """Moment in [N m], (3,), under the key rotations of a simulator in [rad], (N,)."""
+        return np.asarray(rotations[: len(self._per_unit)] @ self._per_unit)
+
+    def strain(self, moment: Floats) -> Floats:
+        """Strain of the east and the north fibre [-] under moments (t, 3), (t, 2)."""
+        return self._strain_per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1)
+
+
+def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | None) -> Floats:
+    """Mean wind of each step in [m/s], (t, 3)."""
+    if not (np.isfinite(rate) and 1.0 <= rate <= 10_000.0):
+        raise ParameterError(f"rate {rate:g} Hz", where="rate", cure="give 1 to 10000")
+    if isinstance(wind, WindSamples):
+        means = frame_means(wind.time, wind.velocity, 1.0 / rate)
+    else:
+        means = np.asarray(wind, dtype=np.float64)
+    if means.ndim != 2 or means.shape[1:] != (3,) or not len(means):
+        raise ParameterError(
+            f"wind of shape {means.shape}",
+            where="wind",
+            cure="give a record of two samples or more, or the mean of each step, (t, 3)",
+        )
+    if not np.isfinite(means).all():
+        raise ParameterError("wind that is not finite", where="wind", cure="leave such rows out")
+    if seconds is None:
+        return np.asarray(means)
+    if not (np.isfinite(seconds) and seconds > 0.0):
+        raise ParameterError(f"{seconds:g} s", where="seconds", cure="give more than 0")
+    return np.asarray(means[: max(round(seconds * rate), 1)])
+
+
+def _chosen(tree: Tree, branches: Sequence[int] | None) -> Ints:
+    """Branches whose tips are told, (k,)."""
+    if branches is None:
+        return np.array([tree.branch_of_segment[int(np.argmax(tree.end[:, 2]))]])
+    chosen = np.asarray(branches, dtype=np.int64)
+    wrong = chosen[(chosen < 0) | (chosen >= tree.n_branches)]
+    if len(wrong):
+        raise ParameterError(
+            f"branch {wrong[0]}", where="branches", cure=f"give 0 to {tree.n_branches - 1}"
+        )
+    return chosen

@@ -1,0 +1,30 @@
+"""The order in which parents come before what they carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def parents_first(parents: Iterable[int]) -> list[int]:
+    """
+    Order a tree from its roots, generation by generation.
+
+    Parameters
+    ----------
+    parents
+        Parent of each number 0, 1 ...; negative at a root.
+
+    Returns
+    -------
+    list of int
+        Numbers, each after its parent. Those that follow from no root, as they go in a circle, are
+        left out.
+
+    """
+    children: dict[int, list[int]] = {}
+    for number, parent in enumerate(parents):
+        children.setdefault(max(parent, -1), []).append(number)
+    order = list(children.get(-1, ()))
+    for number in order:
+        order.extend(children.get(number, ()))
+    return order

@@ -1,0 +1,93 @@
+"""
+The one way in for samples of wind: units and sign, then the gate, then the force plane.
+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.wind.convention import WindConvention
+from tree_sway_ros.core.wind.gate import GateCounts, WindGate
+from tree_sway_ros.core.wind.limits import FASTEST_WIND
+
+
+class GoodWind(NamedTuple):
+    """
+    A sample that is good.
+
+    Parameters
+    ----------
+    time
+        The time to use for it in [ns], after that of the sample before.
+    velocity
+        Where the wind blows to, ENU in [m/s], on the force plane, (3,).
+
+    """
+
+    time: int
+    velocity: Floats
+
+
+@dataclass
+class WindIntake:
+    """
+    Reads samples as a source sends them and keeps the good ones.
+
+    Parameters
+    ----------
+    convention
+        What the numbers of the source mean; may be replaced between samples. None where the samples
+        are velocities on the force plane already.
+    gate
+        What judges the samples, before they are projected.
+
+    """
+
+    convention: WindConvention | None = None
+    gate: WindGate = field(default_factory=WindGate)
+
+    @staticmethod
+    def of_velocities() -> WindIntake:
+        """Return the intake of what was judged before: it keeps times in order, numbers finite."""
+        return WindIntake(gate=WindGate(max_speed=FASTEST_WIND, max_rate=1e4))
+
+    @property
+    def counts(self) -> GateCounts:
+        """What was accepted and refused, by reason."""
+        return self.gate.counts
+
+    def offer(
+        self,
+        stamp: int,
+        components: tuple[float, float, float],
+        arrival: int | None = None,
+        *,
+        lead: int = 0,
+    ) -> GoodWind | None:
+        """
+        Take a sample.
+
+        Parameters
+        ----------
+        stamp, arrival, lead
+            As for `WindGate.offer`, in [ns].
+        components
+            Along the source's axes, in its unit and its sign, (3,).
+
+        Returns
+        -------
+        GoodWind or None
+            None if the sample was refused, and counted.
+
+        """
+        reads = self.convention
+        velocity = np.array(components) if reads is None else reads.velocity(*components)
+        verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)
+        if not verdict.accepted:
+            return None
+        return GoodWind(verdict.time, velocity if reads is None else reads.project(velocity))

@@ -1,0 +1,13 @@
+"""How fast wind can be: the one limit of all doors that wind comes in by."""
+
+from __future__ import annotations
+
+import math
+
+FASTEST_WIND = 150.0
+"""Speed in [m/s] above which nothing is wind; the record gust is 113 m/s (Courtney et al. 2012)."""
+
+
+def is_wind(x: float, y: float, z: float, limit: float = FASTEST_WIND) -> bool:
+    """Whether a vector in [m/s] is finite and no faster than a limit."""
+    return math.hypot(x, y, z) <= limit

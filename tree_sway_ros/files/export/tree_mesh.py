@@ -1,0 +1,114 @@
+"""The mesh of a tree: a cone for each segment, a lozenge for each cluster of leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.tree import Tree
+
+SIDES = 8
+"""Sides of a cone; its volume is 0.900 of the round one's."""
+
+
+@dataclass(frozen=True)
+class TreeMesh:
+    """
+    Triangles, each vertex of which is carried by one segment.
+
+    Parameters
+    ----------
+    points, normals
+        Of each vertex in the frame of its segment, (v, 3): origin at the segment's start, x along
+        it; points in [m].
+    segment
+        Segment that carries each vertex, (v,).
+    triangles
+        Vertices of each triangle, counter-clockwise seen from outside, (t, 3).
+
+    """
+
+    points: Floats
+    normals: Floats
+    segment: Ints
+    triangles: Ints
+
+    def placed(self, poses: Floats) -> Floats:
+        """
+        Return the vertices where the segments are, in the frame of the poses in [m], (v, 3).
+
+        Parameters
+        ----------
+        poses
+            Pose block as of `segment_poses`, (n, 7): x y z and quaternion x y z w.
+
+        """
+        rotation = Rotation.from_quat(poses[self.segment, 3:])
+        return poses[self.segment, :3] + rotation.apply(self.points)
+
+
+def rest_poses(tree: Tree) -> Floats:
+    """
+    Poses of the segments at rest, bit for bit as the solver's: x y z, quaternion x y z w, (n, 7).
+
+    """
+    quaternions = tree.rest_frame
+    return np.hstack([tree.start, quaternions[:, [1, 2, 3, 0]]])
+
+
+def wood_mesh(tree: Tree) -> TreeMesh:
+    """
+    Return a closed cone for each segment, round in its normals, with flat ends.
+
+    Each has 4 `SIDES` vertices, two rings for its side and one for each end, and 4 `SIDES` - 4
+    triangles.
+
+    """
+    n = tree.n_segments
+    angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    around = np.stack([np.zeros(SIDES), np.cos(angle), np.sin(angle)], axis=1)
+    base, tip = 0.5 * tree.base_diameter, 0.5 * tree.tip_diameter
+    rings = np.stack([base[:, None, None] * around, tip[:, None, None] * around], axis=1)
+    rings[:, 1, :, 0] = tree.length[:, None]
+    slope = np.arctan2(base - tip, tree.length)[:, None, None]
+    outward = np.cos(slope) * around + np.sin(slope) * np.array([1.0, 0.0, 0.0])
+    ends = np.broadcast_to(np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])[:, None], rings.shape)
+    normals = np.concatenate([np.stack([outward, outward], axis=1), ends], axis=1)
+    i = np.arange(SIDES)
+    j = (i + 1) % SIDES
+    fan = np.arange(1, SIDES - 1)
+    first, last = 2 * SIDES, 3 * SIDES
+    triangles = np.vstack(
+        [
+            np.stack([i, j, j + SIDES], axis=1),
+            np.stack([i, j + SIDES, i + SIDES], axis=1),
+            np.stack([np.full_like(fan, first), first + fan + 1, first + fan], axis=1),
+            np.stack([np.full_like(fan, last), last + fan, last + fan + 1], axis=1),
+        ]
+    )
+    return TreeMesh(
+        np.concatenate([rings, rings], axis=1).reshape(-1, 3),
+        normals.reshape(-1, 3),
+        np.repeat(np.arange(n), 4 * SIDES),
+        (4 * SIDES * np.arange(n)[:, None, None] + triangles).reshape(-1, 3),
+    )
+
+
+def leaf_mesh(leaves: LeafClusters) -> TreeMesh:
+    """Return a lozenge for each cluster of leaves, as long as the cluster is wide."""
+    half = 0.5 * leaves.size[:, None, None]
+    corners = half * np.array([[-1.0, 0, 0], [0.2, -0.6, 0], [1.0, 0, 0], [0.2, 0.6, 0]])
+    turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
+    points = np.stack([turns.apply(corners[:, k]) + leaves.offset for k in range(4)], axis=1)
+    normals = np.repeat(turns.apply([0.0, 0.0, 1.0])[:, None], 4, axis=1)
+    two = np.array([[0, 1, 2], [0, 2, 3]])
+    return TreeMesh(
+        points.reshape(-1, 3),
+        normals.reshape(-1, 3),
+        np.repeat(leaves.segment.astype(np.int64), 4),
+        (4 * np.arange(len(leaves.size))[:, None, None] + two).reshape(-1, 3),
+    )

@@ -1,0 +1,69 @@
+"""What the numbers of a tree's file mean, where its format does not say: units and the axis up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+
+
+@dataclass(frozen=True)
+class FileUnits:
+    """
+    Units and axes of a file.
+
+    Parameters
+    ----------
+    length_unit, diameter_unit
+        Length of the unit of positions and of diameters in [m].
+    up
+        Axis of the file that points up, ``z`` or ``y``.
+
+    """
+
+    length_unit: float = 1.0
+    diameter_unit: float = 1.0
+    up: str = "z"
+
+    def __post_init__(self) -> None:
+        """Refuse what is no unit and no axis."""
+        for name in ("length_unit", "diameter_unit"):
+            if not 1e-6 <= getattr(self, name) <= 1e3:
+                raise ParameterError(
+                    f"{name} is {getattr(self, name):g} m", cure="give 0.01 for cm"
+                )
+        if self.up not in ("z", "y"):
+            raise ParameterError(f"up is '{self.up}'", cure="use 'z' or 'y'")
+
+    def of_tree(self, content: TreeFile) -> TreeFile:
+        """Return the tree of a file in metres, z up."""
+        if self == FileUnits():
+            return content
+        tree = replace(
+            content.tree,
+            start=self._positions(content.tree.start),
+            end=self._positions(content.tree.end),
+            base_diameter=self.diameter_unit * content.tree.base_diameter,
+            tip_diameter=self.diameter_unit * content.tree.tip_diameter,
+        )
+        return replace(content, tree=tree)
+
+    def of_cylinders(self, content: Cylinders) -> Cylinders:
+        """Return the cylinders of a file in metres, z up."""
+        return replace(
+            content,
+            start=self._positions(content.start),
+            end=self._positions(content.end),
+            diameter=self.diameter_unit * content.diameter,
+        )
+
+    def _positions(self, nodes: Floats) -> Floats:
+        turned = np.asarray(nodes, dtype=np.float64)
+        if self.up == "y":
+            turned = turned[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+        return np.ascontiguousarray(self.length_unit * turned)

@@ -1,0 +1,105 @@
+"""A line that an anemometer says: the wind in it, or why it is refused; checksums and log files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from operator import xor
+from pathlib import Path
+
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.text_file import read_lines
+from tree_sway_ros.files.wind.record import WindRecord, WindRows
+from tree_sway_ros.files.wind.units import Velocity
+
+MAX_LINE = 1024
+"""Longer lines are no sensor's [characters]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorLine:
+    """
+    What a line says.
+
+    Parameters
+    ----------
+    kind
+        Which sentence or format it is of.
+    velocity
+        Where the wind blows to, east, north, up, in [m/s]; None if the line is refused.
+    refusal
+        Why it is refused; empty if it is not.
+
+    """
+
+    kind: str
+    velocity: Velocity | None
+    refusal: str = ""
+
+
+ParseLine = Callable[[str], SensorLine | None]
+"""Parses a line; None if it is not about the wind. Never raises."""
+
+
+def checksum_of(body: str) -> str:
+    """Exclusive or of the bytes of a text, as two hexadecimal digits."""
+    return f"{reduce(xor, body.encode('utf-8', 'replace'), 0):02X}"
+
+
+def read_sensor_log(
+    path: Path, parse: ParseLine, kinds: Sequence[str], rate: float, notes: Sequence[str] = ()
+) -> tuple[str, WindRecord]:
+    """
+    Read the wind of a log of an anemometer's lines, which carry no time: they are evenly spaced.
+
+    A line that is refused keeps its place in time.
+
+    Parameters
+    ----------
+    path
+        The file; lines that are not about the wind are passed over.
+    parse
+        Parses a line.
+    kinds
+        Kinds wanted, the best one first; the first with a good line is read.
+    rate
+        Lines of that kind per second in [Hz].
+    notes
+        Notes of the record, besides the one on its times.
+
+    Returns
+    -------
+    tuple
+        The kind that was read, and the record.
+
+    Raises
+    ------
+    FormatError
+        If there is no such line, or no good one.
+    ParameterError
+        If the rate is not positive.
+
+    """
+    if not rate > 0.0:
+        raise ParameterError(f"rate is {rate:g} Hz", cure="give more than 0")
+    found: dict[str, WindRows] = {}
+    for number, line in enumerate(read_lines(path), start=1):
+        said = parse(line)
+        if said is None:
+            continue
+        rows = found.setdefault(said.kind, WindRows(str(path)))
+        if said.velocity is None:
+            rows.refuse(number, said.refusal)
+        else:
+            rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
+    there = [kind for kind in kinds if kind in found]
+    if not there:
+        raise FormatError(
+            f"no sentence {' or '.join(kinds)}",
+            where=str(path),
+            cure="log the wind instrument's output",
+        )
+    best = next((kind for kind in there if found[kind].time), there[0])
+    spaced = f"{best} sentences have no time of their own and are taken at {rate:g} Hz"
+    return best, found[best].record(notes=(spaced, *notes))

@@ -1,0 +1,166 @@
+"""The viewer node: the page of doc/streaming.md, fed from `tree_state` and `tree_description`."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.msg import ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from std_srvs.srv import SetBool, Trigger
+
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.page.controls import Control, ControlPanel
+from tree_sway_ros.page.protocol import (
+    BEYOND_SCALE,
+    Description,
+    Frame,
+    decode_description,
+    encode_frame,
+    quantised,
+)
+from tree_sway_ros.page.server import PageServer, PageSettings
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.process.node import TreeSwayNode
+from tree_sway_ros.ros.process.topics import TREE_DESCRIPTION, TREE_STATE
+from tree_sway_ros.ros.reports.diagnostics import OK, Status
+from tree_sway_ros.ros.wire.tree_state import read_state, read_state_entry
+from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns
+
+_CHECK_PERIOD = 0.5
+_LIVE = {
+    "mean_speed": ("anemometer", "Wind"),
+    "intensity": ("anemometer", "Gustiness"),
+    "bearing_to": ("anemometer", "Blows to"),
+    "tolerance": ("solver", "Tolerance"),
+}
+
+
+class ViewerNode(TreeSwayNode):
+    """
+    Serves the page; subscribes `tree_state` from when a page is first connected.
+
+    Parameters
+    ----------
+    options
+        For `rclpy.node.Node`.
+
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("viewer", **options)
+        settings = PageSettings(
+            **self.values("address", "port", "token", "certificate", "private_key", "max_clients")
+        )
+        self._description: Description | None = None
+        self._told = ""
+        self._sequence = 0
+        self._subscription: Any = None
+        self._lock = threading.Lock()
+        panel = ControlPanel(_controls(), self._apply) if self.values["control"] else None
+        self._setters = {
+            node: self.create_client(SetParameters, f"{node}/set_parameters")
+            for node in ("anemometer", "solver")
+        }
+        self._reset = self.create_client(Trigger, "solver/reset")
+        self._pause = self.create_client(SetBool, "solver/pause")
+        self.server = PageServer(settings, panel, self._status)
+        self.server.start()
+        self.on_close(self.server.close)
+        self.subscription(TREE_DESCRIPTION, self._describe)
+        self.create_timer(_CHECK_PERIOD, self._look)
+        self.report_with("page", self._statuses)
+        self.get_logger().info(f"the page is at {self.server.url}")
+
+    def _look(self) -> None:
+        """Ask for the state once somebody looks: until then it need not be computed."""
+        if self._subscription is None and self.server.n_clients > 0:
+            self._subscription = self.subscription(TREE_STATE, self._receive)
+
+    def _describe(self, message: Any) -> None:
+        if message.data == self._told:
+            return
+        self._told = message.data
+        try:
+            data = read_state_entry(json.loads(message.data))
+        except ValueError as error:
+            raise FormatError(f"not JSON ({error})", where="tree_description") from None
+        if data is None:
+            return
+        self._description = decode_description(data)
+        self.server.describe(data)
+
+    def _receive(self, message: Any) -> None:
+        description = self._description
+        if description is None:
+            return
+        wind, coordinates = read_state(message)
+        scale = description.arrays["basis_scale"]
+        if len(coordinates) != len(scale):
+            raise FormatError(
+                f"{len(coordinates)} coordinates of a tree with {len(scale)}", where="tree_state"
+            )
+        steps, is_cut = quantised(coordinates, scale)
+        flags = BEYOND_SCALE if is_cut else 0
+        stamp = stamp_to_ns(message.header.stamp)
+        frame = Frame(description.short_identity, self._sequence, stamp, flags, wind, steps)
+        self._sequence += 1
+        self.server.publish(encode_frame(frame))
+
+    def _status(self) -> dict[str, Any]:
+        return {"source": "ROS 2"}
+
+    def _statuses(self) -> list[Status]:
+        values = {"pages": self.server.n_clients, "frames": self._sequence}
+        return [Status("page", OK, f"{self.server.n_clients} pages", values)]
+
+    def _apply(self, name: str, value: Any) -> None:
+        """Pass a viewer's change on to the node it concerns; its refusal is told later."""
+        if name == "reset":
+            self._ask(self._reset, Trigger.Request(), lambda answer: "")
+        elif name == "pause":
+            self._ask(self._pause, SetBool.Request(data=bool(value)), lambda answer: "")
+        else:
+            number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
+            request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
+            self._ask(self._setters[_LIVE[name][0]], request, _reason)
+
+    def _ask(self, client: Any, request: Any, reason: Callable[[Any], str]) -> None:
+        if not client.service_is_ready():
+            raise ParameterError(
+                f"nothing offers {client.srv_name}", cure="start the node, or leave this as it is"
+            )
+
+        def answered(future: Any) -> None:
+            why = reason(future.result())
+            if why:
+                self.server.tell({"refused": {"name": "", "reason": why}})
+
+        with self._lock:
+            client.call_async(request).add_done_callback(answered)
+
+
+def _reason(answer: Any) -> str:
+    """Why parameters were refused; empty if they were not."""
+    return next((str(each.reason) for each in answer.results if not each.successful), "")
+
+
+def _controls() -> tuple[Control, ...]:
+    """What viewers may change, with the ranges of the nodes' parameters."""
+    controls = []
+    for name, (node, label) in _LIVE.items():
+        parameter = next(p for p in NODE_PARAMETERS[node] if p.name == name)
+        controls.append(
+            Control(
+                name, label, parameter.default, parameter.description, parameter.unit,
+                parameter.minimum, parameter.maximum,
+            )
+        )  # fmt: skip
+    return (
+        *controls,
+        Control("pause", "Pause", False, "Time stands still."),
+        Control("reset", "Reset", None, "Back to rest.", is_action=True),
+    )

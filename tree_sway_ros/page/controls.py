@@ -1,0 +1,132 @@
+"""
+What a viewer may change: each control with its range, and how a change is applied or refused.
+
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tree_sway_ros.errors import ParameterError, TreeSwayError
+
+
+@dataclass(frozen=True)
+class Control:
+    """
+    One thing that a viewer may change.
+
+    Parameters
+    ----------
+    name
+        In messages.
+    label, description
+        For people.
+    value
+        Now; its kind (bool, float, str) is the kind that is accepted.
+    unit
+        SI unit; may be empty.
+    minimum, maximum
+        Range of a number.
+    choices
+        Strings that are accepted.
+    is_action
+        Whether it is a button without a value.
+
+    """
+
+    name: str
+    label: str
+    value: Any
+    description: str = ""
+    unit: str = ""
+    minimum: float | None = None
+    maximum: float | None = None
+    choices: tuple[str, ...] = ()
+    is_action: bool = False
+
+    def checked(self, value: Any) -> Any:
+        """
+        Convert a value that came from outside.
+
+        Raises
+        ------
+        ParameterError
+            Wrong kind, not finite, out of range, not among the choices; says what is right.
+
+        """
+        if self.is_action:
+            return None
+        if isinstance(self.value, float):
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise self._error(f"{value!r} is not a number")
+            number = float(value)
+            low = -math.inf if self.minimum is None else self.minimum
+            high = math.inf if self.maximum is None else self.maximum
+            if not (math.isfinite(number) and low <= number <= high):
+                raise self._error(f"{number:g} is out of range")
+            return number
+        if type(value) is not type(self.value):
+            raise self._error(f"{value!r} is not {type(self.value).__name__}")
+        if self.choices and value not in self.choices:
+            raise self._error(f"'{value}' is not among its choices")
+        return value
+
+    def _error(self, what: str) -> ParameterError:
+        if self.choices:
+            cure = f"use one of: {', '.join(self.choices)}"
+        elif self.minimum is not None and self.maximum is not None:
+            cure = f"give {self.minimum:g} .. {self.maximum:g} {self.unit}".rstrip()
+        else:
+            cure = f"give a {type(self.value).__name__}"
+        return ParameterError(what, where=self.name, cure=cure)
+
+
+class ControlPanel:
+    """
+    All controls, and what carries changes out.
+
+    Parameters
+    ----------
+    controls
+        What may be changed.
+    apply
+        Called with name and checked value; raises `TreeSwayError` to refuse.
+
+    """
+
+    def __init__(
+        self, controls: tuple[Control, ...] = (), apply: Callable[[str, Any], None] | None = None
+    ) -> None:
+        self._controls = {control.name: control for control in controls}
+        self._apply = apply
+
+    def told(self) -> list[dict[str, Any]]:
+        """All controls as JSON has them."""
+        return [vars(control) for control in self._controls.values()]
+
+    def values(self) -> dict[str, Any]:
+        """Values by name, actions left out."""
+        return {c.name: c.value for c in self._controls.values() if not c.is_action}
+
+    def update(self, values: Mapping[str, Any]) -> None:
+        """Note values that were changed from elsewhere; names that are no control are left out."""
+        for name, value in values.items():
+            if name in self._controls:
+                self._controls[name] = replace(self._controls[name], value=value)
+
+    def set(self, name: Any, value: Any) -> str | None:
+        """Change something; returns why not, None if it was done."""
+        control = self._controls.get(name) if isinstance(name, str) else None
+        if control is None or self._apply is None:
+            return f"nothing called '{str(name)[:40]}' can be changed here"
+        try:
+            checked = control.checked(value)
+            self._apply(control.name, checked)
+        except TreeSwayError as error:
+            return str(error)
+        if not control.is_action:
+            self._controls[control.name] = replace(control, value=checked)
+        return None

@@ -1,0 +1,200 @@
+"""
+What a receiver needs to rebuild every pose from a frame: the rest tree, how its branches bend, and
+the basis of the state.
+
+A branch that moves with its parent as one body has no coordinate, and slopes of 0. Trees of a scene
+follow each other in every array.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.rotation import rotated
+from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.page.protocol import encode_description
+
+RIGID = -1
+"""Coordinate of a branch that has none."""
+
+
+def describe_scene(
+    simulator: Any,
+    bases: Sequence[Any],
+    *,
+    frame_id: str = "map",
+    leaves: LeafClusters | None = None,
+) -> bytes:
+    """
+    Describe a tree or a forest for receivers of its state.
+
+    Parameters
+    ----------
+    simulator
+        Of a tree or a forest, on the model whose state will be sent.
+    bases
+        A `StateBasis` per tree.
+    frame_id
+        Frame of the poses.
+    leaves
+        Clusters of leaves of all trees together; None without.
+
+    Returns
+    -------
+    bytes
+        As `encode_description`.
+
+    """
+    simulators = simulators_of(simulator)
+    parts = [_branches(each) for each in simulators]
+    arrays: dict[str, Any] = _joined(parts)
+    trees: list[dict[str, Any]] = []
+    coordinates = key = 0
+    blocks: list[list[int]] = []
+    # Trees of one shape share a matrix, which is sent once.
+    place_of: dict[int, int] = {}
+    matrices: list[Any] = []
+    for each, basis in zip(simulators, bases, strict=True):
+        rows, columns = basis.matrix.shape
+        if id(basis) not in place_of:
+            place_of[id(basis)] = sum(len(matrix) for matrix in matrices)
+            matrices.append(_float32(basis.matrix.ravel()))
+        at = place_of[id(basis)]
+        blocks.append([key, key + rows, coordinates, coordinates + columns, at])
+        tree = each.tree
+        trees.append(
+            {
+                "name": tree.name,
+                "species": tree.species,
+                "height": round(tree.height, 4),
+                "branches": tree.n_branches,
+                "segments": tree.n_segments,
+                "coordinates": columns,
+                "model": each.model,
+                "basis_error": float(basis.error.greatest),
+            }
+        )
+        coordinates, key = coordinates + columns, key + rows
+    arrays["basis_block"] = np.array(blocks, dtype=np.int32)
+    arrays["basis_matrix"] = np.concatenate(matrices)
+    arrays["basis_scale"] = _float32(np.concatenate([basis.scale for basis in bases]))
+    header: dict[str, Any] = {
+        "format": "tree_sway description",
+        "name": simulator.tree.name,
+        "frame_id": frame_id,
+        "trees": trees,
+        "branch_names": list(simulator.tree.branch_names),
+    }
+    if leaves is not None:
+        header["flutter"] = {"gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
+        arrays["leaf_segment"] = leaves.segment.astype(np.int32)
+        for name in ("offset", "orientation", "size", "frequency", "phase"):
+            arrays[f"leaf_{name}"] = _float32(getattr(leaves, name))
+    return encode_description(header, arrays)
+
+
+def _branches(simulator: Any) -> dict[str, Any]:
+    """
+    Arrays of one tree: how each branch of the whole tree is placed.
+
+    """
+    bank, tree = simulator.bank, simulator.tree
+    n_columns = bank.segments["slope"].shape[1]
+    arrays = _at_rest(tree, n_columns)
+    record_at = {int(first): i for i, first in enumerate(bank.branches["first"])}
+    for branch, first in enumerate(tree.branch_first[:-1].tolist()):
+        if first not in record_at:
+            continue
+        record = bank.branches[record_at[first]]
+        here = tree.segments_of(branch)
+        rows = slice(record["block"], record["block"] + here.stop - here.start)
+        arrays["branch_coordinate"][branch] = record["coordinate"]
+        arrays["branch_pairs"][branch] = record["n_pairs"]
+        arrays["branch_twists"][branch] = record["n_coordinates"] - 2 * record["n_pairs"]
+        arrays["branch_frame"][branch] = record["frame"]
+        arrays["branch_skew"][branch] = record["skew"], record["tip_skew"]
+        arrays["branch_base_slope"][branch] = record["base_slope"]
+        arrays["segment_slope"][here] = bank.segments["slope"][rows, :, record["lane"]]
+        arrays["segment_tip_slope"][here] = bank.segments["tip_slope"][rows, record["lane"]]
+    if bank.frozen is not None:
+        top_at = {int(first): t for t, first in enumerate(bank.frozen.rows[:, 1])}
+        for branch, first in enumerate(tree.branch_first[:-1].tolist()):
+            if first in top_at:
+                slopes = bank.frozen.base_slope[top_at[first]]
+                arrays["branch_base_slope"][branch] = slopes[:n_columns]
+    return arrays
+
+
+def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
+    """
+    Arrays of a tree none of whose branches bends.
+
+    """
+    b, n = tree.n_branches, tree.n_segments
+    rest = tree.rest_frame
+    chord = np.empty((n, 3))
+    chord[:-1] = tree.start[1:] - tree.start[:-1]
+    last = tree.branch_first[1:] - 1
+    chord[last] = tree.end[last] - tree.start[last]
+    under = tree.segment_parent[tree.branch_first[:-1]]
+    offset = tree.start[tree.branch_first[:-1]].copy()
+    for branch in np.flatnonzero(under >= 0):
+        w, x, y, z = rest[under[branch]]
+        away = offset[branch] - tree.start[under[branch]]
+        offset[branch] = rotated.py_func(w, -x, -y, -z, *away)  # type: ignore[attr-defined]
+    return {
+        "branch_parent": tree.branch_parent.astype(np.int32),
+        "branch_base_segment": under.astype(np.int32),
+        "branch_first": tree.branch_first[:-1].astype(np.int32),
+        "branch_coordinate": np.full(b, RIGID, dtype=np.int32),
+        "branch_pairs": np.zeros(b, dtype=np.uint8),
+        "branch_twists": np.zeros(b, dtype=np.uint8),
+        "branch_frame": np.zeros((b, 3, 3), dtype=np.float32),
+        "branch_skew": np.zeros((b, 2), dtype=np.float32),
+        "branch_base_slope": np.zeros((b, n_columns), dtype=np.float32),
+        "branch_offset": _float32(offset),
+        "segment_slope": np.zeros((n, n_columns), dtype=np.float32),
+        "segment_tip_slope": np.zeros(n, dtype=np.float32),
+        "segment_chord": _float32(chord),
+        "segment_rest": _float32(rest),
+        "segment_length": _float32(tree.length),
+        "segment_radius": _float32(0.5 * np.stack([tree.base_diameter, tree.tip_diameter], axis=1)),
+    }
+
+
+def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """
+    Arrays of trees one after another, indices shifted; narrow slopes are widened.
+
+    """
+    columns = max(part["segment_slope"].shape[1] for part in parts)
+    branch = segment = coordinate = 0
+    for part in parts:
+        for name in ("branch_base_slope", "segment_slope"):
+            missing = columns - part[name].shape[1]
+            part[name] = np.pad(part[name], ((0, 0), (0, missing)))
+        counts = 2 * part["branch_pairs"].astype(int) + part["branch_twists"]
+        for name, shift in (
+            ("branch_parent", branch),
+            ("branch_base_segment", segment),
+            ("branch_coordinate", coordinate),
+        ):
+            part[name] = np.where(part[name] >= 0, part[name] + shift, part[name]).astype(np.int32)
+        part["branch_first"] = part["branch_first"] + np.int32(segment)
+        branch += len(part["branch_parent"])
+        segment += len(part["segment_length"])
+        coordinate += int(counts.sum())
+    arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    arrays["branch_first"] = np.append(arrays["branch_first"], np.int32(segment)).astype(np.int32)
+    return arrays
+
+
+def _float32(values: Any) -> Any:
+    return np.asarray(values, dtype=np.float32)

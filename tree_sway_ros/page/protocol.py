@@ -1,0 +1,232 @@
+"""
+The binary form of a swaying tree: a description sent once, then frames that stand for themselves.
+
+`doc/streaming.md` is the specification; ``static/protocol.js`` reads the same bytes. Everything is
+little-endian. A frame holds the state and the wind, no more: some 60 bytes whatever the tree's
+size.
+
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.errors import FormatError
+
+VERSION = 1
+MAGIC = b"TSWD"
+FRAME_KIND = 0x46
+FULL_SCALE = 32767
+"""Value of an int16 coordinate that stands for the coordinate's scale."""
+
+WIND_UNIT = 0.005
+"""Wind of one unit of its int16 in [m/s]."""
+
+PAUSED, BEYOND_SCALE, RESTARTED = 1, 2, 4
+"""Flags of a frame: time stands still, a number was cut to its scale, the motion jumped."""
+
+_TYPES = {"f32": "<f4", "i32": "<i4", "u8": "u1", "i16": "<i2"}
+_NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
+_PREFIX = struct.Struct("<4sII")
+_FRAME = struct.Struct("<BBBxIIq3hH")
+_ALIGNMENT = 8
+
+
+class Frame(NamedTuple):
+    """
+    One state of a tree or a scene.
+
+    Parameters
+    ----------
+    identity
+        First four bytes of the identity of the description that it belongs to.
+    sequence
+        Counts frames, from 0, modulo 2^32.
+    stamp
+        Time of the state in [ns].
+    flags
+        Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`.
+    wind
+        At the anemometer, blowing to, in [m/s], (3,).
+    coordinates
+        As int16, (m,): full scale is `FULL_SCALE`.
+
+    """
+
+    identity: int
+    sequence: int
+    stamp: int
+    flags: int
+    wind: Floats
+    coordinates: Any
+
+
+@dataclass(frozen=True)
+class Description:
+    """
+    What is sent once.
+
+    Parameters
+    ----------
+    header
+        Names and numbers, as JSON has them.
+    arrays
+        Arrays by name.
+    identity
+        SHA-256 of the content, the first 16 hexadecimal digits.
+
+    """
+
+    header: dict[str, Any]
+    arrays: dict[str, Any]
+    identity: str
+
+    @property
+    def short_identity(self) -> int:
+        """What frames carry of the identity."""
+        return int(self.identity[:8], 16)
+
+
+def encode_description(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> bytes:
+    """
+    Write a description.
+
+    Parameters
+    ----------
+    header
+        Whatever JSON can hold; `version`, `identity` and `arrays` are added.
+    arrays
+        Arrays of float32, int32, int16 or uint8.
+
+    """
+    body, table = bytearray(), {}
+    for name, value in arrays.items():
+        array = np.ascontiguousarray(value)
+        kind = _NAMES[array.dtype.newbyteorder("<")]
+        table[name] = {"type": kind, "shape": list(array.shape), "offset": len(body)}
+        body += array.astype(_TYPES[kind]).tobytes()
+        body += bytes(-len(body) % _ALIGNMENT)
+    content = {**header, "version": VERSION, "arrays": table}
+    digest = hashlib.sha256(_json(content) + body).hexdigest()
+    text = _json({**content, "identity": digest[:16]})
+    text += b" " * (-(_PREFIX.size + len(text)) % _ALIGNMENT)
+    return _PREFIX.pack(MAGIC, VERSION, len(text)) + text + bytes(body)
+
+
+def decode_description(data: bytes) -> Description:
+    """
+    Read a description.
+
+    Raises
+    ------
+    FormatError
+        Not a description, of another version, cut short or changed on the way.
+
+    """
+    if len(data) < _PREFIX.size or data[:4] != MAGIC:
+        raise _broken("it does not begin with TSWD")
+    _, version, size = _PREFIX.unpack_from(data)
+    if version != VERSION:
+        raise FormatError(
+            f"a description of version {version}",
+            where="tree description",
+            cure=f"this program reads version {VERSION}: update the older side",
+        )
+    begin = _PREFIX.size + size
+    try:
+        header = json.loads(data[_PREFIX.size : begin])
+        identity, table = header.pop("identity"), header["arrays"]
+        arrays = {name: _array(data[begin:], entry) for name, entry in table.items()}
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _broken(f"{type(error).__name__}: {error}") from None
+    if hashlib.sha256(_json(header) + data[begin:]).hexdigest()[:16] != identity:
+        raise _broken("its content does not match its identity")
+    del header["arrays"]
+    return Description(header, arrays, identity)
+
+
+def encode_frame(frame: Frame) -> bytes:
+    """Write a frame; a wind beyond the range of its int16 is cut and flagged."""
+    wind = np.rint(np.asarray(frame.wind) / WIND_UNIT)
+    cut = np.clip(wind, -FULL_SCALE, FULL_SCALE)
+    flags = frame.flags | (BEYOND_SCALE if (cut != wind).any() else 0)
+    x, y, z = cut.astype(int).tolist()
+    coordinates = np.asarray(frame.coordinates, dtype="<i2")
+    return (
+        _FRAME.pack(
+            FRAME_KIND, VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF, frame.stamp,
+            x, y, z, len(coordinates),
+        )
+        + coordinates.tobytes()
+    )  # fmt: skip
+
+
+def decode_frame(data: bytes) -> Frame:
+    """
+    Read a frame.
+
+    Raises
+    ------
+    FormatError
+        Not a frame, of another version, or of another length than it says.
+
+    """
+    if len(data) < _FRAME.size or data[0] != FRAME_KIND:
+        raise FormatError("not a frame", where="tree state", cure="send frames of doc/streaming.md")
+    _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
+    if version != VERSION or len(data) != _FRAME.size + 2 * count:
+        raise FormatError(
+            f"a frame of version {version}, {count} coordinates and {len(data)} bytes",
+            where="tree state",
+            cure=f"send version {VERSION}, {_FRAME.size} bytes and 2 per coordinate",
+        )
+    coordinates = np.frombuffer(data, dtype="<i2", offset=_FRAME.size)
+    return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
+
+
+def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Any, bool]:
+    """
+    Coordinates as int16.
+
+    Parameters
+    ----------
+    values, scale
+        Coordinates and what full scale stands for, (m,).
+
+    Returns
+    -------
+    tuple
+        int16 (m,), and whether any coordinate was beyond its scale and is cut to it.
+
+    """
+    exact = np.rint(np.asarray(values) * (FULL_SCALE / np.asarray(scale)))
+    cut = np.clip(exact, -FULL_SCALE, FULL_SCALE)
+    return cut.astype("<i2"), bool((cut != exact).any())
+
+
+def _json(content: Mapping[str, Any]) -> bytes:
+    return json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
+
+
+def _array(body: bytes, entry: Mapping[str, Any]) -> Any:
+    shape = tuple(int(size) for size in entry["shape"])
+    count = int(np.prod(shape, dtype=np.int64))
+    flat = np.frombuffer(body, dtype=_TYPES[entry["type"]], count=count, offset=entry["offset"])
+    return flat.reshape(shape)
+
+
+def _broken(why: str) -> FormatError:
+    return FormatError(
+        f"not a whole description: {why}",
+        where="tree description",
+        cure="ask the sender for it again",
+    )

@@ -1,0 +1,221 @@
+"""
+A live tree without ROS: a thread that steps it in real time and hands each state to the server.
+
+What a viewer asks for that takes long (another tree, another model) is built on a second thread,
+while the first goes on, and taken over between two steps.
+
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tree_sway_ros.core.scene.demand import tell_demand
+from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.errors import ParameterError, TreeSwayError
+from tree_sway_ros.page.scene_state import SceneState
+from tree_sway_ros.page.server import PageServer
+from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
+
+_MOST_LATE = 0.25
+_NEWEST = 0.05
+
+
+@dataclass(frozen=True)
+class Choices:
+    """
+    What is built: changing one of these makes a new simulator.
+
+    Parameters
+    ----------
+    tree
+        Name or file.
+    count
+        How many of it stand together, a whole number as text.
+    fidelity
+        Its model.
+    damping_ratio
+        Of every mode; 0 for the species' own.
+
+    """
+
+    tree: str
+    count: str = "1"
+    fidelity: str = "modes"
+    damping_ratio: float = 0.0
+
+
+Build = Callable[[Choices], tuple[Any, Any]]
+"""Makes the simulator and the leaves, or none, of some choices."""
+
+
+class Session:
+    """
+    Steps a scene in real time, and takes changes while it runs.
+
+    Parameters
+    ----------
+    build
+        Makes the simulator and the leaves.
+    choices
+        What to begin with.
+    wind
+        What blows.
+    rate
+        Steps per second in [Hz].
+    tolerance
+        Largest error that model ``auto`` allows in [m].
+
+    Raises
+    ------
+    TreeSwayError
+        As `build`.
+
+    """
+
+    def __init__(
+        self,
+        build: Build,
+        choices: Choices,
+        wind: WindSource,
+        *,
+        rate: float = 60.0,
+        tolerance: float = 0.005,
+    ) -> None:
+        self._build, self.wind, self._period = build, wind, 1.0 / rate
+        self.choices, self._tolerance = choices, tolerance
+        self._scene = self._made(choices)
+        self._next: SceneState | None = None
+        self._server: PageServer | None = None
+        self._stop = threading.Event()
+        self._is_paused = self._resets = False
+        self._time = 0.0
+        self._work, self._spacing, self._late = 0.0, self._period, 0
+        self._last = time.perf_counter()
+        self._builder: threading.Thread | None = None
+        self._wanted: Choices | None = None
+        self._thread = threading.Thread(target=self._run, name="session", daemon=True)
+        self.failure: Exception | None = None
+
+    def serve(self, server: PageServer) -> None:
+        """Publish on a server from now on; the first time, begin to step."""
+        server.describe(self._scene.description)
+        self._server = server
+        if not self._thread.is_alive():
+            self._thread.start()
+
+    def stop(self) -> None:
+        """Stop stepping; may be called twice."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=5.0)
+
+    def apply(self, name: str, value: Any) -> None:
+        """
+        Carry out a change of a viewer.
+
+        Raises
+        ------
+        ParameterError
+            A change that this session does not know, or cannot carry out now.
+
+        """
+        if name == "pause":
+            self._is_paused = bool(value)
+        elif name == "reset":
+            self._resets = True
+        elif name == "tolerance":
+            self._tolerance = float(value)
+            tell_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
+        elif name in ("mean_speed", "intensity", "bearing_to"):
+            if not isinstance(self.wind, SimulatedWind):
+                raise ParameterError(
+                    "the wind is a record", where=name, cure="start without --wind"
+                )
+            self.wind.set(name, float(value))
+        elif name in Choices.__dataclass_fields__:
+            self._want(replace(self._wanted or self.choices, **{name: value}))
+        else:
+            raise ParameterError(f"'{name}' cannot be changed", where="page")
+
+    def status(self) -> dict[str, Any]:
+        """What the page shows beside the tree."""
+        simulator = self._scene.simulator
+        return {
+            "model": simulator.model,
+            "rate": round(1.0 / max(self._spacing, 1e-6), 1),
+            "work_us": round(1e6 * self._work, 1),
+            "late": self._late,
+            "branches": simulator.tree.n_branches,
+            "segments": simulator.tree.n_segments,
+            "solved": simulator.n_solved,
+            "building": self._wanted is not None,
+            "paused": self._is_paused,
+        }
+
+    def _made(self, choices: Choices) -> SceneState:
+        simulator, leaves = self._build(choices)
+        scene = SceneState(simulator, leaves)
+        tell_demand(simulators_of(simulator), tolerance=self._tolerance)
+        simulator.reset()
+        return scene
+
+    def _want(self, choices: Choices) -> None:
+        self._wanted = choices
+        if self._builder is None or not self._builder.is_alive():
+            self._builder = threading.Thread(target=self._build_wanted, daemon=True)
+            self._builder.start()
+
+    def _build_wanted(self) -> None:
+        """Build what was asked for last; a refusal is told to the viewers."""
+        while (wanted := self._wanted) is not None:
+            try:
+                self._next = self._made(wanted)
+                self.choices = wanted
+                refused = None
+            except TreeSwayError as error:
+                refused = {"name": "", "reason": str(error)}
+            if self._wanted is wanted:
+                self._wanted = None
+            if refused is not None and self._server is not None:
+                self._server.tell({"refused": refused}, vars(self.choices))
+
+    def _run(self) -> None:
+        try:
+            due = self._last = time.perf_counter()
+            while not self._stop.is_set():
+                self._step(time.perf_counter())
+                due += self._period
+                now = time.perf_counter()
+                if now - due > _MOST_LATE:
+                    self._late += 1
+                    due = now
+                self._stop.wait(max(0.0, due - now))
+        except Exception as error:
+            self.failure = error
+
+    def _step(self, begin: float) -> None:
+        assert self._server is not None
+        has_restarted, self._resets = self._resets, False
+        if self._next is not None:
+            self._scene, self._next = self._next, None
+            self._server.describe(self._scene.description)
+        simulator = self._scene.simulator
+        if has_restarted:
+            simulator.reset()
+        if not self._is_paused:
+            wind = self.wind.mean(self._time, self._time + self._period)
+            simulator.step(wind, self._period)
+            self._time += self._period
+        frame = self._scene.frame(
+            time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
+        )
+        self._server.publish(frame)
+        now = time.perf_counter()
+        self._work += _NEWEST * (now - begin - self._work)
+        self._spacing += _NEWEST * (begin - self._last - self._spacing)
+        self._last = begin

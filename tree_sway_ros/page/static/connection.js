@@ -1,0 +1,126 @@
+/**
+ * The line to the server: opens it, asks for frames by credit, opens it again when it is lost.
+ */
+
+import { decodeDescription, decodeFrame, isFrame, ProtocolError } from "./protocol.js";
+
+const CREDIT = 12;
+const GRANT_EVERY = 4;
+const SHORTEST_WAIT = 500;
+const LONGEST_WAIT = 10000;
+const PING_EVERY = 2000;
+/** A line that has been silent for so long is taken for lost [ms]. */
+const SILENCE = 6000;
+
+/**
+ * @typedef {"connecting" | "open" | "lost"} LineState
+ *
+ * @typedef {object} Listeners
+ * @property {(state: LineState, retryIn: number) => void} onState
+ * @property {(description: import("./protocol.js").Description) => void} onDescription
+ * @property {(frame: import("./protocol.js").Frame, arrival: number, size: number) => void} onFrame
+ * @property {(message: Record<string, any>) => void} onMessage
+ */
+
+/** One line to a server, for good once `open` has been called. */
+export class Connection {
+  /**
+   * @param {string} url of the stream
+   * @param {Listeners} listeners
+   * @param {number} [rate] frames per second that are asked for
+   */
+  constructor(url, listeners, rate = 30) {
+    this.url = url;
+    this.listeners = listeners;
+    this.rate = rate;
+    this.roundTrip = NaN;
+    /** @type {import("./protocol.js").Description | null} */
+    this.description = null;
+    /** @type {WebSocket | null} */
+    this._socket = null;
+    this._wait = SHORTEST_WAIT;
+    this._ungranted = 0;
+    this._heard = 0;
+    this._retry = 0;
+    setInterval(() => this._watch(), PING_EVERY);
+  }
+
+  /** Open the line now, whatever the wait. */
+  open() {
+    clearTimeout(this._retry);
+    this._socket?.close();
+    const socket = new WebSocket(this.url);
+    socket.binaryType = "arraybuffer";
+    this._socket = socket;
+    this._heard = performance.now();
+    this.listeners.onState("connecting", 0);
+    socket.onopen = () => {
+      this._wait = SHORTEST_WAIT;
+      this._ungranted = 0;
+      this.send({ rate: this.rate, credit: CREDIT, ping: performance.now() });
+      this.listeners.onState("open", 0);
+    };
+    socket.onmessage = (event) => {
+      if (socket === this._socket) this._take(event.data);
+    };
+    socket.onclose = () => {
+      if (socket === this._socket) this._lose();
+    };
+  }
+
+  /** @param {Record<string, any>} message */
+  send(message) {
+    if (this._socket?.readyState === WebSocket.OPEN) this._socket.send(JSON.stringify(message));
+  }
+
+  _lose() {
+    this._socket = null;
+    // Many pages that lose one server do not come back in one instant.
+    const wait = this._wait * (0.75 + 0.5 * Math.random());
+    this._wait = Math.min(2 * this._wait, LONGEST_WAIT);
+    this._retry = setTimeout(() => this.open(), wait);
+    this.listeners.onState("lost", wait);
+  }
+
+  _watch() {
+    if (this._socket?.readyState !== WebSocket.OPEN) return;
+    if (performance.now() - this._heard > SILENCE) {
+      const socket = this._socket;
+      this._lose();
+      socket.close();
+      return;
+    }
+    this.send({ ping: performance.now() });
+  }
+
+  /** @param {string | ArrayBuffer} data */
+  _take(data) {
+    const arrival = Date.now();
+    this._heard = performance.now();
+    if (typeof data === "string") {
+      const message = JSON.parse(data);
+      if (typeof message.pong === "number") this.roundTrip = performance.now() - message.pong;
+      this.listeners.onMessage(message);
+      return;
+    }
+    try {
+      if (!isFrame(data)) {
+        this.description = decodeDescription(data);
+        this.listeners.onDescription(this.description);
+        return;
+      }
+      this._ungranted += 1;
+      if (this._ungranted >= GRANT_EVERY) {
+        this.send({ credit: this._ungranted });
+        this._ungranted = 0;
+      }
+      if (this.description) {
+        const frame = decodeFrame(data, this.description);
+        this.listeners.onFrame(frame, arrival, data.byteLength);
+      }
+    } catch (error) {
+      if (!(error instanceof ProtocolError)) throw error;
+      this.listeners.onMessage({ unreadable: error.message });
+    }
+  }
+}

@@ -1,0 +1,381 @@
+/**
+ * Shapes of a scene as vertex arrays, made once: every vertex hangs on a segment, whose pose the
+ * graphics unit looks up. A branch is one tube: the ring between two segments belongs to both.
+ */
+
+import { Placer, STRIDE } from "./placing.js";
+
+/** Segments that are drawn at most; the thickest branches of a larger scene. */
+export const MOST_SEGMENTS = 9000;
+const POTTED = new Set(["benjamina", "goldcrest"]);
+const NEEDLES = new Set(["goldcrest", "spruce", "sitka", "douglas_fir", "pine"]);
+
+/** @typedef {import("./protocol.js").Description} Description */
+
+/** Vertex arrays that grow. */
+class Growing {
+  /** @param {number} width numbers per vertex, the segment apart */
+  constructor(width) {
+    this.width = width;
+    /** @type {number[]} */
+    this.values = [];
+    /** @type {number[]} */
+    this.segments = [];
+    /** @type {number[]} */
+    this.indices = [];
+  }
+
+  get count() {
+    return this.segments.length;
+  }
+
+  /**
+   * @param {number} segment
+   * @param {number[]} values
+   */
+  add(segment, ...values) {
+    this.segments.push(segment);
+    for (const value of values) this.values.push(value);
+  }
+}
+
+/** @param {Description} description */
+export function speciesOf(description) {
+  return description.trees[0]?.species ?? "";
+}
+
+/** @param {Description} description */
+export function isPotted(description) {
+  return description.trees.length === 1 && POTTED.has(speciesOf(description));
+}
+
+/** @param {Description} description */
+export function hasNeedles(description) {
+  return NEEDLES.has(speciesOf(description));
+}
+
+/**
+ * Branches to draw, parents first: all, or the thickest of a scene with too many segments.
+ *
+ * @param {Description} description
+ * @param {number} [most]
+ */
+export function drawnBranches(description, most = MOST_SEGMENTS) {
+  const { arrays, nBranches, nSegments } = description;
+  const all = Int32Array.from({ length: nBranches }, (_, i) => i);
+  if (nSegments <= most) return all;
+  const first = arrays.branch_first;
+  const weight = new Float32Array(nBranches);
+  for (let b = 0; b < nBranches; b++) {
+    let length = 0;
+    for (let s = first[b]; s < first[b + 1]; s++) length += arrays.segment_length[s];
+    const own = length * arrays.segment_radius[2 * first[b]];
+    const parent = arrays.branch_parent[b];
+    weight[b] = parent < 0 ? Infinity : Math.min(own, weight[parent] * (1 - 1e-6));
+  }
+  const heaviest = all.slice().sort((a, b) => weight[b] - weight[a]);
+  let total = 0;
+  let kept = 0;
+  while (kept < nBranches && total < most) {
+    total += first[heaviest[kept] + 1] - first[heaviest[kept]];
+    kept++;
+  }
+  return heaviest.slice(0, kept).sort();
+}
+
+/**
+ * Poses at rest, of every segment.
+ *
+ * @param {Description} description
+ */
+export function restPoses(description) {
+  return new Placer(description).place(new Float32Array(description.nCoordinates));
+}
+
+/**
+ * Box of the tree at rest.
+ *
+ * @param {Float32Array} poses
+ * @returns {{low: [number, number, number], high: [number, number, number]}}
+ */
+export function boxOf(poses) {
+  /** @type {[number, number, number]} */
+  const low = [Infinity, Infinity, Infinity];
+  /** @type {[number, number, number]} */
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (let s = 0; s < poses.length; s += STRIDE) {
+    for (let c = 0; c < 3; c++) {
+      low[c] = Math.min(low[c], poses[s + c]);
+      high[c] = Math.max(high[c], poses[s + c]);
+    }
+  }
+  return { low, high };
+}
+
+/**
+ * The bark: rings of [along, across cosine, across sine, shade], joined to tubes.
+ *
+ * @param {Description} description
+ * @param {Int32Array} branches
+ * @param {Float32Array} rest
+ */
+export function barkMesh(description, branches, rest) {
+  const { arrays } = description;
+  const radius = arrays.segment_radius;
+  const length = arrays.segment_length;
+  const { low, high } = boxOf(rest);
+  const size = Math.max(high[2] - low[2], 0.1);
+  const few = branches.length > 3000;
+  const mesh = new Growing(4);
+  for (const branch of branches) {
+    const from = arrays.branch_first[branch];
+    const end = arrays.branch_first[branch + 1];
+    const thick = radius[2 * from] / size;
+    const sides = thick > 0.006 ? 12 : thick > 0.0025 && !few ? 6 : 3;
+    const isStem = arrays.branch_parent[branch] < 0;
+    let turn = 0;
+    let risen = 0;
+    for (let s = from; s <= end; s++) {
+      const segment = Math.min(s, end - 1);
+      const isLast = s === end;
+      if (s > from && !isLast) turn += twistBetween(rest, s - 1, s);
+      // At a joint both segments agree on the thickness: no steps in the bark.
+      let r = isLast
+        ? radius[2 * segment + 1]
+        : s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : radius[2 * s];
+      r = Math.max(r, 0.0007 * size);
+      if (isStem) r *= 1 + 0.9 * Math.exp(-risen / (2.5 * radius[2 * from]));
+      for (let k = 0; k < sides; k++) {
+        const angle = (2 * Math.PI * k) / sides - turn;
+        mesh.add(segment, isLast ? length[segment] : 0, r * Math.cos(angle), r * Math.sin(angle),
+          Math.min(1, thick / 0.01));
+      }
+      risen += isLast ? 0 : length[s];
+      if (s === from) continue;
+      const ring = mesh.count - sides;
+      for (let k = 0; k < sides; k++) {
+        const next = (k + 1) % sides;
+        const a = ring - sides + k;
+        const b = ring - sides + next;
+        mesh.indices.push(a, b, ring + k, b, ring + next, ring + k);
+      }
+    }
+  }
+  return mesh;
+}
+
+/**
+ * How far the frame of a segment is twisted about its axis from that of the one before [rad].
+ *
+ * @param {Float32Array} poses
+ * @param {number} before
+ * @param {number} after
+ */
+function twistBetween(poses, before, after) {
+  const y = axis(poses, before, 1);
+  const x = axis(poses, after, 0);
+  const along = y[0] * x[0] + y[1] * x[1] + y[2] * x[2];
+  for (let c = 0; c < 3; c++) y[c] -= along * x[c];
+  const ny = axis(poses, after, 1);
+  const nz = axis(poses, after, 2);
+  const cosine = y[0] * ny[0] + y[1] * ny[1] + y[2] * ny[2];
+  const sine = y[0] * nz[0] + y[1] * nz[1] + y[2] * nz[2];
+  return -Math.atan2(sine, cosine);
+}
+
+/**
+ * An axis of a segment's frame.
+ *
+ * @param {Float32Array} poses
+ * @param {number} segment
+ * @param {0 | 1 | 2} which
+ * @returns {[number, number, number]}
+ */
+function axis(poses, segment, which) {
+  const o = STRIDE * segment + 4;
+  const v = [0, 0, 0];
+  v[which] = 1;
+  return rotate(poses[o], poses[o + 1], poses[o + 2], poses[o + 3], v[0], v[1], v[2]);
+}
+
+/**
+ * @param {number} x
+ * @param {number} y
+ * @param {number} z
+ * @param {number} w
+ * @param {number} vx
+ * @param {number} vy
+ * @param {number} vz
+ * @returns {[number, number, number]}
+ */
+function rotate(x, y, z, w, vx, vy, vz) {
+  const tx = 2 * (y * vz - z * vy);
+  const ty = 2 * (z * vx - x * vz);
+  const tz = 2 * (x * vy - y * vx);
+  return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
+}
+
+/** Numbers that are the same on every page. */
+function seeded() {
+  let state = 12345;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) | 0;
+    return (state >>> 8) / 16777216;
+  };
+}
+
+/**
+ * Leaves: each cluster is a spray of blades, each blade two triangles folded at the midrib.
+ * Per vertex: centre of the cluster (3), its orientation w x y z (4), place in it (3), normal in it
+ * (3), flutter frequency and phase (2), shade (1).
+ *
+ * @param {Description} description
+ * @param {Int32Array} branches that are drawn
+ * @param {Float32Array} rest
+ * @param {number} blades that may be drawn
+ */
+export function leafMesh(description, branches, rest, blades) {
+  const { arrays } = description;
+  const mesh = new Growing(16);
+  const carrier = arrays.leaf_segment;
+  if (!carrier) return mesh;
+  const random = seeded();
+  const needles = hasNeedles(description);
+  const each = Math.max(2, Math.min(needles ? 12 : 8, Math.floor(blades / carrier.length)));
+  const hung = hungOn(description, branches);
+  const { low, high } = boxOf(rest);
+  const middle = [0, 1, 2].map((c) => 0.5 * (low[c] + high[c]));
+  const half = [0, 1, 2].map((c) => 0.5 * Math.max(high[c] - low[c], 0.1));
+  for (let i = 0; i < carrier.length; i++) {
+    let segment = carrier[i];
+    let centre = [0, 1, 2].map((c) => arrays.leaf_offset[3 * i + c]);
+    let turn = [0, 1, 2, 3].map((c) => arrays.leaf_orientation[4 * i + c]);
+    const o = STRIDE * segment;
+    const q = [rest[o + 4], rest[o + 5], rest[o + 6], rest[o + 7]];
+    const at = rotate(q[0], q[1], q[2], q[3], centre[0], centre[1], centre[2]);
+    for (let c = 0; c < 3; c++) at[c] += rest[o + c];
+    if (hung[segment] !== segment) {
+      segment = hung[segment];
+      const p = STRIDE * segment;
+      const [bx, by, bz, bw] = [-rest[p + 4], -rest[p + 5], -rest[p + 6], rest[p + 7]];
+      centre = rotate(bx, by, bz, bw, at[0] - rest[p], at[1] - rest[p + 1], at[2] - rest[p + 2]);
+      turn = multiply([bw, bx, by, bz], multiply([q[3], q[0], q[1], q[2]], turn));
+    }
+    // The inside of a crown is darker than its outside, its top lighter than its foot.
+    const out = Math.hypot(...[0, 1, 2].map((c) => (at[c] - middle[c]) / half[c])) / 1.3;
+    const open = Math.min(1, 0.25 + 0.75 * out) * (0.8 + 0.2 * ((at[2] - low[2]) / (2 * half[2])));
+    const size = arrays.leaf_size[i];
+    for (let blade = 0; blade < each; blade++) {
+      const shade = open * (0.82 + 0.36 * random());
+      addBlade(mesh, segment, centre, turn, size, needles, random, arrays.leaf_frequency[i],
+        arrays.leaf_phase[i] + 6.28 * random(), shade);
+    }
+  }
+  return mesh;
+}
+
+/**
+ * @param {Growing} mesh
+ * @param {number} segment
+ * @param {number[]} centre
+ * @param {number[]} turn
+ * @param {number} size of the cluster [m]
+ * @param {boolean} needles
+ * @param {() => number} random
+ * @param {number} frequency
+ * @param {number} phase
+ * @param {number} shade
+ */
+function addBlade(mesh, segment, centre, turn, size, needles, random, frequency, phase, shade) {
+  const angle = 2 * Math.PI * random();
+  const far = size * (needles ? 0.15 : 0.3) * Math.sqrt(random());
+  const long = size * (needles ? 0.62 : 0.6) * (0.75 + 0.5 * random());
+  const wide = long * (needles ? 0.09 : 0.27);
+  const tilt = (needles ? 1.1 : 0.9) * (random() - 0.5) * 2;
+  const droop = (needles ? 0.5 : 0.35) * (random() - 0.7);
+  const along = [Math.cos(angle) * Math.cos(droop), Math.sin(angle) * Math.cos(droop), Math.sin(droop)];
+  const flat = [-Math.sin(angle), Math.cos(angle), 0];
+  const side = [flat[0] * Math.cos(tilt), flat[1] * Math.cos(tilt), Math.sin(tilt)];
+  const normal = [
+    along[1] * side[2] - along[2] * side[1],
+    along[2] * side[0] - along[0] * side[2],
+    along[0] * side[1] - along[1] * side[0],
+  ];
+  const base = [far * Math.cos(angle), far * Math.sin(angle), 0.3 * size * (random() - 0.5)];
+  const first = mesh.count;
+  const corners = needles
+    ? [[0, 0, 0], [0.5, 1, 0], [1, 0, 0], [0.5, -1, 0]]
+    : [[0, 0, 0], [0.42, 1, 0.25], [1, 0, -0.12], [0.42, -1, 0.25]];
+  for (const [u, v, lift] of corners) {
+    const place = [0, 1, 2].map(
+      (c) => base[c] + u * long * along[c] + v * wide * side[c] + lift * wide * normal[c],
+    );
+    const lean = needles ? 0 : 0.35 * v;
+    mesh.add(segment, ...centre, ...turn, ...place,
+      normal[0] - lean * side[0], normal[1] - lean * side[1], normal[2] - lean * side[2],
+      frequency, phase, shade);
+  }
+  mesh.indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
+}
+
+/**
+ * The drawn segment that each segment moves with: itself, or what carries the branch left out.
+ *
+ * @param {Description} description
+ * @param {Int32Array} branches
+ */
+function hungOn(description, branches) {
+  const { arrays, nSegments, nBranches } = description;
+  const hung = Int32Array.from({ length: nSegments }, (_, i) => i);
+  const isDrawn = new Uint8Array(nBranches);
+  for (const branch of branches) isDrawn[branch] = 1;
+  for (let branch = 0; branch < nBranches; branch++) {
+    if (isDrawn[branch]) continue;
+    const under = hung[arrays.branch_base_segment[branch]];
+    hung.fill(under, arrays.branch_first[branch], arrays.branch_first[branch + 1]);
+  }
+  return hung;
+}
+
+/**
+ * Quaternion product, w x y z.
+ *
+ * @param {number[]} a
+ * @param {number[]} b
+ */
+function multiply(a, b) {
+  return [
+    a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+    a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+    a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+    a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+  ];
+}
+
+/**
+ * A shape turned about the vertical from a profile of [radius, height], with colour per point.
+ *
+ * @param {[number, number, [number, number, number]][]} profile
+ * @param {number} sides
+ */
+export function turnedMesh(profile, sides) {
+  /** @type {number[]} */
+  const values = [];
+  /** @type {number[]} */
+  const indices = [];
+  profile.forEach(([r, z, color], i) => {
+    const [r0, z0] = profile[Math.max(i - 1, 0)];
+    const [r1, z1] = profile[Math.min(i + 1, profile.length - 1)];
+    const size = Math.hypot(r1 - r0, z1 - z0) || 1;
+    for (let k = 0; k < sides; k++) {
+      const angle = (2 * Math.PI * k) / sides;
+      const [c, s] = [Math.cos(angle), Math.sin(angle)];
+      values.push(r * c, r * s, z, (c * (z1 - z0)) / size, (s * (z1 - z0)) / size, (r0 - r1) / size, ...color);
+      if (i === 0) continue;
+      const a = (i - 1) * sides + k;
+      const b = (i - 1) * sides + ((k + 1) % sides);
+      indices.push(a, b, a + sides, b, b + sides, a + sides);
+    }
+  });
+  return { values, indices };
+}

@@ -1,0 +1,521 @@
+/** Draws a described tree from its poses: bark, leaves, pot, ground, shadow and the wind. */
+
+import { Camera } from "./camera.js";
+import {
+  barkMesh,
+  boxOf,
+  drawnBranches,
+
+  isPotted,
+  leafMesh,
+  restPoses,
+  speciesOf,
+  turnedMesh,
+} from "./mesh.js";
+import { Placer, STRIDE } from "./placing.js";
+import * as shaders from "./shaders.js";
+
+const SHADOW_SIZE = 512;
+const POT_HEIGHT = 0.17;
+
+/**
+ * @typedef {object} Look
+ * @property {number[]} back
+ * @property {number[]} ground
+ *
+ * @typedef {object} Drawable
+ * @property {WebGLVertexArrayObject} vao
+ * @property {number} count
+ * @property {WebGLBuffer[]} buffers
+ */
+
+/** @type {Record<string, Look>} */
+export const LOOKS = {
+  light: { back: [0.925, 0.937, 0.945], ground: [0.8, 0.805, 0.79] },
+  dark: { back: [0.075, 0.09, 0.105], ground: [0.17, 0.185, 0.19] },
+};
+
+/** @type {Record<string, {bark: number[], twig: number[], leaf: number[], fresh: number[]}>} */
+const WOODS = {
+  usual: { bark: [0.42, 0.33, 0.26], twig: [0.36, 0.3, 0.2], leaf: [0.2, 0.4, 0.13], fresh: [0.45, 0.62, 0.2] },
+  benjamina: { bark: [0.56, 0.49, 0.4], twig: [0.42, 0.4, 0.26], leaf: [0.12, 0.35, 0.12], fresh: [0.36, 0.58, 0.2] },
+  goldcrest: { bark: [0.46, 0.31, 0.21], twig: [0.46, 0.42, 0.17], leaf: [0.4, 0.52, 0.1], fresh: [0.72, 0.74, 0.18] },
+  spruce: { bark: [0.4, 0.29, 0.22], twig: [0.38, 0.28, 0.18], leaf: [0.11, 0.27, 0.16], fresh: [0.25, 0.43, 0.22] },
+  birch: { bark: [0.82, 0.81, 0.78], twig: [0.4, 0.3, 0.25], leaf: [0.3, 0.48, 0.16], fresh: [0.55, 0.68, 0.25] },
+};
+WOODS.sitka = WOODS.spruce;
+WOODS.douglas_fir = WOODS.spruce;
+WOODS.pine = { ...WOODS.spruce, bark: [0.55, 0.36, 0.25] };
+
+/** @param {WebGLRenderingContext | WebGL2RenderingContext} gl */
+function isSoftware(gl) {
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+export class Scene {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   */
+  constructor(canvas) {
+    const probe = document.createElement("canvas").getContext("webgl2");
+    if (!probe) throw new Error("this browser has no WebGL 2");
+    /** Without a graphics unit: fewer points, fewer shadows. */
+    this.isSlow = isSoftware(probe);
+    probe.getExtension("WEBGL_lose_context")?.loseContext();
+    const gl = canvas.getContext("webgl2", {
+      antialias: !this.isSlow,
+      alpha: false,
+      powerPreference: "high-performance",
+    });
+    if (!gl) throw new Error("this browser has no WebGL 2");
+    this.gl = gl;
+    this.canvas = canvas;
+    this.camera = new Camera();
+    /** @type {Look} */
+    this.look = LOOKS.light;
+    /** @type {Placer | null} */
+    this.placer = null;
+    /** @type {import("./protocol.js").Description | null} */
+    this.description = null;
+    this.leavesShown = true;
+    /** @type {[number, number, number]} */
+    this.wind = [0, 0, 0];
+    this.light = normalized([0.45, -0.5, 0.95]);
+    this._frame = 0;
+    this._programs = {
+      bark: program(gl, shaders.BARK_VERTEX, shaders.BARK_FRAGMENT),
+      leaf: program(gl, shaders.LEAF_VERTEX, shaders.LEAF_FRAGMENT),
+      solid: program(gl, shaders.SOLID_VERTEX, shaders.SOLID_FRAGMENT),
+      ground: program(gl, shaders.GROUND_VERTEX, shaders.GROUND_FRAGMENT),
+    };
+    this._texture = gl.createTexture();
+    this._rows = 0;
+    /** @type {Float32Array} */
+    this._texels = new Float32Array(0);
+    /** @type {Record<string, Drawable | null>} */
+    this._parts = { bark: null, leaf: null, pot: null, arrow: null, ground: null };
+    this._parts.arrow = this._solid(arrowMesh());
+    this._parts.pot = this._solid(potMesh());
+    this._parts.ground = this._plane();
+    this._shadow = this._shadowTarget();
+    this._groundHeight = 0;
+    this._middle = [0, 0];
+    this._extent = 1;
+    this._treeHeight = 1;
+    this._potSize = 1;
+  }
+
+  /**
+   * Take another tree.
+   *
+   * @param {import("./protocol.js").Description} description
+   */
+  describe(description) {
+    const { gl } = this;
+    const rest = restPoses(description);
+    const branches = drawnBranches(description);
+    this.placer = new Placer(description, branches);
+    this.placer.poses.set(rest);
+    this.description = description;
+    const isSame = this._name === description.name;
+    this._name = description.name;
+    this._rows = Math.ceil((2 * description.nSegments) / shaders.TEXTURE_WIDTH);
+    this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * this._rows);
+    gl.bindTexture(gl.TEXTURE_2D, this._texture);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    }
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, shaders.TEXTURE_WIDTH, this._rows, 0, gl.RGBA,
+      gl.FLOAT, null);
+    this._free("bark");
+    this._free("leaf");
+    const bark = barkMesh(description, branches, rest);
+    this._parts.bark = this._hung("bark", bark, [["ring", 4]]);
+    const leaves = leafMesh(description, branches, rest, this.isSlow ? 4500 : 24000);
+    this._parts.leaf = this._hung("leaf", leaves, [
+      ["centre", 3],
+      ["orientation", 4],
+      ["place", 3],
+      ["facing", 3],
+      ["flutter", 3],
+    ]);
+    const { low, high } = boxOf(rest);
+    const high2 = Math.max(high[2] - low[2], 0.05);
+    const wide = Math.max(high[0] - low[0], high[1] - low[1], 0.4 * high2);
+    const root = rest.subarray(0, 3);
+    this._treeHeight = high2;
+    this._potSize = isPotted(description) ? POT_HEIGHT * high2 : 0;
+    this._root = Array.from(root);
+    this._groundHeight = (isPotted(description) ? root[2] : Math.min(low[2], root[2])) - this._potSize;
+    this._middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+    this._extent = Math.max(wide, high2);
+    if (!isSame) {
+      this.camera.frame([low[0], low[1], this._groundHeight], [high[0], high[1], high[2]]);
+    }
+    this._frame = 0;
+  }
+
+  /**
+   * Where a segment's root-side node is now.
+   *
+   * @param {number} segment
+   */
+  position(segment) {
+    const poses = this.placer?.poses;
+    return poses ? Array.from(poses.subarray(STRIDE * segment, STRIDE * segment + 3)) : [0, 0, 0];
+  }
+
+  /** Fit the picture to the element. */
+  resize() {
+    const ratio = this.isSlow ? 1 : Math.min(window.devicePixelRatio || 1, 2);
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
+    if (this.canvas.width === width && this.canvas.height === height) return;
+    const narrow = this.camera.aspect < 1;
+    this.canvas.width = width;
+    this.canvas.height = height;
+    this.camera.aspect = width / height;
+    if (narrow !== this.camera.aspect < 1) this.camera.home();
+  }
+
+  /**
+   * Draw.
+   *
+   * @param {Float32Array | null} coordinates the state; the poses stay as they are if null
+   * @param {number} time [s]
+   */
+  draw(coordinates, time) {
+    const { gl, look } = this;
+    this.resize();
+    const matrix = this.camera.update();
+    if (this.placer && coordinates) this.placer.place(coordinates);
+    if (this.placer) this._upload(this.placer.poses);
+    // The eye takes a shadow that is three frames old for one that is not.
+    if (this.placer && this._frame % (this.isSlow ? 4 : 1) === 0) this._castShadow(matrix, time);
+    this._frame++;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.clearColor(look.back[0], look.back[1], look.back[2], 1);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    if (!this.placer) return;
+    this._drawTree(matrix, time, false);
+    this._drawSolids(matrix, false);
+    this._drawGround(matrix);
+  }
+
+  /** @param {Float32Array} poses */
+  _upload(poses) {
+    const { gl } = this;
+    this._texels.set(poses);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, this._texture);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, this._rows, gl.RGBA, gl.FLOAT,
+      this._texels);
+  }
+
+  /**
+   * @param {Float32Array} matrix
+   * @param {number} time
+   */
+  _castShadow(matrix, time) {
+    const { gl } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this._shadow.target);
+    gl.viewport(0, 0, SHADOW_SIZE, SHADOW_SIZE);
+    gl.clearColor(0, 0, 0, 1);
+    gl.disable(gl.DEPTH_TEST);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    this._drawTree(matrix, time, true);
+    this._drawSolids(matrix, true);
+  }
+
+  /**
+   * @param {Program} used
+   * @param {Float32Array} matrix
+   * @param {boolean} isShadow
+   */
+  _begin(used, matrix, isShadow) {
+    const { gl, light } = this;
+    const at = used.uniforms;
+    gl.useProgram(used.program);
+    gl.uniformMatrix4fv(at.camera, false, matrix);
+    gl.uniform3f(at.light, light[0], light[1], light[2]);
+    gl.uniform1f(at.ground, this._groundHeight);
+    gl.uniform1f(at.isShadow, isShadow ? 1 : 0);
+    gl.uniform4f(at.shadowArea, this._middle[0], this._middle[1], 1 / this._shadowHalf,
+      isShadow ? 1 : 0);
+    gl.uniform1i(at.poses, 0);
+  }
+
+  get _shadowHalf() {
+    return 1.6 * this._extent;
+  }
+
+  /**
+   * @param {Float32Array} matrix
+   * @param {number} time
+   * @param {boolean} isShadow
+   */
+  _drawTree(matrix, time, isShadow) {
+    const { gl } = this;
+    const description = /** @type {import("./protocol.js").Description} */ (this.description);
+    const wood = WOODS[speciesOf(description)] ?? WOODS.usual;
+    const { bark, leaf } = this._parts;
+    if (bark) {
+      const used = this._programs.bark;
+      this._begin(used, matrix, isShadow);
+      gl.uniform3fv(used.uniforms.barkColor, wood.bark);
+      gl.uniform3fv(used.uniforms.twigColor, wood.twig);
+      drawPart(gl, bark);
+    }
+    if (leaf && this.leavesShown && leaf.count) {
+      const used = this._programs.leaf;
+      this._begin(used, matrix, isShadow);
+      gl.uniform3fv(used.uniforms.leafColor, wood.leaf);
+      gl.uniform3fv(used.uniforms.freshColor, wood.fresh);
+      gl.uniform1f(used.uniforms.time, time % 1000);
+      gl.uniform1f(used.uniforms.speed, Math.hypot(...this.wind));
+      const law = description.flutter ?? { gain: 0, largest_angle: 1 };
+      gl.uniform2f(used.uniforms.law, law.gain, law.largest_angle);
+      drawPart(gl, leaf);
+    }
+  }
+
+  /**
+   * The pot and the arrow of the wind.
+   *
+   * @param {Float32Array} matrix
+   * @param {boolean} isShadow
+   */
+  _drawSolids(matrix, isShadow) {
+    const { gl } = this;
+    const used = this._programs.solid;
+    this._begin(used, matrix, isShadow);
+    const root = this._root ?? [0, 0, 0];
+    if (this._potSize > 0 && this._parts.pot) {
+      gl.uniform4f(used.uniforms.placed, root[0], root[1], root[2], this._potSize);
+      gl.uniform2f(used.uniforms.heading, 1, 0);
+      drawPart(gl, this._parts.pot);
+    }
+    const speed = Math.hypot(this.wind[0], this.wind[1]);
+    if (speed > 0.05 && this._parts.arrow) {
+      const long = this._treeHeight * 0.34 * Math.tanh(speed / 9);
+      const [c, s] = [this.wind[0] / speed, this.wind[1] / speed];
+      const away = 0.62 * this._extent;
+      const z = this._groundHeight + 0.02 * this._treeHeight;
+      gl.uniform4f(used.uniforms.placed, this._middle[0] - c * away, this._middle[1] - s * away, z,
+        long);
+      gl.uniform2f(used.uniforms.heading, c, s);
+      drawPart(gl, this._parts.arrow);
+    }
+  }
+
+  /** @param {Float32Array} matrix */
+  _drawGround(matrix) {
+    const { gl, look } = this;
+    const used = this._programs.ground;
+    const half = 5 * this._extent;
+    gl.useProgram(used.program);
+    gl.uniformMatrix4fv(used.uniforms.camera, false, matrix);
+    gl.uniform4f(used.uniforms.area, this._middle[0], this._middle[1], half, this._groundHeight);
+    gl.uniform3fv(used.uniforms.groundColor, look.ground);
+    gl.uniform3fv(used.uniforms.backColor, look.back);
+    gl.uniform1f(used.uniforms.shadowShare, this._shadowHalf / half);
+    gl.uniform1f(used.uniforms.softness, 1.6 / SHADOW_SIZE);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, this._shadow.texture);
+    gl.uniform1i(used.uniforms.shadow, 1);
+    if (this._parts.ground) drawPart(gl, this._parts.ground);
+    gl.activeTexture(gl.TEXTURE0);
+  }
+
+  _shadowTarget() {
+    const { gl } = this;
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, SHADOW_SIZE, SHADOW_SIZE, 0, gl.RED, gl.UNSIGNED_BYTE,
+      null);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    const target = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    return { target, texture };
+  }
+
+  /** @param {string} part */
+  _free(part) {
+    const old = this._parts[part];
+    if (!old) return;
+    for (const buffer of old.buffers) this.gl.deleteBuffer(buffer);
+    this.gl.deleteVertexArray(old.vao);
+    this._parts[part] = null;
+  }
+
+  /**
+   * @param {"bark" | "leaf"} name
+   * @param {{values: number[], segments: number[], indices: number[], width: number}} mesh
+   * @param {[string, number][]} fields
+   * @returns {Drawable}
+   */
+  _hung(name, mesh, fields) {
+    const { gl } = this;
+    const used = this._programs[name];
+    const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
+    gl.bindVertexArray(vao);
+    const segments = filled(gl, gl.ARRAY_BUFFER, Uint32Array.from(mesh.segments));
+    const at = gl.getAttribLocation(used.program, "segment");
+    gl.enableVertexAttribArray(at);
+    gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
+    const buffers = [segments, ...this._fields(used, mesh.values, fields, mesh.indices)];
+    return { vao, count: mesh.indices.length, buffers };
+  }
+
+  /**
+   * @param {{values: number[], indices: number[]}} mesh
+   * @returns {Drawable}
+   */
+  _solid(mesh) {
+    const { gl } = this;
+    const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
+    gl.bindVertexArray(vao);
+    const fields = /** @type {[string, number][]} */ ([["at", 3], ["facing", 3], ["tint", 3]]);
+    const buffers = this._fields(this._programs.solid, mesh.values, fields, mesh.indices);
+    return { vao, count: mesh.indices.length, buffers };
+  }
+
+  /** @returns {Drawable} */
+  _plane() {
+    const { gl } = this;
+    const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
+    gl.bindVertexArray(vao);
+    const values = [0, 0];
+    const indices = [];
+    for (let k = 0; k < 48; k++) {
+      values.push(Math.cos((2 * Math.PI * k) / 48), Math.sin((2 * Math.PI * k) / 48));
+      indices.push(0, 1 + k, 1 + ((k + 1) % 48));
+    }
+    const buffers = this._fields(this._programs.ground, values, [["corner", 2]], indices);
+    return { vao, count: indices.length, buffers };
+  }
+
+  /**
+   * @param {Program} used
+   * @param {number[]} values
+   * @param {[string, number][]} fields
+   * @param {number[]} indices
+   */
+  _fields(used, values, fields, indices) {
+    const { gl } = this;
+    const buffer = filled(gl, gl.ARRAY_BUFFER, Float32Array.from(values));
+    const width = fields.reduce((sum, [, size]) => sum + size, 0);
+    let offset = 0;
+    for (const [name, size] of fields) {
+      const at = gl.getAttribLocation(used.program, name);
+      if (at >= 0) {
+        gl.enableVertexAttribArray(at);
+        gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * width, 4 * offset);
+      }
+      offset += size;
+    }
+    return [buffer, filled(gl, gl.ELEMENT_ARRAY_BUFFER, Uint32Array.from(indices))];
+  }
+}
+
+/**
+ * @typedef {object} Program
+ * @property {WebGLProgram} program
+ * @property {Record<string, WebGLUniformLocation>} uniforms
+ */
+
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {string} vertex
+ * @param {string} fragment
+ * @returns {Program}
+ */
+function program(gl, vertex, fragment) {
+  const made = /** @type {WebGLProgram} */ (gl.createProgram());
+  for (const [kind, source] of /** @type {[number, string][]} */ ([
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, fragment],
+  ])) {
+    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) {
+      throw new Error(String(gl.getShaderInfoLog(shader)));
+    }
+    gl.attachShader(made, shader);
+  }
+  gl.linkProgram(made);
+  if (!gl.getProgramParameter(made, gl.LINK_STATUS)) {
+    throw new Error(String(gl.getProgramInfoLog(made)));
+  }
+  /** @type {Record<string, WebGLUniformLocation>} */
+  const uniforms = {};
+  for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
+    const { name } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
+    uniforms[name] = /** @type {WebGLUniformLocation} */ (gl.getUniformLocation(made, name));
+  }
+  return { program: made, uniforms };
+}
+
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {number} kind
+ * @param {ArrayBufferView} data
+ */
+function filled(gl, kind, data) {
+  const buffer = /** @type {WebGLBuffer} */ (gl.createBuffer());
+  gl.bindBuffer(kind, buffer);
+  gl.bufferData(kind, data, gl.STATIC_DRAW);
+  return buffer;
+}
+
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {Drawable} part
+ */
+function drawPart(gl, part) {
+  gl.bindVertexArray(part.vao);
+  gl.drawElements(gl.TRIANGLES, part.count, gl.UNSIGNED_INT, 0);
+}
+
+/** @param {number[]} v */
+function normalized(v) {
+  const size = Math.hypot(...v);
+  return v.map((each) => each / size);
+}
+
+function potMesh() {
+  /** @type {[number, number, number]} */
+  const clay = [0.71, 0.41, 0.29];
+  /** @type {[number, number, number]} */
+  const rim = [0.78, 0.48, 0.35];
+  /** @type {[number, number, number]} */
+  const soil = [0.24, 0.18, 0.14];
+  return turnedMesh(
+    [
+      [0, -1, clay], [0.5, -1, clay], [0.52, -0.98, clay], [0.66, -0.2, clay],
+      [0.74, -0.2, rim], [0.77, -0.17, rim], [0.77, 0.07, rim], [0.74, 0.09, rim],
+      [0.7, 0.09, rim], [0.68, 0.06, rim], [0.67, 0.0, soil], [0.35, 0.025, soil], [0, 0.03, soil],
+    ],
+    36,
+  );
+}
+
+/** An arrow of length 1 along x, lying flat. */
+function arrowMesh() {
+  const blue = [0.16, 0.47, 0.78];
+  /** @type {number[]} */
+  const values = [];
+  for (const [x, y] of [[0, 0.05], [0, -0.05], [0.66, -0.05], [0.66, 0.05], [0.62, 0.17], [0.62, -0.17], [1, 0]]) {
+    values.push(x, y, 0, 0, 0, 1, ...blue);
+  }
+  return { values, indices: [0, 1, 2, 0, 2, 3, 4, 5, 6] };
+}
+

@@ -1,0 +1,168 @@
+/** Programs of the graphics unit. Poses lie in a texture, two texels per segment. */
+
+export const TEXTURE_WIDTH = 1024;
+
+const POSE = `#version 300 es
+precision highp float;
+precision highp int;
+uniform highp sampler2D poses;
+uniform mat4 camera;
+uniform float ground;
+uniform vec3 light;
+uniform vec4 shadowArea; // middle x, y, one over half its size, 1 when the shadow is drawn
+vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
+vec4 seen(vec3 p) {
+  if (shadowArea.w < 0.5) return camera * vec4(p, 1.0);
+  vec2 flat_ = p.xy - light.xy / light.z * (p.z - ground);
+  return vec4((flat_ - shadowArea.xy) * shadowArea.z, 0.0, 1.0);
+}
+`;
+
+export const BARK_VERTEX = `${POSE}
+in uint segment;
+in vec4 ring; // along, across y, across z, thickness
+out vec3 normal;
+out vec3 shade; // thickness, height over the ground, around
+void main() {
+  vec3 at = texel(2u * segment).xyz;
+  vec4 q = texel(2u * segment + 1u);
+  vec3 across = vec3(0.0, ring.yz);
+  vec3 p = at + turned(q, vec3(ring.x, 0.0, 0.0) + across);
+  normal = turned(q, across);
+  shade = vec3(ring.w, p.z - ground, p.z);
+  gl_Position = seen(p);
+}`;
+
+export const BARK_FRAGMENT = `#version 300 es
+precision highp float;
+in vec3 normal;
+in vec3 shade;
+uniform vec3 light;
+uniform vec3 barkColor;
+uniform vec3 twigColor;
+uniform float isShadow;
+out vec4 color;
+void main() {
+  if (isShadow > 0.5) { color = vec4(1.0); return; }
+  vec3 n = normalize(normal);
+  float lit = max(dot(n, light), 0.0);
+  float sky = 0.5 + 0.5 * n.z;
+  vec3 base = mix(twigColor, barkColor, shade.x);
+  color = vec4(base * (0.34 + 0.28 * sky + 0.62 * lit), 1.0);
+}`;
+
+export const LEAF_VERTEX = `${POSE}
+in uint segment;
+in vec3 centre;
+in vec4 orientation; // w x y z
+in vec3 place;
+in vec3 facing;
+in vec3 flutter; // frequency, phase, shade
+uniform float time;
+uniform float speed;
+uniform vec2 law; // gain, largest angle
+out vec3 normal;
+out float shade;
+void main() {
+  vec3 at = texel(2u * segment).xyz;
+  vec4 q = texel(2u * segment + 1u);
+  float a = law.y * tanh(law.x * speed * speed / (flutter.x * law.y));
+  a *= sin(6.2831853 * flutter.x * time + flutter.y);
+  float c = cos(a);
+  float s = sin(a);
+  vec3 local = vec3(place.x, c * place.y - s * place.z, s * place.y + c * place.z);
+  vec3 face = vec3(facing.x, c * facing.y - s * facing.z, s * facing.y + c * facing.z);
+  vec4 own = orientation.yzwx;
+  vec3 p = at + turned(q, centre + turned(own, local));
+  normal = turned(q, turned(own, face));
+  shade = flutter.z;
+  gl_Position = seen(p);
+}`;
+
+export const LEAF_FRAGMENT = `#version 300 es
+precision highp float;
+in vec3 normal;
+in float shade;
+uniform vec3 light;
+uniform vec3 leafColor;
+uniform vec3 freshColor;
+uniform float isShadow;
+out vec4 color;
+void main() {
+  if (isShadow > 0.5) { color = vec4(1.0); return; }
+  vec3 n = normalize(normal);
+  float across = dot(n, light);
+  float lit = max(across, 0.0) + 0.55 * max(-across, 0.0);
+  vec3 base = mix(leafColor, freshColor, 0.45 * shade + 0.25 * max(-across, 0.0));
+  float sheen = 0.12 * pow(abs(across), 12.0);
+  color = vec4(base * shade * (0.5 + 0.72 * lit) + sheen * shade, 1.0);
+}`;
+
+export const SOLID_VERTEX = `${POSE}
+in vec3 at;
+in vec3 facing;
+in vec3 tint;
+uniform vec4 placed; // x, y, z, scale
+uniform vec2 heading; // cosine and sine about the vertical
+out vec3 normal;
+out vec3 base;
+void main() {
+  vec3 p = at * placed.w;
+  p = vec3(heading.x * p.x - heading.y * p.y, heading.y * p.x + heading.x * p.y, p.z) + placed.xyz;
+  normal = vec3(heading.x * facing.x - heading.y * facing.y,
+    heading.y * facing.x + heading.x * facing.y, facing.z);
+  base = tint;
+  gl_Position = seen(p);
+}`;
+
+export const SOLID_FRAGMENT = `#version 300 es
+precision highp float;
+in vec3 normal;
+in vec3 base;
+uniform vec3 light;
+uniform float isShadow;
+out vec4 color;
+void main() {
+  if (isShadow > 0.5) { color = vec4(1.0); return; }
+  vec3 n = normalize(normal);
+  float lit = max(dot(n, light), 0.0);
+  color = vec4(base * (0.45 + 0.2 * n.z + 0.55 * lit), 1.0);
+}`;
+
+export const GROUND_VERTEX = `#version 300 es
+precision highp float;
+uniform mat4 camera;
+uniform vec4 area; // middle x, y, half its size, height
+in vec2 corner;
+out vec2 place;
+void main() {
+  place = corner;
+  gl_Position = camera * vec4(area.xy + corner * area.z, area.w, 1.0);
+}`;
+
+export const GROUND_FRAGMENT = `#version 300 es
+precision highp float;
+in vec2 place;
+uniform sampler2D shadow;
+uniform vec3 groundColor;
+uniform vec3 backColor;
+uniform float shadowShare; // of the ground's size
+uniform float softness;
+out vec4 color;
+void main() {
+  float far = length(place);
+  vec2 at = place / shadowShare;
+  float dark = 0.0;
+  if (max(abs(at.x), abs(at.y)) < 1.0) {
+    vec2 uv = 0.5 + 0.5 * at;
+    dark = 0.4 * texture(shadow, uv).r;
+    dark += 0.15 * texture(shadow, uv + vec2(softness, 0.0)).r;
+    dark += 0.15 * texture(shadow, uv - vec2(softness, 0.0)).r;
+    dark += 0.15 * texture(shadow, uv + vec2(0.0, softness)).r;
+    dark += 0.15 * texture(shadow, uv - vec2(0.0, softness)).r;
+    dark *= 1.0 - smoothstep(0.75, 1.0, length(at));
+  }
+  vec3 lit = groundColor * (1.0 - 0.42 * dark);
+  color = vec4(mix(lit, backColor, smoothstep(0.35, 1.0, far)), 1.0);
+}`;

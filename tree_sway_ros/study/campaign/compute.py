@@ -1,0 +1,109 @@
+"""One case from plain data to plain numbers, in whatever process it is asked."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.growth.grow import grow
+from tree_sway_ros.core.reference.measure import frame_means
+from tree_sway_ros.core.scene.simulate import GrownTree, simulate
+from tree_sway_ros.core.scene.sway_record import SwayRecord
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.source import open_tree
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.study.campaign.plan import Case, Plain
+
+
+def compute(case: Case) -> tuple[Plain, SwayRecord]:
+    """
+    Compute a case.
+
+    Parameters
+    ----------
+    case
+        What to compute.
+
+    Returns
+    -------
+    dict, SwayRecord
+        What it asked for beside its numbers: frequency in [Hz], tip in [m], base moment in [N m],
+        strain [-]; and the record over time.
+
+    Raises
+    ------
+    TreeSwayError
+        A tree, a wind or a setting that cannot be.
+
+    """
+    tree = _tree(tuple(sorted(case.tree.items())))
+    settings = dict(case.settings)
+    fidelity = settings.pop("fidelity", "auto")
+    record = simulate(
+        tree, _wind(case), rate=case.rate, seconds=case.seconds, fidelity=fidelity, **settings
+    )
+    layer = CalibratedTree(tree.tree, tree.species, Settings(**settings))
+    row: Plain = {**_told("tree", case.tree), **_told("wind", case.wind), **case.settings}
+    row |= {
+        "seconds": case.seconds,
+        "branches": tree.tree.n_branches,
+        "segments": tree.tree.n_segments,
+        "height": tree.tree.height,
+        "model": record.model,
+        "frequency": float(layer.bank("modes").frequencies[0]),
+        "wind_mean": float(np.linalg.norm(record.wind.mean(axis=0))),
+        "wind_largest": float(np.linalg.norm(record.wind, axis=1).max()),
+    }
+    row |= _summary("tip", record.tips[:, 0]) | _summary("base_moment", record.base_moment)
+    row["strain_largest"] = float(np.abs(record.base_strain).max())
+    return row, record
+
+
+@lru_cache(maxsize=8)
+def _tree(items: tuple[tuple[str, Any], ...]) -> GrownTree:
+    asked = dict(items)
+    if "species" in asked:
+        species = species_named(asked["species"])
+        rng = np.random.default_rng(asked["seed"])
+        return TreeFile(grow(species.key, asked["height"], rng=rng), species, "grown")
+    opened = open_tree(asked.get("file") or asked["name"])
+    if not isinstance(opened, TreeFile):
+        raise FormatError("is a forest", where=opened.source, cure="name its trees one by one")
+    return opened
+
+
+def _wind(case: Case) -> Floats:
+    if "file" in case.wind:
+        record = read_wind(case.wind["file"])
+        return case.wind["scale"] * frame_means(record.time, record.velocity, 1.0 / case.rate)
+    rng = np.random.default_rng(case.wind["seed"])
+    return simulate_turbulence(
+        case.wind["speed"],
+        rate=case.rate,
+        duration=case.seconds,
+        rng=rng,
+        intensity=case.wind["intensity"],
+    )
+
+
+def _told(what: str, asked: Plain) -> Plain:
+    return {f"{what}_{key}": value for key, value in asked.items()}
+
+
+def _summary(name: str, rows: Floats) -> Plain:
+    length = np.linalg.norm(rows, axis=1)
+    about = np.linalg.norm(np.std(rows, axis=0))
+    mean = np.linalg.norm(rows.mean(axis=0))
+    return {
+        f"{name}_mean": float(mean),
+        f"{name}_rms": float(about),
+        f"{name}_largest": float(length.max()),
+    }

@@ -1,0 +1,179 @@
+"""
+From a study file to its cases: every tree in every wind with every combination of settings.
+
+A case is plain data, so that any process on any machine can compute it, and has a name that
+follows from all that its numbers follow from: what it asks for, the content of the files that it
+reads, and the source of the simulator.
+
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field, fields
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import yaml
+
+from tree_sway_ros import kernel_cache
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.errors import FormatError, ParameterError
+
+Plain = dict[str, Any]
+
+_OWN_FIELDS = ("leaf_mass", "leaf_area", "profile", "model")
+"""Settings that a study does not vary: arrays, and what ``fidelity`` says."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """
+    One tree in one wind with one set of settings.
+
+    Parameters
+    ----------
+    tree
+        ``{"name": ...}``, ``{"file": path}`` or ``{"species", "height", "seed"}``.
+    wind
+        ``{"file": path, "scale"}`` or ``{"speed", "intensity", "seed"}``.
+    settings
+        Fields of `Settings`, and ``fidelity``.
+    seconds, rate
+        Length in [s] and steps per second [Hz].
+    series
+        Whether the record over time is kept.
+    digest
+        Of the files it reads and of the simulator's source.
+
+    """
+
+    tree: Plain
+    wind: Plain
+    settings: Plain = field(default_factory=dict)
+    seconds: float = 60.0
+    rate: float = 60.0
+    series: bool = False
+    digest: str = ""
+
+    @property
+    def name(self) -> str:
+        """Twenty letters and digits that no other case has."""
+        text = json.dumps(asdict(self), sort_keys=True)
+        return hashlib.blake2b(text.encode(), digest_size=10).hexdigest()
+
+
+def read_study(path: str | Path) -> list[Case]:
+    """
+    Read a study file.
+
+    Parameters
+    ----------
+    path
+        YAML; names of files in it are looked for beside it.
+
+    Returns
+    -------
+    list of Case
+        In the order of trees, winds, settings.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read, is no YAML, or is not what the schema says.
+    ParameterError
+        A setting that there is not.
+
+    """
+    path = Path(path).expanduser()
+    try:
+        study = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FormatError(f"cannot be read ({error.strerror})", where=str(path)) from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise FormatError("is no YAML: " + " ".join(str(error).split()), where=str(path)) from None
+    schema = json.loads(
+        files("tree_sway_ros.study.campaign").joinpath("study_schema.json").read_text("utf-8")
+    )
+    wrong = jsonschema.Draft202012Validator(schema).iter_errors(study)
+    first = jsonschema.exceptions.best_match(wrong)
+    if first is not None:
+        place = "".join(f"[{part}]" for part in first.absolute_path) or "the whole"
+        raise FormatError(f"{place}: {first.message}", where=str(path))
+    varied = _settings(study.get("settings", {}), path)
+    common = {key: study[key] for key in ("seconds", "rate", "series") if key in study}
+    code = kernel_cache.source_digest(kernel_cache.ROOT / "core" / "scene" / "simulate.py")
+    cases = []
+    for tree, wind, settings in itertools.product(
+        _trees(study["trees"], path.parent), _winds(study["winds"], path.parent), varied
+    ):
+        read = [Path(part["file"]) for part in (tree, wind) if "file" in part]
+        digest = hashlib.blake2b(code.encode(), digest_size=10)
+        for each in read:
+            digest.update(_content(each))
+        cases.append(Case(tree, wind, settings, **common, digest=digest.hexdigest()))
+    return cases
+
+
+def _trees(entries: list[Any], folder: Path) -> list[Plain]:
+    found: list[Plain] = []
+    for entry in entries:
+        if isinstance(entry, str):
+            beside = folder / Path(entry).expanduser()
+            found.append({"file": str(beside)} if beside.is_file() else {"name": entry})
+        else:
+            grow = entry["grow"]
+            rows = itertools.product(
+                _listed(grow["species"]), _listed(grow["height"]), range(grow.get("seeds", 1))
+            )
+            found += [{"species": s, "height": float(h), "seed": k} for s, h, k in rows]
+    return found
+
+
+def _winds(entries: list[Plain], folder: Path) -> list[Plain]:
+    found: list[Plain] = []
+    for entry in entries:
+        if "file" in entry:
+            path = str(folder / Path(entry["file"]).expanduser())
+            found += [{"file": path, "scale": float(s)} for s in _listed(entry.get("scale", 1.0))]
+        else:
+            rows = itertools.product(
+                _listed(entry["speed"]), _listed(entry.get("intensity", 0.2)),
+                range(entry.get("seeds", 1)),
+            )  # fmt: skip
+            found += [{"speed": float(u), "intensity": float(i), "seed": k} for u, i, k in rows]
+    return found
+
+
+def _settings(varied: Plain, path: Path) -> list[Plain]:
+    known = {field.name for field in fields(Settings)} - set(_OWN_FIELDS) | {"fidelity"}
+    unknown = sorted(set(varied) - known)
+    if unknown:
+        raise ParameterError(
+            f"no setting is called '{unknown[0]}'",
+            where=f"{path}: settings",
+            cure="use one of: " + ", ".join(sorted(known)),
+        )
+    return list(_products(varied))
+
+
+def _products(varied: Plain) -> Iterator[Plain]:
+    names = list(varied)
+    for values in itertools.product(*(_listed(varied[name]) for name in names)):
+        yield dict(zip(names, values, strict=True))
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise FormatError(f"cannot be read ({error.strerror})", where=str(path)) from None

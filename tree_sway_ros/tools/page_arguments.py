@@ -1,0 +1,65 @@
+"""
+Where and to whom a command serves the page: the same arguments in every command that does.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import socket
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.page.server import PageSettings
+
+_PORT = 8765
+
+
+def add_page_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add where and to whom a page is served."""
+    parser.add_argument("--open", action="store_true", help="open the page in the browser")
+    parser.add_argument(
+        "--port", type=int, help=f"of the page ({_PORT}, or a free one if that is taken)"
+    )
+    parser.add_argument(
+        "--address",
+        default="127.0.0.1",
+        help="to bind to; any other than this machine's own needs a token (%(default)s)",
+    )
+    parser.add_argument("--token", default="", help="what viewers must know")
+    parser.add_argument("--certificate", default="", metavar="PEM", help="for https")
+    parser.add_argument("--private-key", default="", metavar="PEM", help="of the certificate")
+
+
+def page_settings(arguments: argparse.Namespace) -> PageSettings:
+    """
+    Settings of the page's server from the arguments.
+
+    Raises
+    ------
+    ParameterError
+        A port that is none.
+
+    """
+    port = arguments.port
+    if port is None:
+        port = _PORT if _is_free(arguments.address, _PORT) else 0
+    elif not 0 <= port <= 65535:
+        raise ParameterError(f"port {port}", where="--port", cure="give 0 .. 65535")
+    return PageSettings(
+        arguments.address,
+        port,
+        arguments.token,
+        arguments.certificate,
+        arguments.private_key,
+    )
+
+
+def _is_free(address: str, port: int) -> bool:
+    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as trial:
+        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            trial.bind((address, port))
+        except OSError:
+            return False
+    return True

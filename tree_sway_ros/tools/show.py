@@ -1,0 +1,191 @@
+"""
+``tree-sway show``: a tree in wind on a page of the browser, without ROS.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import time
+import webbrowser
+from dataclasses import replace
+from typing import Any
+
+from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.page.controls import Control, ControlPanel
+from tree_sway_ros.page.server import PageServer
+from tree_sway_ros.page.session import Choices, Session
+from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
+from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
+
+_SPACING = 1.2
+"""Between the trees of a stand over the greater of height and spread of one."""
+
+_LEAVES = 1000
+_COUNTS = ("1", "9", "100")
+_LABELS = {
+    "mean_speed": "Wind",
+    "intensity": "Gustiness",
+    "bearing_to": "Blows to",
+    "fidelity": "Model",
+    "tolerance": "Tolerance",
+    "damping_ratio": "Damping",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_tree_arguments(parser, forests=True, default="benjamina")
+    parser.add_argument("--wind", metavar="FILE", help="a wind record, played over and over")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=6.0,
+        metavar="U",
+        help="mean of the simulated wind [m/s] (%(default)s)",
+    )
+    fidelity = _parameter("solver", "fidelity")
+    parser.add_argument(
+        "--fidelity",
+        choices=fidelity.choices,
+        default=fidelity.default,
+        help="model of the sway (%(default)s)",
+    )
+    add_leaves_argument(parser)
+    parser.add_argument(
+        "--stand", type=int, default=1, metavar="N", help="so many of the tree (%(default)s)"
+    )
+    parser.add_argument(
+        "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
+    )
+    parser.add_argument("--read-only", action="store_true", help="viewers may change nothing")
+    add_page_arguments(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve the page until the time is over or Ctrl-C."""
+    settings = page_settings(arguments)
+    if arguments.stand < 1:
+        raise ParameterError(f"a stand of {arguments.stand}", cure="ask for 1 tree or more")
+    wind = _wind(arguments)
+    print(f"{arguments.tree}: starting (the first start compiles, up to a minute)", flush=True)
+    choices = Choices(arguments.tree, str(arguments.stand), arguments.fidelity)
+    session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
+    panel = ControlPanel()
+    if not arguments.read_only:
+        panel = ControlPanel(_controls(choices, wind), session.apply)
+    with PageServer(settings, panel, session.status) as server:
+        session.serve(server)
+        print(f"open {server.url} (Ctrl-C ends)", flush=True)
+        if arguments.open:
+            webbrowser.open(server.url)
+        try:
+            end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
+            while session.failure is None and time.monotonic() < end:
+                time.sleep(0.1)
+        except KeyboardInterrupt:
+            print("", file=sys.stderr)
+        finally:
+            session.stop()
+        if session.failure is not None:
+            raise session.failure
+    return 0
+
+
+def build_scene(choices: Choices, arguments: argparse.Namespace) -> tuple[Any, Any]:
+    """
+    Make simulator and leaves of what was chosen.
+
+    Raises
+    ------
+    TreeSwayError
+        As `open_scene` and `TreeFile.simulator`.
+
+    """
+    is_first = choices.tree == arguments.tree
+    scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
+    count = int(choices.count)
+    if count > 1:
+        if isinstance(scene, ForestFile):
+            raise ParameterError("a stand of a forest", where="--stand", cure="name one tree")
+        scene = stand(scene, count)
+    in_leaf = told_leaves(arguments)
+    settings = replace(Settings(), damping_ratio=choices.damping_ratio or None, in_leaf=in_leaf)
+    simulator = scene.simulator(settings, fidelity=choices.fidelity)
+    return simulator, scene.leaves(in_leaf, _LEAVES)
+
+
+def _wind(arguments: argparse.Namespace) -> WindSource:
+    if arguments.wind is None:
+        return SimulatedWind(_parameter("anemometer", "mean_speed").checked(arguments.speed))
+    record = read_wind(arguments.wind)
+    return RecordedWind(record.time, record.velocity)
+
+
+def stand(scene: TreeFile, count: int) -> ForestFile:
+    """Trees of one kind on a grid, each turned another way."""
+    tree = scene.tree
+    low, high = tree.start.min(axis=0), tree.end.max(axis=0)
+    spacing = _SPACING * float(max(*(high - low)[:2], 0.5 * tree.height))
+    across = math.ceil(math.sqrt(count))
+    trees = tuple(
+        PlacedTree(
+            f"{tree.name}{i + 1}",
+            tree,
+            x=spacing * (i % across - 0.5 * (across - 1)),
+            y=spacing * (i // across - 0.5 * (across - 1)),
+            yaw=2.4 * i,
+            species=scene.species,
+        )
+        for i in range(count)
+    )
+    return ForestFile(f"{count} of {tree.name}", trees, scene.source)
+
+
+def _controls(choices: Choices, wind: WindSource) -> tuple[Control, ...]:
+    """What viewers may change, with the ranges of the nodes' parameters."""
+    controls = []
+    if isinstance(wind, SimulatedWind):
+        for name in ("mean_speed", "intensity", "bearing_to"):
+            controls.append(_control("anemometer", name, wind.values[name]))
+    controls.append(_control("solver", "fidelity", choices.fidelity))
+    controls += [_control("solver", name) for name in ("tolerance", "damping_ratio")]
+    trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))
+    counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
+    return (
+        *controls,
+        Control("tree", "Tree", choices.tree, "What stands there.", choices=trees),
+        Control("count", "Stand of", choices.count, "How many of it.", choices=counts),
+        Control("pause", "Pause", False, "Time stands still."),
+        Control("reset", "Reset", None, "Back to rest.", is_action=True),
+    )
+
+
+def _control(node: str, name: str, value: Any = None) -> Control:
+    parameter = _parameter(node, name)
+    return Control(
+        name,
+        _LABELS[name],
+        parameter.default if value is None else value,
+        parameter.description,
+        parameter.unit,
+        parameter.minimum,
+        parameter.maximum,
+        parameter.choices,
+    )
+
+
+def _parameter(node: str, name: str) -> Any:
+    return next(p for p in NODE_PARAMETERS[node] if p.name == name)

@@ -1,0 +1,193 @@
+"""
+Listens to a swaying tree as any other program would: poses as bytes, over DDS.
+
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import time
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import TransportError
+from tree_sway_ros.ros.process.spin import create
+from tree_sway_ros.ros.process.topics import (
+    SEGMENT_POSES,
+    WIND,
+    WIND_FILTERED,
+    message_class,
+    qos_profile,
+)
+from tree_sway_ros.tools.stream.totals import StreamTotals
+from tree_sway_ros.view.projection import ends_of_poses
+
+WINDOW = 2.0
+"""For so long messages are kept one by one [s]."""
+_POSE = 7 * 8
+_LOOK = 0.2  # [s]: so soon a Ctrl-C is seen while nothing comes
+_LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
+
+
+@dataclass
+class StreamRecord:
+    """
+    What was received in the last seconds, one item per message.
+
+    Parameters
+    ----------
+    arrival, stamp
+        When each pose array arrived and what time it shows, in [s].
+    tip
+        Displacement of the highest tip from rest in each pose array in [m], (3,); empty if no tree
+        is followed.
+    wind_arrival, wind
+        When each wind sample arrived in [s], and the sample in [m/s], (3,).
+
+    """
+
+    arrival: deque[float] = field(default_factory=deque)
+    stamp: deque[float] = field(default_factory=deque)
+    tip: deque[Floats] = field(default_factory=deque)
+    wind_arrival: deque[float] = field(default_factory=deque)
+    wind: deque[Floats] = field(default_factory=deque)
+
+    def forget(self, before: float) -> None:
+        """Drop what arrived before a time in [s]."""
+        while self.arrival and self.arrival[0] < before:
+            for column in (self.arrival, self.stamp, self.tip):
+                if column:
+                    column.popleft()
+        while self.wind_arrival and self.wind_arrival[0] < before:
+            self.wind_arrival.popleft()
+            self.wind.popleft()
+
+    @property
+    def pose_rate(self) -> float:
+        """Pose arrays a second in [Hz]; 0 if there are fewer than two."""
+        return rate_of(self.arrival)
+
+    @property
+    def wind_rate(self) -> float:
+        """Wind samples a second in [Hz]; 0 if there are fewer than two."""
+        return rate_of(self.wind_arrival)
+
+    def latency(self, share: float) -> float:
+        """Quantile of the time from stamp to arrival in [s]; NaN if nothing arrived."""
+        late = np.array(self.arrival) - np.array(self.stamp)
+        return float(np.quantile(late, share)) if len(late) else math.nan
+
+
+def rate_of(times: Sequence[float]) -> float:
+    """Mean rate of events in [Hz] from their times in [s]; 0 if there are fewer than two."""
+    if len(times) < 2 or times[-1] <= times[0]:
+        return 0.0
+    return (len(times) - 1) / (times[-1] - times[0])
+
+
+class StreamMonitor:
+    """
+    A node that receives poses and wind.
+
+    Parameters
+    ----------
+    context
+        ROS context to live in.
+    tree
+        The tree that sways, for its rest shape; without it poses are counted and its tip is not
+        followed.
+    namespace
+        Of the tree's nodes.
+
+    """
+
+    def __init__(self, context: Any, tree: Tree | None, namespace: str = "") -> None:
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+
+        self.record, self.totals = StreamRecord(), StreamTotals()
+        self._tree = tree
+        self._tip = 0 if tree is None else int(np.argmax(tree.end[:, 2]))
+        self._node = create(
+            lambda **options: rclpy.create_node("monitor", **options),
+            context=context,
+            namespace=namespace,
+        )
+        for topic, callback, raw in (
+            (SEGMENT_POSES, self._receive_poses, True),
+            (WIND_FILTERED, self._receive_wind, False),
+        ):
+            qos = qos_profile(topic)
+            self._node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
+        self._executor = SingleThreadedExecutor(context=context)
+        self._executor.add_node(self._node)
+
+    def wait(self, seconds: float) -> None:
+        """Receive for a while."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0.0:
+            self._executor.spin_once(timeout_sec=min(left, _LOOK))
+
+    def expect_silence(self) -> None:
+        """
+        Look around before publishing: a second wind or tree on the same topics would mix with ours.
+
+        Raises
+        ------
+        TransportError
+            If somebody publishes there already.
+
+        """
+        self.wait(_LOOK_AROUND)
+        for topic in (WIND, SEGMENT_POSES):
+            if self._node.count_publishers(topic.name):
+                raise TransportError(
+                    f"another program publishes '{topic.name}' in this ROS domain",
+                    cure="end it, or set ROS_DOMAIN_ID to another number up to 101",
+                )
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._executor.shutdown()
+        self._node.destroy_node()
+
+    def count_anew(self) -> None:
+        """Forget what came until now; the totals begin here."""
+        self.totals = StreamTotals()
+
+    def _receive_poses(self, data: bytes) -> None:
+        arrival = time.time()
+        # CDR: four bytes of header, the stamp, the frame's name; the poses are what it ends with.
+        second, nanosecond = struct.unpack_from("<iI", data, 4)
+        stamp, tip = second + 1e-9 * nanosecond, self._displacement(data)
+        record = self.record
+        record.arrival.append(arrival)
+        record.stamp.append(stamp)
+        if tip is not None:
+            record.tip.append(tip)
+        record.forget(arrival - WINDOW)
+        self.totals.add_poses(arrival, stamp, tip)
+
+    def _displacement(self, data: bytes) -> Floats | None:
+        """Displacement of the highest tip from rest in a serialised pose array in [m], (3,)."""
+        if self._tree is None:
+            return None
+        offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
+        pose = np.array(struct.unpack_from("<7d", data, offset))
+        _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])
+        return end[0] - self._tree.end[self._tip]
+
+    def _receive_wind(self, message: Any) -> None:
+        stamp, vector = message.header.stamp, message.vector
+        wind, arrival = np.array([vector.x, vector.y, vector.z]), time.time()
+        self.record.wind_arrival.append(arrival)
+        self.record.wind.append(wind)
+        self.record.forget(arrival - WINDOW)
+        self.totals.add_wind(stamp.sec + 1e-9 * stamp.nanosec, wind)

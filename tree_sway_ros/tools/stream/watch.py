@@ -1,0 +1,81 @@
+"""
+Watching a stream: until its time is over or somebody ends it, with a line that follows what comes.
+
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+
+from tree_sway_ros.errors import ParameterError, TransportError
+from tree_sway_ros.tools.stream.monitor import WINDOW, StreamMonitor
+from tree_sway_ros.tools.stream.text import status_line
+
+_SETTLING = 0.5
+_LIVE_PERIOD, _LOG_PERIOD = 0.2, 2.0
+
+
+def checked_seconds(seconds: float | None) -> float:
+    """Return for how long to watch in [s], for ever if None; refuse what is no length of time."""
+    if seconds is None:
+        return float("inf")
+    if not seconds > 0.0:
+        raise ParameterError(
+            f"{seconds:g} s is no time to run", where="--seconds", cure="give more than 0"
+        )
+    return seconds
+
+
+def watch(
+    monitor: StreamMonitor,
+    seconds: float,
+    check: Callable[[], bool],
+    *,
+    patience: float = 30.0,
+) -> None:
+    """
+    Receive for a time, and print how it goes.
+
+    Parameters
+    ----------
+    monitor
+        Who receives; its totals begin when the time begins to count.
+    seconds
+        From when poses come and what had queued up at the start is through; may be infinite.
+    check
+        Called now and then; raises if something failed, returns True to go on.
+    patience
+        How long to wait for the first poses in [s].
+
+    Raises
+    ------
+    TransportError
+        If no poses come.
+
+    """
+    deadline = time.monotonic() + patience
+    while not monitor.record.arrival and check():
+        monitor.wait(0.1)
+        if time.monotonic() > deadline:
+            raise TransportError(
+                f"no poses within {patience:g} s",
+                cure="is a solver running in this ROS_DOMAIN_ID? without multicast, "
+                "set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS",
+            )
+    monitor.wait(_SETTLING)
+    monitor.count_anew()
+    begin = time.time()
+    is_live = sys.stdout.isatty()
+    try:
+        while check() and (left := begin + seconds - time.time()) > 0.0:
+            monitor.wait(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
+            now = time.time()
+            monitor.record.forget(now - WINDOW)
+            line = status_line(monitor.record, now - begin)
+            print(f"\r\033[K{line}" if is_live else line, end="" if is_live else "\n", flush=True)
+    except KeyboardInterrupt:
+        pass
+    if is_live:
+        print()
