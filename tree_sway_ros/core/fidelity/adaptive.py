@@ -7,7 +7,7 @@ or, where none that can be afforded does, the most accurate of those.
 
 **Up at once.** A load beyond what the model was chosen for is noticed in the step in which it
 comes. The better model goes on from the motion that is shown, its coordinates mapped one by one;
-what the two still differ by fades within a quarter of a second.
+what the two still differ by fades within 0.4 s.
 
 **Down slowly.** A lesser model first sways along unseen until it has forgotten that it started at
 rest, then the picture goes over to it within a second. It is taken only when it would do with a
@@ -47,7 +47,7 @@ RUN_IN = 10.0
 CROSS_FADE = 1.0
 """How long the picture takes to go over in [s]."""
 
-HAND_OVER = 0.25
+HAND_OVER = 0.4
 """How long it takes in [s] until a better model is shown as it is."""
 
 SURPRISE = 1.2

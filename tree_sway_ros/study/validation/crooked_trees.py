@@ -152,8 +152,13 @@ def _axis(habit: _Habit, rng: np.random.Generator, shoot: _Shoot) -> tuple[Float
 
 
 def _child(
-    habit: _Habit, rng: np.random.Generator, parent: _Shoot, nodes: Floats, widths: Floats, first: int
-) -> _Shoot:  # fmt: skip
+    habit: _Habit,
+    rng: np.random.Generator,
+    parent: _Shoot,
+    nodes: Floats,
+    widths: Floats,
+    first: int,
+) -> _Shoot:
     """Draw a branch on a node of its parent."""
     m = len(nodes) - 1
     node = int(rng.integers(max(1, math.ceil(habit.low * m)), m + 1))
