@@ -14,12 +14,33 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from tree_sway_ros.core.kernel import WHY_PLAIN
 from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.errors import MissingDependencyError
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Skip what calls kernels where none can be compiled."""
+    if WHY_PLAIN and item.get_closest_marker("compiled"):
+        pytest.skip(f"calls compiled kernels, and {WHY_PLAIN}")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_makereport(item, call):
+    """Skip what turns out to need them: a model that is refused without."""
+    if not (WHY_PLAIN and call.excinfo and call.excinfo.errisinstance(MissingDependencyError)):
+        return
+    if "needs compiled kernels" in str(call.excinfo.value):
+        try:
+            pytest.skip(str(call.excinfo.value))
+        except pytest.skip.Exception:
+            call.excinfo = pytest.ExceptionInfo.from_current()
 
 
 def _stem(length=2.0, base=0.02, tip=None, cuts=6, direction=(0.0, 0.0, 1.0), species="broadleaf"):

@@ -21,6 +21,7 @@ def series(x):
     return like(1.0, x) + like(0.5, x) * x
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("compiled", [ratio, fused(ratio.py_func)])
 def test_division_by_zero_is_infinite_as_in_numpy(compiled):
     assert compiled(1.0, 0.0) == np.inf
@@ -33,6 +34,7 @@ def test_plain_functions_stay_reachable():
     assert ratio(6.0, 3.0) == ratio.py_func(6.0, 3.0) == 2.0
 
 
+@pytest.mark.compiled
 def test_constants_take_the_precision_of_the_model():
     out = np.zeros(1, dtype=np.float32)
 

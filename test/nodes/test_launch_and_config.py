@@ -8,7 +8,10 @@ import yaml
 from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
-ARGUMENTS = ("tree", "file", "rate", "x", "y", "z", "yaw", "frame_id", "use_sim_time")
+ARGUMENTS = (
+    *("tree", "address", "file", "topic", "reader_options", "rate"),
+    *("x", "y", "z", "yaw", "frame_id", "use_sim_time", "lifecycle"),
+)
 GIVEN = dict.fromkeys(ARGUMENTS, "")
 
 
@@ -38,13 +41,15 @@ def start(launch_file, monkeypatch, **given):
         ("simulated", {"anemometer", "wind", "solver"}),
         ("player", {"player", "wind", "solver"}),
         ("live", {"wind", "solver"}),
+        ("sensor", {"sensor", "wind", "solver"}),
     ],
 )
 def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executables):
     assert set(start(launch_file, monkeypatch, source=source)) == executables
 
 
-def test_rviz_is_started_if_asked_for(launch_file, monkeypatch):
+def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):
+    assert "viewer" in start(launch_file, monkeypatch, page="1")
     assert "rviz2" in start(launch_file, monkeypatch, rviz="true")
 
 
@@ -74,7 +79,7 @@ def test_arguments_that_are_not_given_override_nothing(launch_file):
 
 
 def test_what_is_shipped_in_config_overrides_no_default():
-    for name in ("anemometer", "player", "wind", "solver"):
+    for name in ("anemometer", "player", "sensor", "wind", "solver"):
         content = yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text())
         assert content == {f"/**/{name}": {"ros__parameters": {}}}
 

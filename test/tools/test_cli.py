@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,26 @@ def test_a_missing_package_is_one_line(
     assert "No module named 'numba'; install it: pip install numba" in one_line(
         capsys.readouterr().err
     )
+
+
+def test_a_warning_is_a_note_on_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Slow:
+        """A command that warns."""
+
+        @staticmethod
+        def add_arguments(parser: object) -> None:
+            """None."""
+
+        @staticmethod
+        def run(arguments: object) -> int:
+            warnings.warn("numba is\nnot installed", RuntimeWarning, stacklevel=1)
+            return 0
+
+    monkeypatch.setattr(cli, "_module", lambda name: Slow)
+    assert cli.main(["bench"]) == 0
+    assert capsys.readouterr().err == "note: numba is not installed\n"
 
 
 def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(

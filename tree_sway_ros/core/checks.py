@@ -127,6 +127,36 @@ def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[n
     )
 
 
+def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """
+    Return numbers as a kernel reads them: float64, in one piece, and as many as it will read.
+
+    Parameters
+    ----------
+    name
+        Name of the argument, for the error.
+    values
+        Anything of the shape.
+    shape
+        That it must have.
+
+    Raises
+    ------
+    ParameterError
+        Another shape, or what are no numbers.
+
+    """
+    try:
+        numbers = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ParameterError("not all are numbers", where=name) from None
+    if numbers.shape != shape:
+        raise ParameterError(
+            f"an array of shape {numbers.shape}", where=name, cure=f"give one of shape {shape}"
+        )
+    return numbers
+
+
 def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[np.float64]:
     """
     Return numbers, one for each thing, none of them negative.
@@ -151,16 +181,7 @@ def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[
         Another shape, or a number that is negative or not finite.
 
     """
-    try:
-        numbers = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise ParameterError("not all are numbers", where=name) from None
-    if numbers.shape != (count,):
-        raise ParameterError(
-            f"an array of shape {numbers.shape}",
-            where=name,
-            cure=f"give one number per {what}, ({count},)",
-        )
+    numbers = array_to_read(name, values, (count,))
     bad = np.flatnonzero(~(np.isfinite(numbers) & (numbers >= 0.0)))
     if len(bad):
         raise ParameterError(
@@ -168,4 +189,4 @@ def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[
             where=name,
             cure="give finite numbers, 0 or more",
         )
-    return np.ascontiguousarray(numbers)
+    return numbers

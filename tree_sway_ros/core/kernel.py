@@ -69,6 +69,32 @@ def _compiled(function: _F, **options: Any) -> _F:
     return cast(_F, dispatcher)
 
 
+def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
+    """
+    Return the machine code of a kernel for arguments of these types, to be called many times.
+
+    A call of the kernel itself looks at the type of each argument first, which for a small tree
+    takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types and
+    layouts may be passed.
+
+    Parameters
+    ----------
+    function
+        The kernel.
+    *arguments
+        Such as it will be called with.
+
+    """
+    find = getattr(function, "get_overload", None)
+    if find is None:
+        return function
+    from numba import typeof
+
+    types = tuple(typeof(argument) for argument in arguments)
+    function.compile(types)  # type: ignore[attr-defined]
+    return cast(Callable[..., Any], find(types))
+
+
 def need_compiler(what: str) -> None:
     """
     Refuse what has no form but the compiled one.

@@ -1,60 +1,153 @@
-"""Tables in text: which character separates, what the header says, where a row goes wrong."""
+"""
+Tables in text: one mapper from columns to arrays for every format of the family.
+
+Comma, semicolon or tab between cells, white space where a format has no header; a unit may stand
+behind a column's name in brackets, or in a row of its own. Cells are read when they are asked for,
+a block at a time, as a day of wind has millions of rows.
+
+"""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
 
-from tree_sway_ros.errors import FormatError
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.errors import FormatError, TreeError
 from tree_sway_ros.files.text_file import finite, why_no_number
+from tree_sway_ros.files.time_stamps import seconds_of_stamps
 
 _MAX_COLUMNS = 10_000
+_UNIT = re.compile(r"\[(.*)\]|\((.*)\)|")
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Place of a column in a table, and the factor from its unit to SI."""
+
+    index: int
+    factor: float
 
 
 @dataclass(frozen=True)
 class TextTable:
     """
-    A table with a header.
+    A table whose columns have names.
 
     Parameters
     ----------
     columns
-        Names in the header, stripped.
-    rows
-        Line number and cells of each row that is not blank.
+        Names of the columns.
+    numbers, texts
+        Line number and text of each row.
+    split
+        Splits a row into stripped cells.
     source
         The file, for the errors.
+    header_line, unit_line
+        Where the names and the units stand.
+    units
+        Unit of each column, if they have a row of their own.
 
     """
 
     columns: tuple[str, ...]
-    rows: tuple[tuple[int, tuple[str, ...]], ...]
+    numbers: Sequence[int]
+    texts: Sequence[str]
+    split: Callable[[str], Sequence[str]]
     source: str
+    header_line: int = 1
+    unit_line: int = 1
+    units: tuple[str, ...] = ()
 
-    def column_index(self, *names: str) -> int:
+    def where(self, row: int | None = None) -> str:
+        """File and line of a row, or of the header."""
+        return f"{self.source}:{self.header_line if row is None else self.numbers[row]}"
+
+    def index_of(self, name: str) -> int:
         """
-        Position of the first of these columns that is there.
+        Position of a column, whatever the case of its name.
 
         Raises
         ------
         FormatError
-            If none is.
+            If there is none of that name.
 
         """
-        lower = [column.lower() for column in self.columns]
-        for name in names:
-            if name.lower() in lower:
-                return lower.index(name.lower())
+        for index, column in enumerate(self.columns):
+            if column.lower() == name.lower():
+                return index
         raise FormatError(
-            f"no column '{names[0]}' among {', '.join(self.columns[:20])}",
-            where=f"{self.source}:1",
+            f"no column '{name}' among {', '.join(self.columns[:20])}",
+            where=self.where(),
             cure="export it with its header line, unchanged",
         )
 
-    def numbers(self, names: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
+    @cached_property
+    def headings(self) -> list[tuple[str, str]]:
+        """Name in lower case, with _ for spaces, and unit of each column."""
+        return [self._heading(index, name) for index, name in enumerate(self.columns)]
+
+    def _heading(self, index: int, column: str) -> tuple[str, str]:
+        begin = min((i for c in "[(" if (i := column.find(c)) > 0), default=len(column))
+        inside = _UNIT.fullmatch(column[begin:].strip())
+        if inside is None:
+            return column.strip().lower(), ""
+        unit = inside[1] or inside[2] or (self.units[index] if index < len(self.units) else "")
+        return column[:begin].strip().lower().replace(" ", "_"), unit.strip()
+
+    def factor(self, unit: str, units: Mapping[str, float], default: float) -> float:
         """
-        Line number and the values of these columns, row by row.
+        Factor of a unit by its name.
+
+        Raises
+        ------
+        FormatError
+            If it is none of these units.
+
+        """
+        if not unit:
+            return default
+        if unit.lower() not in units:
+            raise FormatError(
+                f"unknown unit '{unit[:20]}'",
+                where=f"{self.source}:{self.unit_line}",
+                cure=f"use {', '.join(units)}",
+            )
+        return units[unit.lower()]
+
+    def find(
+        self, names: Sequence[str], units: Mapping[str, float], default: float = 1.0
+    ) -> Column | None:
+        """Return the first column of one of these names, with a unit behind it or not, or None."""
+        for name in names:
+            for index, (heading, unit) in enumerate(self.headings):
+                suffix = heading.removeprefix(f"{name}_")
+                if heading == name:
+                    return Column(index, self.factor(unit, units, default))
+                if suffix != heading and suffix in units:  # not another quantity, as u_std
+                    return Column(index, units[suffix])
+        return None
+
+    def values(self, indices: Iterable[int]) -> Floats:
+        """Numbers in some columns, NaN where a cell holds none, (n, k)."""
+        columns = list(indices)
+        result = np.full((len(self.texts), len(columns)), np.nan)
+        for row, text in enumerate(self.texts):
+            cells = self.split(text)
+            for place, index in enumerate(columns):
+                value = finite(cells[index]) if index < len(cells) else None
+                result[row, place] = np.nan if value is None else value
+        return result
+
+    def strict(self, names: Sequence[str]) -> Floats:
+        """
+        Numbers in the columns of these names, (n, k).
 
         Raises
         ------
@@ -62,89 +155,157 @@ class TextTable:
             At the first row that is short or holds something that is not a finite number.
 
         """
-        indices = [self.column_index(name) for name in names]
-        for line, cells in self.rows:
-            yield line, row_numbers(cells, indices, names, f"{self.source}:{line}")
-
-
-def row_numbers(
-    cells: Sequence[str], indices: Iterable[int], names: Sequence[str], where: str
-) -> list[float]:
-    """Values of some cells of a row; a FormatError if one is not a finite number."""
-    values = []
-    for index, name in zip(indices, names, strict=True):
-        if index >= len(cells):
+        indices = [self.index_of(name) for name in names]
+        values = self.values(indices)
+        for row, column in np.argwhere(np.isnan(values))[:1]:
             raise FormatError(
-                f"{len(cells)} cells, none for '{name}'", where=where, cure="complete the row"
-            )
-        value = finite(cells[index])
-        if value is None:
-            raise FormatError(
-                f"{name} is {why_no_number(cells[index])}",
-                where=where,
+                self.why_none(row, [indices[column]]),
+                where=self.where(row),
                 cure="mend the cell or remove the row",
             )
-        values.append(value)
-    return values
+        return values
+
+    def why_none(self, row: int, indices: Iterable[int]) -> str:
+        """Say which cell of a row is missing or holds no number."""
+        cells = self.split(self.texts[row])
+        for index in indices:
+            if index >= len(cells):
+                return f"{len(cells)} cells, none for '{self.columns[index]}'"
+            if finite(cells[index]) is None:
+                return f"{self.columns[index]} is {why_no_number(cells[index])}"
+        return "not a row of numbers"
+
+    def whole(self, values: Floats, name: str) -> Ints:
+        """
+        Return a column of whole numbers.
+
+        Raises
+        ------
+        FormatError
+            If one has a fraction or is out of any table's reach.
+
+        """
+        for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
+            raise FormatError(
+                f"{name} is {values[row]:g}, not a whole number", where=self.where(row)
+            )
+        return values.astype(np.int64)
+
+    def cells(self, index: int, rows: Iterable[int]) -> list[str]:
+        """Texts of a column in some rows; empty where a row is short."""
+        split = (self.split(self.texts[row]) for row in rows)
+        return [row[index] if index < len(row) else "" for row in split]
+
+    def seconds(self, stamps: list[str], factor: float) -> tuple[Floats, float | None]:
+        """Seconds of times, and what they count from if they are dates; NaN where one is none."""
+        numbers = [finite(stamp) for stamp in stamps]
+        if any(number is not None for number in numbers):
+            times = [np.nan if number is None else number * factor for number in numbers]
+            return np.array(times), None
+        return seconds_of_stamps(stamps)
+
+    def family(
+        self, number: str, parent: str, none: Sequence[int], what: str
+    ) -> tuple[list[str], Ints]:
+        """
+        Return what an error calls each row, and the row of each one's parent, -1 for none.
+
+        Parameters
+        ----------
+        number, parent
+            Columns of each one's number and of its parent's.
+        none
+            Parent numbers that mean there is none.
+        what
+            What a row is: a cylinder, a segment, a node.
+
+        Raises
+        ------
+        FormatError
+            A number that stands twice.
+        TreeError
+            A parent that is not there.
+
+        """
+        values = self.strict([number, parent])
+        numbers = self.whole(values[:, 0], number).tolist()
+        labels = [f"{self.where(row)}: {what} {each}" for row, each in enumerate(numbers)]
+        position: dict[int, int] = {}
+        for row, each in enumerate(numbers):
+            if each in position:
+                raise FormatError(f"number {each} stands twice", where=labels[row])
+            position[each] = row
+        parents = np.full(len(numbers), -1, dtype=np.int64)
+        for row, each in enumerate(self.whole(values[:, 1], parent).tolist()):
+            if each in position:
+                parents[row] = position[each]
+            elif each not in none:
+                raise TreeError(
+                    f"orphan: its parent {each} is not in the file",
+                    where=labels[row],
+                    cure=f"name one that is, or {none[0]} for the root",
+                )
+        return labels, parents
 
 
-def whole(value: float, name: str, where: str) -> int:
-    """Return a whole number; a FormatError if it has a fraction or is out of any table's reach."""
-    if not value.is_integer() or abs(value) > 2**53:
-        raise FormatError(f"{name} is {value:g}, not a whole number", where=where)
-    return int(value)
-
-
-def split_row(line: str, separator: str) -> tuple[str, ...]:
+def split_row(line: str, separator: str) -> Sequence[str]:
     """Cells of one line, stripped; quoted cells may hold the separator but no line end."""
     if '"' not in line:
-        return tuple(cell.strip() for cell in line.split(separator))
+        return list(map(str.strip, line.split(separator)))
+    if line.count('"') == 2 and line[0] == '"' and line.count(f'"{separator}') == 1:
+        first, _, rest = line[1:].partition('"')  # a quoted date, as loggers write it
+        return [first.strip(), *map(str.strip, rest[1:].split(separator))]
     try:
-        return tuple(cell.strip() for cell in next(csv.reader([line], delimiter=separator)))
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
     except csv.Error:
-        return ()
+        return []
 
 
-def separator_of(header: str) -> str:
-    """Return the separator that a header uses: the most frequent of tab, semicolon and comma."""
-    return max(("\t", ";", ","), key=header.count)
+def filled_lines(lines: Sequence[str], comment: str = "#") -> tuple[list[int], list[str]]:
+    """Numbers and texts of the lines that are neither blank nor a comment."""
+    kept = [
+        number
+        for number, line in enumerate(lines, start=1)
+        if line.strip() and not line.lstrip().startswith(comment)
+    ]
+    return kept, [lines[number - 1] for number in kept]
 
 
-def parse_table(lines: Sequence[str], source: str, comment: str = "#") -> TextTable:
+def parse_table(lines: Sequence[str], source: str) -> TextTable:
     """
     Parse a table whose first line that is neither blank nor a comment is the header.
 
     Raises
     ------
     FormatError
-        If there is no header or no row.
+        If there is no header or no row, or most rows have more cells than the header.
 
     """
-    numbered = [
-        (number, line)
-        for number, line in enumerate(lines, start=1)
-        if line.strip() and not line.lstrip().startswith(comment)
-    ]
-    if len(numbered) < 2:
+    numbers, texts = filled_lines(lines)
+    if len(texts) < 2:
         raise FormatError("no header and rows", where=source, cure="give a header and rows")
-    separator = separator_of(numbered[0][1])
-    columns = split_row(numbered[0][1], separator)
+    split = partial(split_row, separator=max(("\t", ";", ","), key=texts[0].count))
+    columns = tuple(split(texts[0]))
     if len(columns) > _MAX_COLUMNS:
-        raise FormatError(f"a header of {len(columns)} columns", where=f"{source}:{numbered[0][0]}")
-    rows = tuple((number, split_row(line, separator)) for number, line in numbered[1:])
-    _refuse_shifted(columns, rows, source)
-    return TextTable(columns, rows, source)
-
-
-def _refuse_shifted(
-    columns: tuple[str, ...], rows: tuple[tuple[int, tuple[str, ...]], ...], source: str
-) -> None:
-    """Refuse a table most rows of which have more cells than the header."""
-    long = [number for number, cells in rows if any(cells[len(columns) :])]
-    if 2 * len(long) > len(rows):
+        raise FormatError(f"a header of {len(columns)} columns", where=f"{source}:{numbers[0]}")
+    table = TextTable(columns, numbers[1:], texts[1:], split, source)
+    long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
+    if 2 * len(long) > len(table.texts):
         raise FormatError(
             f"more cells than the {len(columns)} columns of the header, as in most rows",
-            where=f"{source}:{long[0]}",
+            where=table.where(long[0]),
             cure="if its numbers have decimal commas, export it with decimal points; "
             "else name every column in the header",
         )
+    return table
+
+
+def parse_columns(
+    lines: Sequence[str],
+    source: str,
+    columns: Sequence[str],
+    split: Callable[[str], Sequence[str]] = str.split,
+) -> TextTable:
+    """Parse a table without a header, of columns that its format says."""
+    numbers, texts = filled_lines(lines)
+    return TextTable(tuple(columns), numbers, texts, split, source)

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.wind.reader_options import reader_options
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import CLOCK, WIND
+from tree_sway_ros.ros.process.topics import CLOCK, WIND, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import OK, Status
+from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
 from tree_sway_ros.ros.timing.playback import LONGEST_CLOCK_STEP, Playback, is_ros_time
 from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
-from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
+from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message, stamp_to_ns
 
 
 class PlayerNode(TreeSwayNode):
@@ -27,12 +29,17 @@ class PlayerNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("player", **options)
+
+    def configure(self) -> None:
+        """Read the record."""
         if not self.values["file"]:
             raise ParameterError("no file to play", cure="give -p file:=wind.csv")
-        self._record = read_wind(self.values["file"])
+        self._record = read_wind(self.values["file"], **self._reader_options())
+        for note in self._record.notes:
+            self.get_logger().info(note)
         self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
         self._wind = self.publisher(WIND, self._writer.message_class, alone=True)
-        has_clock, speed = self.values["publish_clock"], self.values["speed"]
+        has_clock = self.values["publish_clock"]
         self._clock_publisher: Any = self.publisher(CLOCK) if has_clock else None
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):
@@ -41,23 +48,37 @@ class PlayerNode(TreeSwayNode):
                 "it starts at 1 s"
             )
             epoch = None
-        playback = Playback(
+        self._playback = Playback(
             self._record.time,
             epoch=epoch,
             **self.values("start", "loop"),
-            clock_period=speed / self.values["clock_rate"] if has_clock else 0.0,
+            clock_period=self.values["speed"] / self.values["clock_rate"] if has_clock else 0.0,
         )
-        self._thread = PlaybackThread(
-            playback,
-            speed,
+        wanted = required(self.values["wait_for"]) if self.values["wait_for_subscriber"] else {}
+        self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
+        self._answers: Answers | None = None
+        if has_clock and WIND_FILTERED.name in wanted:
+            self._answers = Answers()
+            self.subscription(WIND_FILTERED, self._hear)
+            wanted[WIND_FILTERED.name] += 1  # our own
+        self._thread = self._make_thread()
+        self.report_with(self._record.source, self._report)
+
+    def activate(self) -> None:
+        """Play from the start, once those who must listen do."""
+        self._thread = self._make_thread()
+        self.on_close(self._thread.stop)
+        self._thread.start()
+
+    def _make_thread(self) -> PlaybackThread:
+        return PlaybackThread(
+            self._playback,
+            self.values["speed"],
             publish=self._publish,
             may_start=self._may_start,
             on_end=self._end,
             on_error=self.fail,
         )
-        self.report_with(self._record.source, self._report)
-        self.on_close(self._thread.stop)
-        self._thread.start()
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a clock in steps so long that nodes would take them for a clock set forward."""
@@ -70,14 +91,31 @@ class PlayerNode(TreeSwayNode):
                 cure=f"give speed up to {longest * rate:g}, or clock_rate {speed / longest:g}",
             )
 
+    def _reader_options(self) -> dict[str, Any]:
+        options = reader_options(self.values["reader_options"])
+        for name in ("topic", "yaw"):
+            if self.values[name]:
+                options[name] = self.values[name]
+        if self.values["input_convention"]:
+            options["direction_convention"] = self.values["input_convention"]
+        return options
+
     def _publish(self, row: int, stamp: int) -> None:
-        if row < 0:
-            self._clock_publisher.publish(clock_message(stamp))
-        else:
+        if row >= 0:
             self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
+            if self._answers is not None:
+                self._answers.sent(stamp)
+            return
+        if self._answers is not None:
+            self._answers.wait()
+        self._clock_publisher.publish(clock_message(stamp))
+
+    def _hear(self, message: Any) -> None:
+        if self._answers is not None:
+            self._answers.heard(stamp_to_ns(message.header.stamp))
 
     def _may_start(self) -> bool:
-        return not self.values["wait_for_subscriber"] or self._wind.get_subscription_count() > 0
+        return self._audience.is_there()
 
     def _end(self) -> None:
         self.get_logger().info("the record has ended")
@@ -85,4 +123,6 @@ class PlayerNode(TreeSwayNode):
 
     def _report(self) -> list[Status]:
         values = {**self._thread.progress(), "refused in file": self._record.refused}
+        if self._answers is not None:
+            values["samples that never came back"] = self._answers.missing
         return [Status("playback", OK, self._record.source, values)]

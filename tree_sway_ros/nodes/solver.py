@@ -46,6 +46,9 @@ class SolverNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("solver", **options)
+
+    def configure(self) -> None:
+        """Open the tree, reduce it and make its kernels ready."""
         with Progress(self.get_logger().info) as progress:
             progress.stage(f"opening tree '{self.values['tree']}'")
             source = self._open()
@@ -58,11 +61,19 @@ class SolverNode(TreeSwayNode):
             self.get_logger().warning(doubt)
         for note in source.notes:
             self.get_logger().info(note)
-        self.pacer.start()
         self.get_logger().info(
             f"ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, "
             f"{self.values['rate']:g} Hz"
         )
+
+    def activate(self) -> None:
+        """Sway, from rest."""
+        self.pacer = self._make_pacer()
+        self.on_close(self.pacer.stop)
+        self.pacer.start()
+
+    def _make_pacer(self) -> Pacer:
+        return Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
 
     def _open(self) -> Any:
         source = open_scene(self.values["tree"])
@@ -87,7 +98,7 @@ class SolverNode(TreeSwayNode):
         self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
-        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
+        self.pacer = self._make_pacer()
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
         tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
         self._tell_demand()
@@ -97,12 +108,11 @@ class SolverNode(TreeSwayNode):
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, leaves)
-        self.subscription(WIND_FILTERED, self._receive)
+        self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
         self.report_with(source.tree.name, self._statuses)
-        self.on_close(self.pacer.stop)
 
     def _make_wind(self) -> WindAverage:
         return WindAverage(**self.values("interpolation", "timeout", "decay"))
@@ -141,7 +151,14 @@ class SolverNode(TreeSwayNode):
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._stepper.restart(tick.time)
-        self._stepper.advance(tick.time, tick.periods, self.values["wind_delay"])
+        for message in self._new_wind():
+            self._receive(message)
+        self._stepper.advance(
+            tick.time,
+            tick.periods,
+            self.values["wind_delay"],
+            may_join=not self.pacer.is_simulated,
+        )
         index = tick.time // self.pacer.period
         self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
         self._state.publish(index, tick.time)

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.rotation import rotated
@@ -40,7 +41,7 @@ def describe_scene(
     simulator
         Of a tree or a forest, on the model whose state will be sent.
     bases
-        A `StateBasis` per tree.
+        Per tree, with `frames` of its moving branches, as `ToldBasis`.
     frame_id
         Frame of the poses.
     leaves
@@ -53,7 +54,7 @@ def describe_scene(
 
     """
     simulators = simulators_of(simulator)
-    parts = [_branches(each) for each in simulators]
+    parts = [_branches(each, basis.frames) for each, basis in zip(simulators, bases, strict=True)]
     arrays: dict[str, Any] = _joined(parts)
     trees: list[dict[str, Any]] = []
     coordinates = key = 0
@@ -63,10 +64,10 @@ def describe_scene(
     matrices: list[Any] = []
     for each, basis in zip(simulators, bases, strict=True):
         rows, columns = basis.matrix.shape
-        if id(basis) not in place_of:
-            place_of[id(basis)] = sum(len(matrix) for matrix in matrices)
+        if id(basis.matrix) not in place_of:
+            place_of[id(basis.matrix)] = sum(len(matrix) for matrix in matrices)
             matrices.append(_float32(basis.matrix.ravel()))
-        at = place_of[id(basis)]
+        at = place_of[id(basis.matrix)]
         blocks.append([key, key + rows, coordinates, coordinates + columns, at])
         tree = each.tree
         trees.append(
@@ -100,9 +101,9 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: Any) -> dict[str, Any]:
+def _branches(simulator: Any, frames: Floats) -> dict[str, Any]:
     """
-    Arrays of one tree: how each branch of the whole tree is placed.
+    Arrays of one tree: how each branch of the whole tree is placed, by frames per moving branch.
 
     """
     bank, tree = simulator.bank, simulator.tree
@@ -113,12 +114,12 @@ def _branches(simulator: Any) -> dict[str, Any]:
         if first not in record_at:
             continue
         record = bank.branches[record_at[first]]
+        arrays["branch_frame"][branch] = frames[record_at[first]]
         here = tree.segments_of(branch)
         rows = slice(record["block"], record["block"] + here.stop - here.start)
         arrays["branch_coordinate"][branch] = record["coordinate"]
         arrays["branch_pairs"][branch] = record["n_pairs"]
         arrays["branch_twists"][branch] = record["n_coordinates"] - 2 * record["n_pairs"]
-        arrays["branch_frame"][branch] = record["frame"]
         arrays["branch_skew"][branch] = record["skew"], record["tip_skew"]
         arrays["branch_base_slope"][branch] = record["base_slope"]
         arrays["segment_slope"][here] = bank.segments["slope"][rows, :, record["lane"]]

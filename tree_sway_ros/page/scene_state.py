@@ -5,15 +5,17 @@ The state of a running scene as frames: what is described once, what is told of 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.find_basis import state_basis
+from tree_sway_ros.core.state.state_basis import BasisError
 from tree_sway_ros.page.description import describe_scene
 from tree_sway_ros.page.protocol import (
     BEYOND_SCALE,
@@ -22,10 +24,39 @@ from tree_sway_ros.page.protocol import (
     Frame,
     decode_description,
     encode_frame,
+    quantised,
 )
 
 MOST_COORDINATES = 32
 """Of one tree: a frame then takes 92 bytes."""
+
+
+@dataclass(frozen=True)
+class ToldBasis:
+    """
+    The basis that a tree is told in.
+
+    Parameters
+    ----------
+    matrix, scale, error
+        As of `StateBasis`.
+    projection
+        Coordinates per unit of the solver's key rotations, (m, N).
+    frames
+        Chord, e1, e2 of each branch that receivers turn it about, (b, 3, 3).
+
+    """
+
+    matrix: Floats
+    projection: Floats
+    scale: Floats
+    error: BasisError
+    frames: Floats
+
+    def coordinates(self, rotations: Floats) -> Floats:
+        """Coordinates (m,) of the solver's key rotations (N,) in [rad]."""
+        told: Floats = self.projection @ rotations
+        return told
 
 
 class SceneState:
@@ -50,7 +81,7 @@ class SceneState:
     ) -> None:
         self.simulator = simulator
         self._parts = simulators_of(simulator)
-        found: dict[Any, Any] = {}
+        found: dict[Any, ToldBasis] = {}
         self.bases = [_basis(each, found) for each in self._parts]
         self.description = describe_scene(simulator, self.bases, frame_id=frame_id, leaves=leaves)
         described = decode_description(self.description)
@@ -92,11 +123,11 @@ class SceneState:
         """
         steps, flags = [], PAUSED * is_paused + RESTARTED * has_restarted
         for each, basis in zip(self._parts, self.bases, strict=True):
-            quantised, n_cut = basis.quantised(basis.coordinates(each.rotations()))
-            steps.append(quantised)
-            flags |= BEYOND_SCALE if n_cut else 0
+            told, is_cut = quantised(basis.coordinates(each.rotations()), basis.scale)
+            steps.append(told)
+            flags |= BEYOND_SCALE if is_cut else 0
         self._sequence += 1
-        wind = self.simulator.wind
+        wind = wind_of(self.simulator)
         whole = np.concatenate(steps)
         return encode_frame(Frame(self._short, self._sequence - 1, stamp, flags, wind, whole))
 
@@ -104,22 +135,65 @@ class SceneState:
         return list(getattr(self.simulator, "names", (self.simulator.tree.name,)))
 
 
-def _basis(simulator: Any, found: dict[Any, Any]) -> Any:
+def wind_of(simulator: Any) -> Floats:
+    """Wind of the last step of any simulator in [m/s], (3,)."""
+    wind: Floats = getattr(simulator, "shown", simulator).wind
+    return wind
+
+
+def _basis(simulator: Any, found: dict[Any, ToldBasis]) -> ToldBasis:
     """
     Basis of a tree; trees of one shape and model share one, whichever way they are turned.
 
     """
     frames = simulator.joints["frame"]
-    # Directions as the stem sees them are the same in a tree that is turned about.
-    relative = np.round(frames @ frames[0].T, 6) + 0.0
-    key = simulator.model, relative.tobytes(), np.round(simulator.tree.length, 6).tobytes()
-    if key not in found:
-        runner = _runner(simulator)
-        basis = state_basis(runner)
-        if len(basis.scale) > MOST_COORDINATES:
-            basis = state_basis(runner, MOST_COORDINATES)
-        found[key] = basis
-    return found[key]
+    shape = np.round([*frames[:, 0, 2], *simulator.tree.length], 6).tobytes()
+    like = found.get((simulator.model, shape))
+    if like is not None:
+        twin = _turned(like, frames, simulator.joints)
+        if twin is not None:
+            return twin
+    runner = _runner(simulator)
+    basis = state_basis(runner)
+    if len(basis.scale) > MOST_COORDINATES:
+        basis = state_basis(runner, MOST_COORDINATES)
+    told = ToldBasis(basis.matrix, basis.projection, basis.scale, basis.error, frames)
+    found[simulator.model, shape] = told
+    return told
+
+
+def _turned(basis: ToldBasis, frames: Floats, joints: Any) -> ToldBasis | None:
+    """
+    The basis of a tree that is the same but turned about the vertical; None if it is not.
+
+    Each branch then turns about axes e1, e2 of its own choice. It is described by those of the
+    first tree, turned with it, so that the matrix is the same; what the solver says is turned into
+    them.
+
+    """
+    chord, other = basis.frames[:, 0], frames[:, 0]
+    sine = (chord[:, 0] * other[:, 1] - chord[:, 1] * other[:, 0]).sum()
+    angle = np.arctan2(sine, (chord[:, :2] * other[:, :2]).sum())
+    c, s = np.cos(angle), np.sin(angle)
+    with_it = basis.frames @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    if not np.allclose(with_it[:, 0], other, atol=1e-6):
+        return None
+    projection = basis.projection.copy()
+    # Both say one rotation vector, x e2 - y e1.
+    e1, e2 = with_it[:, 1], with_it[:, 2]
+    of = {
+        (0, 0): (e2 * frames[:, 2]).sum(axis=1),
+        (0, 1): -(e2 * frames[:, 1]).sum(axis=1),
+        (1, 0): -(e1 * frames[:, 2]).sum(axis=1),
+        (1, 1): (e1 * frames[:, 1]).sum(axis=1),
+    }
+    for branch, joint in enumerate(joints):
+        for pair in range(joint["n_pairs"]):
+            i = joint["coordinate"] + 2 * pair
+            x, y = basis.projection[:, i], basis.projection[:, i + 1]
+            projection[:, i] = of[0, 0][branch] * x + of[1, 0][branch] * y
+            projection[:, i + 1] = of[0, 1][branch] * x + of[1, 1][branch] * y
+    return ToldBasis(basis.matrix, projection, basis.scale, basis.error, with_it)
 
 
 def _runner(simulator: Any) -> SwaySimulator:

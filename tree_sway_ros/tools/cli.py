@@ -17,6 +17,7 @@ import io
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple, NoReturn
 
@@ -117,7 +118,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit code: 0, or 2 if the user can mend it, with one line that says how.
 
     """
-    given = list(sys.argv[1:] if argv is None else argv)
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning  # type: ignore[assignment]
+        return _main(list(sys.argv[1:] if argv is None else argv))
+
+
+def _main(given: list[str]) -> int:
     command = given[0] if given else ""
     _write_any_name()
     try:
@@ -144,6 +150,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _fail(command, f"{name}: {error.strerror}" if error.filename else str(error))
     except KeyboardInterrupt:
         return _INTERRUPTED
+
+
+def _show_warning(message: Warning | str, *_where: Any) -> None:
+    """Say what a library warns of on one line, without the line of code it stands in."""
+    if sys.stderr is not None:
+        print(f"note: {' '.join(str(message).split())}", file=sys.stderr)
 
 
 def _write_any_name() -> None:

@@ -10,13 +10,14 @@ them is replaced.
 from __future__ import annotations
 
 import argparse
+import csv
 import re
 from collections.abc import Callable
 from pathlib import Path
 
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.trees.tree_file import TREE_FORMATS
+from tree_sway_ros.files.trees.tree_file import TREE_FORMATS, options_of
 from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
@@ -24,8 +25,11 @@ from tree_sway_ros.ros.process import topics
 from tree_sway_ros.tools import cli
 from tree_sway_ros.tools.rooms import rooms_drawing
 
-PAGES = ("README.md", "doc/reference.md", "doc/trees.md")
+PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
 """Pages with tables."""
+
+FIGURES = "doc/pictures/fidelity.csv"
+"""What ``tree-sway chart fidelity`` measured."""
 
 DRAWINGS: dict[str, Callable[[], str]] = {"doc/pictures/rooms.svg": rooms_drawing}
 """Drawings made from the source."""
@@ -107,6 +111,8 @@ def markdown_tables() -> dict[str, str]:
         "topics": topics.markdown_table(),
         "species": species_table(),
         "tree_formats": formats_table(),
+        "fidelity": fidelity_table(),
+        "fidelity_range": fidelity_range(),
     }
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters.markdown_table(table)
@@ -126,9 +132,47 @@ def formats_table() -> str:
     """Formats of tree files, with the options that each takes."""
     lines = ["| format | files | options |", "|---|---|---|"]
     for each in TREE_FORMATS:
-        options = ", ".join(f"`{option}`" for option in each.options)
+        options = ", ".join(f"`{option}`" for option in options_of(each))
         lines.append(f"| {each.name} | {', '.join(each.suffixes)} | {options} |")
     return "\n".join(lines) + "\n"
+
+
+def _fidelity() -> list[dict[str, str]]:
+    """Rows of the chart's figures; none where the repository is not there."""
+    path = Path(FIGURES)
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def fidelity_table() -> str:
+    """Tip error over tip motion, and time per frame, of every model on the trees of the chart."""
+    rows = _fidelity()
+    trees = list(dict.fromkeys(row["tree"] for row in rows))
+    lines = [
+        f"| model | {' | '.join(f'{tree}: error | us per frame' for tree in trees)} |",
+        f"|---|{'---|---|' * len(trees)}",
+    ]
+    for model in dict.fromkeys(row["model"] for row in rows):
+        here = {row["tree"]: row for row in rows if row["model"] == model}
+        cells = (
+            f"{float(here[tree]['error']):.2g} | {float(here[tree]['nanoseconds']) / 1e3:.0f}"
+            for tree in trees
+        )
+        lines.append(f"| `{model}` | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def fidelity_range() -> str:
+    """One sentence on trees, wind, truth and cost of the chart, for the line below it."""
+    rows = _fidelity()
+    costs = [float(row["nanoseconds"]) / 1e3 for row in rows] or [0.0]
+    trees = len({row["tree"] for row in rows})
+    return (
+        f"{trees} trees of 40 branches, in {rows[0]['wind'] if rows else 'no wind'}; from "
+        f"{min(costs):.0f} to {max(costs):.0f} us of CPU time per frame, solving and placing.\n"
+    )
 
 
 def species_table() -> str:

@@ -12,7 +12,6 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.modal import ModalBank
-from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.tree.tree import Tree
@@ -109,8 +108,7 @@ def _axis(tree: Tree, bank: Bank, shape: Floats) -> Floats:
     """Principal direction of the motion of the wood in a mode, (3,)."""
     poses = np.zeros((tree.n_segments, 7))
     small = _SMALL_ANGLE / np.abs(shape).max() * shape
-    work = bank.oscillators.work.copy()
-    place(bank.branches, bank.segments, bank.heads, work, small, tree.start[0], poses)
+    bank.place(small, tree.start[0], poses)
     start, end = ends_of_poses(poses, tree.length)
     moved = (start + end - tree.start - tree.end) / (2.0 * _SMALL_ANGLE)
     _, axes = np.linalg.eigh(np.einsum("n,ni,nj->ij", tree.volume, moved, moved))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,9 +40,26 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def save_figure(figure: Figure, path: str | Path, dots_per_inch: float = 110.0) -> Path:
+def save_figure(
+    figure: Figure,
+    path: str | Path,
+    dots_per_inch: float = 110.0,
+    figures: Path | None = None,
+) -> Path:
     """
     Write a figure to a file whose suffix names the format, ``.png`` for one.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    path
+        The file.
+    dots_per_inch
+        Resolution.
+    figures
+        File of the numbers that it shows; a PNG carries their digest, so that a picture older than
+        its numbers can be told.
 
     Raises
     ------
@@ -58,5 +76,15 @@ def save_figure(figure: Figure, path: str | Path, dots_per_inch: float = 110.0) 
             cure=f"end the name with one of: {', '.join('.' + k for k in sorted(known))}",
         )
     with whole_file(target) as partial:
-        figure.savefig(partial, dpi=dots_per_inch, format=target.suffix[1:].lower())
+        figure.savefig(
+            partial,
+            dpi=dots_per_inch,
+            format=target.suffix[1:].lower(),
+            metadata={"Description": digest_of(figures)} if figures else None,
+        )
     return target
+
+
+def digest_of(figures: Path) -> str:
+    """Digest of a file of numbers, as the picture of them carries it."""
+    return hashlib.sha256(figures.read_bytes()).hexdigest()

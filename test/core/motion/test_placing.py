@@ -19,6 +19,8 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
 
+pytestmark = pytest.mark.compiled
+
 seeds = st.integers(0, 10**6)
 
 

@@ -12,6 +12,8 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
+pytestmark = pytest.mark.compiled
+
 OAK = species_named("oak")
 
 

@@ -14,6 +14,8 @@ from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
+pytestmark = pytest.mark.compiled
+
 DRAG = 0.5 * 1.225 * 1.2
 
 

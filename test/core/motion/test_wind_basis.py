@@ -150,9 +150,9 @@ def test_a_degree_that_is_none_is_refused(fork, degree):
 
 
 @fused
-def _many(tables, instances, winds):
-    for k in range(len(winds)):
-        step_instance(tables[0], instances[0], winds[k, 0], winds[k, 1], winds[k, 2], 0.7)
+def _many(tables, paces, instances, winds):
+    for wind in winds:
+        step_instance(tables[0], paces[0], instances[0], False, wind[0], wind[1], wind[2], 0.7)
 
 
 def test_a_step_costs_the_same_whatever_the_size():
@@ -162,12 +162,12 @@ def test_a_step_costs_the_same_whatever_the_size():
         sim = SwaySimulator(tree, model="wind_basis")
         sim.step((1.0, 0.0, 0.0), DT)
         bank = sim.bank.oscillators
-        banks.append((bank.record, bank.instance))
+        banks.append((bank.record, bank.pace, bank.instance))
         _many(*banks[-1], winds[:5])
     times = np.full(2, np.inf)
     for _ in range(20):
-        for row, (record, instance) in enumerate(banks):
+        for row, bank in enumerate(banks):
             begun = time.perf_counter()
-            _many(record, instance, winds)
+            _many(*bank, winds)
             times[row] = min(times[row], time.perf_counter() - begun)
     assert times.max() <= 1.2 * times.min()

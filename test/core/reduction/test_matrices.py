@@ -22,6 +22,8 @@ from tree_sway_ros.core.motion.records import WORK
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.study.example_trees import forked_tree
 
+pytestmark = pytest.mark.compiled
+
 MODULUS, SHEAR, DENSITY = 9e9, 3.5e9, 900.0
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(5)
 

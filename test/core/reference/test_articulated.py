@@ -23,6 +23,8 @@ from tree_sway_ros.study.example_trees import (
 )
 from tree_sway_ros.study.frame.frame import frame_model
 
+pytestmark = pytest.mark.compiled
+
 E, RHO = EXAMPLE_MODULUS, EXAMPLE_DENSITY
 UNDAMPED = (0.0, 0.0)
 DT = 1.0 / 60.0

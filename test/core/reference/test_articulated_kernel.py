@@ -25,6 +25,8 @@ from tree_sway_ros.core.reference.rotation_kernel import turn_on
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.study.example_trees import tapered_stem
 
+pytestmark = pytest.mark.compiled
+
 E, RHO, G = 3.0e8, 900.0, 9.81
 
 

@@ -7,6 +7,8 @@ from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.articulated_step import GAMMA, Laws, drag
 from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 
+pytestmark = pytest.mark.compiled
+
 E, RHO = 8.0e9, 900.0
 
 

@@ -8,6 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.reference import rotation_kernel as kernel
 
+pytestmark = pytest.mark.compiled
+
 AXIS = (0.6, 0.0, 0.8)
 SEEDS = st.integers(0, 10**6)
 

@@ -64,6 +64,17 @@ def test_an_array_that_cannot_hold_the_poses_is_refused(sim, bad):
             sim.place_rotations(sim.rotations(), block)
 
 
+def test_rotations_of_another_number_are_refused(sim):
+    if not hasattr(sim, "place_rotations"):
+        pytest.skip("a forest has no rotations of its own")
+    good = sim.rotations()
+    for bad in (good[:-1], np.append(good, 0.0), good[None], ["x"] * len(good)):
+        with pytest.raises(ParameterError, match="rotations: "):
+            sim.place_rotations(bad)
+    told = sim.place_rotations(np.repeat(good, 2)[::2].astype(np.float32))
+    assert np.abs(told - sim.place_rotations(good)).max() < 1e-5
+
+
 def test_placed_frames_are_kept(sim):
     sim.step((5.0, 0.0, 0.0), DT)
     first = sim.place()

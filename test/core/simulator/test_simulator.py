@@ -127,6 +127,7 @@ def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, 
     assert run(other, winds @ turn)[:, :, :3] == pytest.approx(moved @ turn, abs=within)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("model", MODELS)
 def test_a_step_allocates_nothing(fork, model):
     sim = swaying(fork(), model)

@@ -20,7 +20,7 @@ def test_content_decides_and_suffix_breaks_ties(tmp_path):
 
 def test_format_by_name():
     assert read_tree(DATA / "segments.csv", format="csv").tree.n_branches == 2
-    with pytest.raises(ParameterError, match="unknown tree format 'dwg'; use yaml, csv"):
+    with pytest.raises(ParameterError, match="unknown tree format 'dwg'; use archi, mtg, csv"):
         read_tree(DATA / "segments.csv", format="dwg")
     with pytest.raises(FormatError):
         read_tree(DATA / "segments.csv", format="yaml")
@@ -36,7 +36,7 @@ def test_options_are_checked():
 
 def test_unknown_content(tmp_path):
     (tmp_path / "x.bin").write_bytes(b"\x00\x01\x02")
-    with pytest.raises(FormatError, match="no known tree format; give one of yaml, csv"):
+    with pytest.raises(FormatError, match="no known tree format; give one of archi, mtg"):
         read_trees(tmp_path / "x.bin")
     with pytest.raises(FormatError, match="no such file; check the path"):
         read_trees(tmp_path / "none.csv")
@@ -52,8 +52,8 @@ def test_table_of_segments():
 @pytest.mark.parametrize(
     ("old", "new", "kind", "message"),
     [
-        ("20,10,1", "11,10,1", FormatError, ":4: segment 11 stands twice"),
-        ("20,10,1", "20,99,1", TreeError, ":4: segment 20: orphan: no segment 99"),
+        ("20,10,1", "11,10,1", FormatError, ":4: segment 11: number 11 stands twice"),
+        ("20,10,1", "20,99,1", TreeError, ":4: segment 20: orphan: its parent 99"),
         ("20,10,1", "20,10.5,1", FormatError, ":4: parent is 10.5, not a whole number"),
         ("20,10,1", "20,20,1", TreeError, ":4: segment 20: cyclic"),
         ("0.03,0.01", "0.03", FormatError, ":4: 10 cells, none for 'd1'"),

@@ -98,3 +98,18 @@ def test_damaged_bags(tmp_path):
         read_wind(tmp_path / "empty")
     with pytest.raises(FormatError, match="no such bag"):
         read_bag_wind(tmp_path / "none")
+
+
+def test_a_bag_that_begins_at_zero_and_breaks_off(tmp_path):
+    """A message in the middle that cannot be taken apart ends the record, and is told."""
+    store = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
+    kind = "geometry_msgs/msg/Vector3"
+    with rosbag2.Writer(tmp_path / "bag", version=9) as writer:
+        connection = writer.add_connection("/wind", kind, typestore=store)
+        for second in range(5):
+            message = store.types[kind](1.0 + second, 2.0, 0.0)
+            data = store.serialize_cdr(message, kind)
+            writer.write(connection, second * 10**9, data[: 10 if second == 3 else None])
+    record = read_bag_wind(tmp_path / "bag")
+    np.testing.assert_allclose(record.time, [0, 1, 2])
+    assert any(note.startswith("damaged after 3 messages") for note in record.notes)

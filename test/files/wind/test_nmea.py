@@ -7,10 +7,10 @@ import pytest
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.wind.nmea import parse_nmea, read_nmea_wind
 from tree_sway_ros.files.wind.sensor_line import checksum_of
+from tree_sway_ros.files.wind.wind_file import read_wind
 
 DATA = Path(__file__).parents[1] / "data"
 MAST = DATA / "mast.nmea"
-RECORDED = Path(__file__).parents[4] / "shared/data/wind/sailing_mwv.nmea.log"
 
 
 def test_true_wind_units_and_places_in_time():
@@ -105,12 +105,20 @@ def test_errors(tmp_path):
             read_nmea_wind(MAST, rate=rate)
 
 
-@pytest.mark.skipif(not RECORDED.exists(), reason="recorded data is not at ../shared/data")
-def test_recorded_log():
-    record = read_nmea_wind(RECORDED)
-    lines = [line.split(",") for line in RECORDED.read_text().splitlines() if "MWV" in line]
-    knots = [float(fields[3]) for fields in lines if fields[2] == "T"]
+def test_a_log_of_a_boat(tmp_path):
+    """Sentences of many instruments, true and apparent wind in turn, at about 1 Hz."""
+    rng = np.random.default_rng(3)
+    knots, lines = rng.uniform(2.0, 22.9, 375).round(1), list[str]()
+    for speed in knots:
+        for body in (
+            "GPGLL,5958.613,N,02325.928,E,121022,A,D",
+            f"IIMWV,{rng.integers(360):03},R,{speed + 3:.1f},N,A",
+            f"IIMWV,{rng.integers(360):03},T,{speed:.1f},N,A",
+            "SDDBT,17.0,f,5.2,M,2.8,F",
+        ):
+            lines.append(f"${body}*{checksum_of(body)}")
+    (tmp_path / "boat.log").write_text("\r\n".join(lines))
+    record = read_wind(tmp_path / "boat.log")
     speed = np.linalg.norm(record.velocity, axis=1)
-    assert len(record.time) == len(knots) == 375
-    np.testing.assert_allclose(speed, np.array(knots) * 1852 / 3600)
-    assert record.refused == 0
+    np.testing.assert_allclose(speed, knots * 1852 / 3600)
+    assert (len(record.time), record.refused) == (375, 0)

@@ -1,6 +1,7 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tree_sway_ros.errors import FormatError, ParameterError
@@ -46,3 +47,11 @@ def test_no_known_format(tmp_path):
         read_wind(tmp_path / "x.bin")
     with pytest.raises(FormatError, match="no such file"):
         read_wind(tmp_path / "none.csv")
+
+
+def test_an_example_comes_with_the_package():
+    record = read_wind("canopy")
+    assert (len(record.time), record.refused) == (6000, 0)
+    assert record.duration == pytest.approx(299.95)
+    assert np.linalg.norm(record.velocity, axis=1).mean() == pytest.approx(2.2, abs=0.01)
+    assert "CC0" in Path(record.source).read_text()[:500]

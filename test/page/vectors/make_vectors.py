@@ -91,6 +91,7 @@ def main() -> None:
             matrix=rng.normal(0.0, 0.1, (rotations_of(each), N_COORDINATES)).astype(np.float32),
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
             error=SimpleNamespace(greatest=0.001),
+            frames=each.joints["frame"],
         )
         for each in both.simulators
     ]

@@ -29,7 +29,8 @@ def test_winds_are_as_their_names_say():
     assert set(cases) == {"gust", "step", "sine", "turn"}
     assert all(wind.shape == (600, 3) for wind in cases.values())
     speed = np.linalg.norm(cases["step"], axis=1)
-    assert speed.min() == 0.0 and speed.max() == pytest.approx(10.0)
+    assert speed.min() == 0.0
+    assert speed.max() == pytest.approx(10.0)
     first, last = cases["turn"][0, :2], cases["turn"][-1, :2]
     assert first @ last == pytest.approx(0.0, abs=1e-9)
     assert np.linalg.norm(turbulent(9.0, 20.0, 1), axis=1).mean() == pytest.approx(9.0, rel=0.15)

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
@@ -203,6 +203,8 @@ class AdaptiveSimulator(KeepsState):
         """Place every segment by key rotations of the whole tree, (n, 7)."""
         shape = (self.tree.n_segments, 7)
         poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        expected = self.bank.oscillators.rotations().shape
+        rotations = array_to_read("rotations", rotations, expected)
         self.bank.place(rotations, self.tree.start[0], poses)
         return poses
 

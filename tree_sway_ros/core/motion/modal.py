@@ -13,6 +13,8 @@ on the key rotations, w circular frequencies.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.beam import cross_matrix
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, WORK
 from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
@@ -83,11 +85,15 @@ class ModalBank:
         self._pull = np.zeros(len(branches))
         self.whole, self.half = np.zeros((2, m, 8))
 
-    def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+    def set_pace(self, dt: float) -> None:
+        """Refill how the modes go on in a time step [s]."""
         one = np.ones(len(self.stiffness))
         fill_steps(self.integrator, one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        self.set_pace(dt)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self.half[:, 6] + self.half[:, 7]
         compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads
@@ -110,14 +116,20 @@ class ModalBank:
             How many loads were held at their limit, -1 if the motion is not finite.
 
         """
-        return int(
-            _advance(
-                self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
-                self.held,
-                self.flexibility, self.limit, self.whole, self.half, self._pull,
-                wx, wy, wz, per_speed_squared,
-            )
+        return int(self._compiled(wx, wy, wz, per_speed_squared))
+
+    @cached_property
+    def _compiled(self) -> Callable[..., int]:
+        arrays = (
+            self.branches, self.work, self._loads, self.modal, self.state, self._shapes, self.held,
+            self.flexibility, self.limit, self.whole, self.half, self._pull,
         )  # fmt: skip
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    @cached_property
+    def _compiled_expand(self) -> Callable[[], None]:
+        arrays = (self._shapes, self.flexibility, self.modal, self.state)
+        return partial(entry_of(_expand, *arrays), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """
@@ -150,7 +162,7 @@ class ModalBank:
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _expand(self._shapes, self.flexibility, self.modal, self.state)
+        self._compiled_expand()
         rotations: Floats = self.state[3]
         return rotations
 

@@ -13,13 +13,15 @@ over the step; what depends on the branch's own angle is corrected once within t
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, OSCILLATORS, WORK
 from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
@@ -99,12 +101,12 @@ class UncoupledBank:
             How many loads were held at their limit, -1 if the motion is not finite.
 
         """
-        return int(
-            _advance(
-                self.branches, self.work, self._banks, self.state, self._pull, self.carries,
-                wx, wy, wz, per_speed_squared,
-            )
-        )  # fmt: skip
+        return int(self._compiled(wx, wy, wz, per_speed_squared))
+
+    @cached_property
+    def _compiled(self) -> Callable[..., int]:
+        arrays = (self.branches, self.work, self._banks, self.state, self._pull, self.carries)
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """

@@ -20,7 +20,13 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway_ros.core.motion.modal import ModalBank
-from tree_sway_ros.core.motion.wind_basis_force import N_REST, table_layout, wind_force, wind_rest
+from tree_sway_ros.core.motion.wind_basis_force import (
+    N_REST,
+    pace_layout,
+    table_layout,
+    wind_force,
+    wind_rest,
+)
 from tree_sway_ros.core.motion.wind_basis_table import STEEPEST, WindBasisTable
 
 
@@ -29,7 +35,6 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     m = table_layout(n_modes, n_harmonics)["stiffness"].shape[0]
     return np.dtype(
         [
-            ("table", "i8"),  # its row among the tables
             ("outside", "i8"),  # whether the last wind was outside of the table
             ("eta", "f8", (m,)),
             ("rate", "f8", (m,)),
@@ -71,10 +76,10 @@ class WindBasisBank:
         self.modal, self.table = modal, table
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
         n, m = modal.shapes.shape
-        self.record = table.record.copy()
+        self.record, self.pace = table.record, np.zeros(1, dtype=pace_layout(m))
         layout = instance_layout(m, COUNT[int(table.record["degree"][0])])
         self.instance = np.zeros(1, dtype=layout)
-        self._shapes = np.vstack([modal.shapes.T, table.rest_shapes])
+        self.all_shapes = np.vstack([modal.shapes.T, table.rest_shapes])
         self._x = np.zeros(n)
         self.n_outside = 0
         """Steps whose wind or lean was outside of the table."""
@@ -82,14 +87,14 @@ class WindBasisBank:
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         self.modal.set_step(dt)
-        set_table_step(self.record[0], self.modal)
+        fill_pace(self.pace[0], self.modal)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
-        if not _advance(self.record, self.instance, wx, wy, wz, per_speed_squared):
+        if not _advance(self.record, self.pace, self.instance, wx, wy, wz, per_speed_squared):
             return 0
         self.n_outside += 1
-        return step_outside(self.instance[0], self.modal, self._shapes, self._x)
+        return step_outside(self.instance[0], self.modal, self.all_shapes, self._x)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """As `ModalBank.response`."""
@@ -101,7 +106,7 @@ class WindBasisBank:
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _rotations(self.record, self.instance, self._shapes, self._x)
+        _rotations(self.record, self.instance, self.all_shapes, self._x)
         return self._x
 
     def forces(self) -> Floats:
@@ -131,13 +136,13 @@ class WindBasisBank:
         self.modal.reset()
 
 
-def set_table_step(table: Any, modal: ModalBank) -> None:
-    """Take the coefficients of a time step over into a record of `table_layout`."""
-    m = int(table["n_modes"])
-    table["whole"], table["half"] = 0.0, 0.0
-    table["whole"][:, :m] = modal.whole.T
+def fill_pace(pace: Any, modal: ModalBank) -> None:
+    """Take the coefficients of a time step over into a record of `pace_layout`."""
+    m = modal.shapes.shape[1]
+    pace["whole"], pace["half"] = 0.0, 0.0
+    pace["whole"][:, :m] = modal.whole.T
     half = modal.half
-    table["half"][:, :m] = np.stack(
+    pace["half"][:, :m] = np.stack(
         [half[:, 0], half[:, 1], half[:, 2] + half[:, 3],
          half[:, 4], half[:, 5], half[:, 6] + half[:, 7]]
     )  # fmt: skip
@@ -216,15 +221,18 @@ def _rotations(tables: Any, instances: Any, shapes: Floats, x: Floats) -> None:
 
 @fused
 def step_instance(
-    table: Any, instance: Any, wx: float, wy: float, wz: float, per_speed_squared: float
-) -> int:
+    table: Any, pace: Any, instance: Any, is_held: bool,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
     """
     Step one tree on its table.
 
     Parameters
     ----------
-    table, instance
-        Records of `table_layout` and `instance_layout`.
+    table, pace, instance
+        Records of `table_layout`, `pace_layout` and `instance_layout`.
+    is_held
+        Whether the table is followed beyond what it was made for.
     wx, wy, wz
         Mean wind over the step in [m/s].
     per_speed_squared
@@ -242,7 +250,7 @@ def step_instance(
         x, y, z = wx / speed, wy / speed, wz / speed
     push, drag = per_speed_squared * speed * speed, per_speed_squared * speed
     eta, rate, force, half, whole = (
-        instance.eta, instance.rate, instance.force, table.half, table.whole,
+        instance.eta, instance.rate, instance.force, pace.half, pace.whole,
     )  # fmt: skip
     middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
     energy = 0.0
@@ -257,7 +265,7 @@ def step_instance(
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
     inside = push <= table.most_pressure and energy <= table.most_energy
-    instance.outside = 0 if inside and abs(z) * push <= STEEPEST * push else 1
+    instance.outside = 0 if is_held or (inside and abs(z) * push <= STEEPEST * push) else 1
     if instance.outside:
         return 1
     diagonal = instance.room[2]
@@ -274,6 +282,7 @@ def step_instance(
 
 @fused
 def _advance(
-    tables: Any, instances: Any, wx: float, wy: float, wz: float, per_speed_squared: float
-) -> int:
-    return step_instance(tables[0], instances[0], wx, wy, wz, per_speed_squared)
+    tables: Any, paces: Any, instances: Any,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    return step_instance(tables[0], paces[0], instances[0], False, wx, wy, wz, per_speed_squared)

@@ -52,6 +52,16 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
             ("rest_damping", "f8", (a, m, N_REST)),
             ("turning", "f8", (a, n, m, m)),
             ("damping", "f8", (a, n, m, m)),
+        ]
+    )
+
+
+@cache
+def pace_layout(n_modes: int) -> np.dtype[np.void]:
+    """How the modes of a table go on in a time step."""
+    m = table_layout(n_modes, 0)["stiffness"].shape[0]
+    return np.dtype(
+        [
             ("whole", "f8", (8, m)),  # columns of the propagator of a step
             ("half", "f8", (6, m)),  # of half a step under a constant load
         ]

@@ -82,7 +82,7 @@ class WindBasisTable:
     Attributes
     ----------
     record
-        Of `table_layout`, (1,); what depends on the time step is left 0.
+        Of `table_layout`, (1,).
     rest_shapes
         Key rotations of each shape of the static rest in [rad], (`N_REST`, N).
     error

@@ -5,8 +5,9 @@ From a tree to the oscillators that move it, for every model of the ladder.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Protocol, cast
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
-from tree_sway_ros.core.kernel import WHY_PLAIN, need_compiler
+from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -175,15 +176,25 @@ class Bank:
     def _plain_placing(self) -> NumpyPlacing:
         return NumpyPlacing(self.branches, self.segments, self.frozen)
 
+    @cached_property
+    def _compiled_placing(self) -> Callable[[Floats, Floats, Floats], None]:
+        arrays = (self.branches, self.segments, self.heads, self.oscillators.work)
+        given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
+        return partial(entry_of(place, *arrays, *given), *arrays)
+
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
-        """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+        """
+        Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
+
+        Nothing is checked: arrays must be of float64, in one piece and of these shapes.
+
+        """
         if self.plain:
             self._plain_placing.place(rotations, origin, out)
             return
-        work = self.oscillators.work
-        place(self.branches, self.segments, self.heads, work, rotations, origin, out)
+        self._compiled_placing(rotations, origin, out)
         if self.frozen is not None:
-            self.frozen.place(self.branches, work, rotations, out)
+            self.frozen.place(self.branches, self.oscillators.work, rotations, out)
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
@@ -167,7 +167,10 @@ class SegmentsSimulator(KeepsState):
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         shape = (self.tree.n_segments, 7)
         poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self._joined[0].place(rotations, self.tree.start[0], poses)
+        bank = self._joined[0]
+        expected = bank.oscillators.rotations().shape
+        rotations = array_to_read("rotations", rotations, expected)
+        bank.place(rotations, self.tree.start[0], poses)
         return poses
 
     def place(self, out: Floats | None = None) -> Floats:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.step_rules import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
@@ -104,7 +104,7 @@ class SwaySimulator(KeepsState):
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
-        self._drag_law = self.species.drag_law(bool(self.settings.in_leaf))
+        self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
         self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
@@ -170,10 +170,8 @@ class SwaySimulator(KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
-        shape = self._poses.shape
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self.bank.place(rotations, self._origin, poses)
-        return poses
+        expected = self.bank.oscillators.rotations().shape
+        return self._placed(array_to_read("rotations", rotations, expected), out)
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -214,7 +212,7 @@ class SwaySimulator(KeepsState):
             speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
-        load = pressure(speed, *self._drag_law)
+        load = pressure(speed, *self.drag_law)
         for _ in range(self._pieces):
             held = self._advance(wx, wy, wz, load)
             if held > 0:
@@ -248,7 +246,13 @@ class SwaySimulator(KeepsState):
             An array that cannot hold the poses.
 
         """
-        return self.place_rotations(self.bank.oscillators.rotations(), out)
+        return self._placed(self.bank.oscillators.rotations(), out)
+
+    def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
+        shape = self._poses.shape
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        self.bank.place(rotations, self._origin, poses)
+        return poses
 
     @property
     def tip_displacement(self) -> Floats:

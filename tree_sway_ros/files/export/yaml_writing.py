@@ -14,7 +14,7 @@ import numpy as np
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.yaml_schema import tree_schema
+from tree_sway_ros.files.yaml_document import tree_schema
 
 
 def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:

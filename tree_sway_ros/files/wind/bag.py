@@ -61,29 +61,30 @@ def read_bag_wind(
     if not path.exists():
         raise FormatError("no such bag", where=source, cure="check the path")
     rows = WindRows(source, row_name="message")
-    epoch, notes = 0, list[str]()
+    epoch, n_unstamped, notes = -1, 0, list[str]()
     # A damaged bag fails in rosbags, sqlite3, lz4 or struct: whatever it is, it is the bag's fault.
     try:
         with AnyReader([_bag(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             connection = _chosen(reader.connections, topic, source)
-            n_unstamped = 0
             for number, (_, recorded, data) in enumerate(reader.messages([connection]), start=1):
                 message = reader.deserialize(data, connection.msgtype)
                 stamp = _stamp(message)
                 n_unstamped += not stamp
-                epoch = epoch or stamp or recorded
+                epoch = (stamp or recorded) if epoch < 0 else epoch
                 vector = _vector(message)
                 seconds = ((stamp or recorded) - epoch) * 1e-9
                 rows.add(number, seconds, (vector.x, vector.y, vector.z))
     except FormatError:
         raise
     except Exception as error:
-        raise FormatError(
-            f"not a bag that can be read: {type(error).__name__}: {' '.join(str(error).split())}"[
-                :300
-            ],
-            where=source,
-        ) from error
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
+        if not rows.time:
+            raise FormatError(
+                f"not a bag that can be read: {reason}",
+                where=source,
+                cure="if it was cut off, mend it with 'mcap recover' or 'sqlite3 FILE .recover'",
+            ) from error
+        notes.append(f"damaged after {len(rows.time)} messages, which were read: {reason}")
     notes.append(f"topic {connection.topic}, {connection.msgtype}")
     if n_unstamped:
         notes.append(f"{n_unstamped} messages without a stamp have the time they were recorded at")

@@ -22,12 +22,11 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.table_file import TextTable, parse_table, row_numbers
-from tree_sway_ros.files.text_file import finite, read_lines
-from tree_sway_ros.files.time_stamps import seconds_of_stamps
-from tree_sway_ros.files.wind.units import TIME_UNITS, unit_factor
+from tree_sway_ros.files.table_file import TextTable, parse_table
+from tree_sway_ros.files.text_file import read_lines
+from tree_sway_ros.files.wind.table import TIME_NAMES
+from tree_sway_ros.files.wind.units import TIME_UNITS
 
-_TIME = ("time", "t", "timestamp", "stamp", "datetime", "date_time", "seconds", "secs", "elapsed")
 _QUANTITY = {
     "displacement": re.compile(
         r"(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]"
@@ -45,8 +44,6 @@ _UNITS = {
         **{"g": 9.80665, "mg": 9.80665e-3},
     },
 }
-_NAME = re.compile(r"[a-z_ ]*[a-z_0-9]+", re.IGNORECASE)
-_UNIT = re.compile(r"\[(.*)\]|\((.*)\)|")
 MAX_VALUE = 1e12
 """Larger times and motions are no measured ones, in whichever unit."""
 
@@ -96,76 +93,53 @@ def read_csv_sway(path: Path) -> SwayRecord:
     """
     source = str(path)
     table = parse_table(read_lines(path), source)
-    headings = [_heading(column) for column in table.columns]
-    clock = next((i for i, (name, _) in enumerate(headings) if name in _TIME), None)
-    motion = [(i, q) for i, (name, _) in enumerate(headings) if (q := _quantity(name)) is not None]
+    clock = next((i for i, (name, _) in enumerate(table.headings) if name in TIME_NAMES), None)
+    motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
     if clock is None or not motion:
         raise FormatError(
             f"no {'time' if clock is None else 'motion'} among {', '.join(table.columns[:20])}",
-            where=f"{source}:1",
-            cure="name the columns time, x, y or time, tilt_x, tilt_y or time, ax, ay in the "
-            "header",
+            where=table.where(),
+            cure="name the columns time, x, y or time, tilt_x or time, ax, ay in the header",
         )
     quantities = sorted({quantity for _, quantity in motion})
     if len(quantities) > 1:
         raise FormatError(
             f"{' and '.join(quantities)} in one file",
-            where=f"{source}:1",
+            where=table.where(),
             cure="keep the columns of one quantity",
         )
     units = _UNITS[quantities[0]]
-    factors = [unit_factor(units, headings[i][1], 1.0, f"{source}:1") for i, _ in motion]
-    indices = [i for i, _ in motion]
-    names = [table.columns[i] for i in indices]
-    values = [row_numbers(cells, indices, names, f"{source}:{line}") for line, cells in table.rows]
-    motion_values = np.array(values) * factors
-    for row, column in np.argwhere(np.abs(motion_values) > MAX_VALUE)[:1]:
+    factors = [table.factor(table.headings[i][1], units, 1.0) for i, _ in motion]
+    names = [table.columns[i] for i, _ in motion]
+    values = table.strict(names)
+    for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
         raise FormatError(
-            f"{names[column]} is {values[row][column]:.3g}, which nothing measures",
-            where=f"{source}:{table.rows[row][0]}",
+            f"{names[column]} is {values[row, column]:.3g}, which nothing measures",
+            where=table.where(row),
             cure="mend the cell or remove the row",
         )
-    return SwayRecord(
-        _times(table, clock, headings[clock][1]),
-        motion_values,
-        quantities[0],
-        tuple(names),
-        source,
-    )
-
-
-def _heading(column: str) -> tuple[str, str]:
-    """Name in lower case, with _ for spaces, and unit of a column."""
-    begin = min((i for c in "[(" if (i := column.find(c)) >= 0), default=len(column))
-    name, unit = column[:begin].strip(), _UNIT.fullmatch(column[begin:].strip())
-    if unit is None or _NAME.fullmatch(name) is None:
-        return "", ""
-    return name.lower().replace(" ", "_"), (unit[1] or unit[2] or "").strip()
+    times = _times(table, clock)
+    return SwayRecord(times, values * factors, quantities[0], tuple(names), source)
 
 
 def _quantity(name: str) -> str | None:
     return next((q for q, pattern in _QUANTITY.items() if pattern.fullmatch(name)), None)
 
 
-def _times(table: TextTable, clock: int, unit: str) -> Floats:
+def _times(table: TextTable, clock: int) -> Floats:
     """Seconds of each row, from numbers or from dates."""
-    stamps = [cells[clock] if clock < len(cells) else "" for _, cells in table.rows]
-    numbers = [finite(stamp) for stamp in stamps]
-    if any(number is not None for number in numbers):
-        factor = unit_factor(TIME_UNITS, unit, 1.0, f"{table.source}:1")
-        times = np.array([np.nan if n is None else n * factor for n in numbers])
-    else:
-        times = seconds_of_stamps(stamps)[0]
+    stamps = table.cells(clock, range(len(table.texts)))
+    times, _ = table.seconds(stamps, table.factor(table.headings[clock][1], TIME_UNITS, 1.0))
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         raise FormatError(
             f"time is '{stamps[row][:40]}', neither seconds nor a date",
-            where=f"{table.source}:{table.rows[row][0]}",
+            where=table.where(row),
             cure="mend the cell or remove the row",
         )
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
         raise FormatError(
             f"time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}",
-            where=f"{table.source}:{table.rows[row + 1][0]}",
+            where=table.where(row + 1),
             cure="put the rows in the order of time, each time once",
         )
     return times

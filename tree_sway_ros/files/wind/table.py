@@ -1,57 +1,49 @@
 """
-Wind in a table with a header.
+Wind in a table: CSV with a header, and the TOA5 of Campbell Scientific's loggers.
 
 A time column (``time``, ``t``, ``timestamp``, ``stamp`` ...) in seconds or as ISO 8601 dates, and
 either components ``u, v`` and perhaps ``w`` (or ``x, y, z``), or ``speed`` and ``direction`` in
 degrees clockwise from north. A unit may follow the name: ``speed [km/h]``, ``u (m/s)``,
 ``time_ms``, ``direction_deg``. Components point where the wind blows to, a direction says where it
-comes from, as is the use of each; ``direction_convention`` says otherwise. Comma, semicolon or tab
-between cells; lines with # are comments.
+comes from, as is the use of each; ``direction_convention`` says otherwise.
+
+TOA5 has four header lines: the logger, the names, their units, how they were processed. The
+components of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument
+(CSAT3 manual, 2.3); ``yaw`` turns them to east and north. Diagnostic words differ from instrument
+to instrument and are not read. A row that holds no number is refused.
 
 """
 
 from __future__ import annotations
 
-import re
 from array import array
-from dataclasses import dataclass
+from functools import partial
 from math import pi
 from pathlib import Path
 
-from tree_sway_ros.core.wind.convention import WindConvention, velocity_of_bearing
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.table_file import TextTable, parse_table
-from tree_sway_ros.files.text_file import finite, read_lines, why_no_number
-from tree_sway_ros.files.time_stamps import seconds_of_stamps
-from tree_sway_ros.files.wind.record import WindRecord, WindRows
-from tree_sway_ros.files.wind.units import (
-    ANGLE_UNITS,
-    SPEED_UNITS,
-    TIME_UNITS,
-    unit_factor,
-)
+import numpy as np
 
-_TIME = ("time", "t", "timestamp", "stamp", "datetime", "date_time", "seconds", "secs")
-_U = ("u", "x", "ux", "east", "vx", "velocity_x", "wind_u", "wind_x")
-_V = ("v", "y", "uy", "north", "vy", "velocity_y", "wind_v", "wind_y")
-_W = ("w", "z", "uz", "up", "vz", "velocity_z", "wind_w", "wind_z")
+from tree_sway_ros.core.wind.convention import WindConvention
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.table_file import Column, TextTable, parse_table, split_row
+from tree_sway_ros.files.text_file import read_lines
+from tree_sway_ros.files.wind.record import WindRecord, WindRows
+from tree_sway_ros.files.wind.units import ANGLE_UNITS, SPEED_UNITS, TIME_UNITS
+
+TIME_NAMES = (
+    *("time", "t", "timestamp", "stamp", "datetime", "date_time", "seconds", "secs", "elapsed"),
+)
+"""What a column of times may be called."""
+
+_COMPONENTS = (
+    ("u", "x", "ux", "ux_avg", "east", "vx", "velocity_x", "wind_u", "wind_x"),
+    ("v", "y", "uy", "uy_avg", "north", "vy", "velocity_y", "wind_v", "wind_y"),
+    ("w", "z", "uz", "uz_avg", "up", "vz", "velocity_z", "wind_w", "wind_z"),
+)
 _SPEED = ("speed", "wind_speed", "windspeed", "ws", "wspd")
 _DIRECTION = (
-    "direction",
-    "dir",
-    "wind_direction",
-    "winddirection",
-    "wind_dir",
-    "winddir",
-    "wd",
-    "wdir",
+    *("direction", "dir", "wind_direction", "winddirection", "wind_dir", "winddir", "wd", "wdir"),
 )
-
-
-@dataclass(frozen=True, slots=True)
-class _Column:
-    index: int
-    factor: float
 
 
 def read_csv_wind(
@@ -76,83 +68,88 @@ def read_csv_wind(
         A column that is missing, a unit that is not known, or no good row.
 
     """
-    if direction_convention is not None:
-        WindConvention(direction_convention)  # refused before the file is read
-    source = str(path)
-    table = parse_table(read_lines(path), source)
-    time = _column(table, _TIME, TIME_UNITS, 1.0)
-    u, v = _column(table, _U, SPEED_UNITS, 1.0), _column(table, _V, SPEED_UNITS, 1.0)
-    w = _column(table, _W, SPEED_UNITS, 1.0)
-    speed = _column(table, _SPEED, SPEED_UNITS, 1.0)
-    direction = _column(table, _DIRECTION, ANGLE_UNITS, pi / 180.0)
-    if time is None or ((u is None or v is None) and (speed is None or direction is None)):
+    WindConvention(direction_convention or "to")  # refused before the file is read
+    return _wind(parse_table(read_lines(path), str(path)), direction_convention, yaw)
+
+
+def read_toa5_wind(
+    path: Path,
+    columns: tuple[str, str, str] | None = None,
+    yaw: float = 0.0,
+    direction_convention: str | None = None,
+) -> WindRecord:
+    """
+    Read the wind of a TOA5 table.
+
+    Parameters
+    ----------
+    path
+        The file.
+    columns
+        Names of the three components; ``Ux Uy Uz`` or a usual variant of them if None.
+    yaw, direction_convention
+        As of `read_csv_wind`.
+
+    Raises
+    ------
+    FormatError
+        Not TOA5, no such columns, or no good row.
+
+    """
+    WindConvention(direction_convention or "to")  # refused before the file is read
+    lines, split = read_lines(path), partial(split_row, separator=",")
+    if len(lines) < 4 or not lines[0].lstrip('"').startswith("TOA5"):
+        raise FormatError("not TOA5: its 4 header lines are missing", where=f"{path}:1")
+    kept = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
+    texts = [lines[number - 1] for number in kept]
+    names, units = tuple(split(lines[1])), tuple(split(lines[2]))
+    table = TextTable(names, kept, texts, split, str(path), 2, 3, units)
+    chosen = None if columns is None else [table.index_of(name) for name in columns]
+    return _wind(table, direction_convention, yaw, chosen)
+
+
+def _wind(
+    table: TextTable, convention: str | None, yaw: float, chosen: list[int] | None = None
+) -> WindRecord:
+    """Wind of a table, from the columns chosen or those of the usual names."""
+    clock = table.find(TIME_NAMES, {**TIME_UNITS, "ts": 1.0})
+    if chosen is None:
+        found = [table.find(names, SPEED_UNITS) for names in _COMPONENTS]
+    else:
+        found = [
+            Column(index, table.factor(table.headings[index][1], SPEED_UNITS, 1.0))
+            for index in chosen
+        ]
+    has_components = found[0] is not None and found[1] is not None
+    if not has_components:
+        found = [table.find(_SPEED, SPEED_UNITS), table.find(_DIRECTION, ANGLE_UNITS, pi / 180.0)]
+    if clock is None or None in found[:2]:
         raise FormatError(
-            f"no time with u and v, or with speed and direction, among "
+            "no time with u and v, or with speed and direction, among "
             f"{', '.join(table.columns[:20])}",
-            where=f"{source}:1",
-            cure="name the columns so in the header",
+            where=table.where(),
+            cure="name the columns so in the header, or by the option columns of TOA5",
         )
-    rows, stamps = WindRows(source), list[str]()
-    chosen = [c for c in ((u, v, w) if u and v else (speed, direction)) if c is not None]
-    for number, cells in table.rows:
-        values = _values(table, cells, chosen)
-        if isinstance(values, str) or time.index >= len(cells):
-            rows.refuse(number, values if isinstance(values, str) else "no time")
-            continue
-        stamps.append(cells[time.index])
-        if u and v:
-            rows.add(number, 0.0, (values[0], values[1], values[2] if w else 0.0))
-        elif values[0] < 0.0:
-            rows.refuse(number, f"speed is {values[0]:g}")
-            stamps.pop()
-        else:
-            bearing = values[1] - yaw
-            rows.add(
-                number, 0.0, velocity_of_bearing(values[0], bearing, direction_convention or "from")
-            )
-    seconds, epoch = _times(stamps, time.factor)
-    rows.time = array("d", seconds)
-    if u and v:
-        convention = direction_convention or "to"
-        return rows.record(epoch=epoch, yaw=yaw, direction_convention=convention)
-    return rows.record(epoch=epoch)
-
-
-def _values(table: TextTable, cells: tuple[str, ...], columns: list[_Column]) -> list[float] | str:
-    """Values in SI of some cells, or why not."""
-    values = []
-    for column in columns:
-        cell = cells[column.index] if column.index < len(cells) else ""
-        value = finite(cell)
-        if value is None:
-            return f"{table.columns[column.index]} is {why_no_number(cell)}"
-        values.append(value * column.factor)
-    return values
-
-
-def _times(stamps: list[str], factor: float) -> tuple[list[float], float | None]:
-    """Seconds, and what they count from if the stamps are dates; NaN where a stamp is neither."""
-    numbers = [finite(stamp) for stamp in stamps]
-    if any(number is not None for number in numbers):
-        return [float("nan") if n is None else n * factor for n in numbers], None
-    seconds, epoch = seconds_of_stamps(stamps)
-    return seconds.tolist(), epoch
-
-
-def _column(
-    table: TextTable, names: tuple[str, ...], units: dict[str, float], default: float
-) -> _Column | None:
-    """Return the first column of one of these names, with or without a unit behind it."""
-    for name in names:
-        pattern = re.compile(rf"{name}\s*(?:\[(.*)\]|\((.*)\)|_(.+))?", re.IGNORECASE)
-        for index, column in enumerate(table.columns):
-            match = pattern.fullmatch(column)
-            if match is None:
-                continue
-            suffix = match[3]
-            if suffix is not None and suffix.lower() not in units:
-                continue  # another quantity that begins alike, as u_std
-            unit = match[1] or match[2] or suffix or ""
-            factor = unit_factor(units, unit, default, f"{table.source}:1")
-            return _Column(index, factor)
-    return None
+    columns = [column for column in found if column is not None]
+    indices = [column.index for column in columns]
+    values = table.values(indices) * [column.factor for column in columns]
+    rows = WindRows(table.source)
+    good = np.isfinite(values).all(axis=1)
+    for row in np.flatnonzero(~good).tolist():
+        rows.refuse(table.numbers[row], table.why_none(row, indices))
+    if has_components:
+        velocity = np.zeros((len(values), 3))
+        velocity[:, : values.shape[1]] = values
+    else:
+        speed, bearing = values[:, 0], values[:, 1] - yaw
+        for row in np.flatnonzero(good & (speed < 0.0)).tolist():
+            rows.refuse(table.numbers[row], f"speed is {speed[row]:g}")
+        good &= speed >= 0.0
+        against = 1.0 if convention == "to" else -1.0
+        velocity = against * (speed * np.array([np.sin(bearing), np.cos(bearing), 0.0 * speed])).T
+        convention, yaw = "to", 0.0
+    kept = np.flatnonzero(good)
+    seconds, epoch = table.seconds(table.cells(clock.index, kept.tolist()), clock.factor)
+    rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
+    rows.time = array("d", seconds.tolist())
+    return rows.record(epoch=epoch, yaw=yaw, direction_convention=convention or "to")

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from math import pi, radians
 
-from tree_sway_ros.errors import FormatError
-
 Velocity = tuple[float, float, float]
 
 SPEED_UNITS = {
@@ -25,26 +23,6 @@ TIME_UNITS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "ns"
 ANGLE_UNITS = {"deg": pi / 180.0, "degrees": pi / 180.0, "degree": pi / 180.0, "°": pi / 180.0,
                "degm": pi / 180.0, "degt": pi / 180.0, "rad": 1.0, "radians": 1.0}  # fmt: skip
 """Units of angle in [rad]."""
-
-
-def unit_factor(units: dict[str, float], text: str, default: float, where: str) -> float:
-    """
-    Factor of a unit by its name.
-
-    Raises
-    ------
-    FormatError
-        If it is none of these units.
-
-    """
-    key = text.strip().lower()
-    if not key:
-        return default
-    if key not in units:
-        raise FormatError(
-            f"unknown unit '{text[:20]}'", where=where, cure=f"use {', '.join(units)}"
-        )
-    return units[key]
 
 
 def degrees_to_bearing(degrees: float) -> float | None:

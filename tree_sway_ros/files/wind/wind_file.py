@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,7 @@ from tree_sway_ros.files.wind.bag import read_bag_wind
 from tree_sway_ros.files.wind.nmea import read_nmea_wind
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.sonic_ascii import read_sonic_wind
-from tree_sway_ros.files.wind.table import read_csv_wind
-from tree_sway_ros.files.wind.toa5 import read_toa5_wind
+from tree_sway_ros.files.wind.table import read_csv_wind, read_toa5_wind
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,9 @@ WIND_FORMATS: tuple[WindFormat, ...] = (
     ),
 )
 
+EXAMPLES = ("canopy",)
+"""Winds that come with the package: five minutes of a sonic anemometer over a canopy, 20 Hz."""
+
 
 def read_wind(path: str | Path, format: str | None = None, **options: Any) -> WindRecord:
     """
@@ -75,7 +78,7 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
     Parameters
     ----------
     path
-        The file, or the folder of a bag.
+        The file, or the folder of a bag, or one of `EXAMPLES`.
     format
         Name of its format; found from content and suffix if None.
     **options
@@ -90,6 +93,8 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
 
     """
     path = path_of(path)
+    if str(path) in EXAMPLES and not path.exists():
+        path = Path(str(files("tree_sway_ros.files.wind").joinpath(f"{path}.csv")))
     chosen = _format_of(path) if format is None else _format_named(format)
     known = chosen.read.__annotations__
     for option in options:

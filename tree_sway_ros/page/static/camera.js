@@ -34,7 +34,7 @@ export class Camera {
       this.elevation = 0.16;
       this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
       const across = Math.tan(FIELD / 2) * Math.min(1, this.aspect);
-      this.distance = (0.56 * size) / across;
+      this.distance = (0.5 * size) / across;
     };
     this._home();
   }

@@ -15,7 +15,11 @@ import {
 import { Placer, STRIDE } from "./placing.js";
 import * as shaders from "./shaders.js";
 
-const SHADOW_SIZE = 512;
+/** A shadow is drawn anew every so many frames without a graphics unit. */
+const SHADOW_EVERY = 5;
+/** Frames per second below which, without a graphics unit, fewer points are drawn. */
+const WANTED_FPS = 45;
+const COARSEST = 0.7;
 const POT_HEIGHT = 0.17;
 
 /**
@@ -89,6 +93,7 @@ export class Scene {
       leaf: program(gl, shaders.LEAF_VERTEX, shaders.LEAF_FRAGMENT),
       solid: program(gl, shaders.SOLID_VERTEX, shaders.SOLID_FRAGMENT),
       ground: program(gl, shaders.GROUND_VERTEX, shaders.GROUND_FRAGMENT),
+      shadow: program(gl, shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT),
     };
     this._texture = gl.createTexture();
     this._rows = 0;
@@ -98,8 +103,19 @@ export class Scene {
     this._parts = { bark: null, leaf: null, pot: null, arrow: null, ground: null };
     this._parts.arrow = this._solid(arrowMesh());
     this._parts.pot = this._solid(potMesh());
-    this._parts.ground = this._plane();
+    this._parts.ground = this._flat("ground", discMesh());
+    this._parts.shadow = this._flat("shadow", {
+      values: [-1, -1, 1, -1, 1, 1, -1, 1],
+      indices: [0, 1, 2, 0, 2, 3],
+    });
+    this._shadowSize = this.isSlow ? 256 : 1024;
     this._shadow = this._shadowTarget();
+    this._shadowMiddle = [0, 0];
+    this._shadowHalf = 1;
+    /** Points of the picture per point of the page. */
+    this._fineness = 1;
+    this._paceFrom = 0;
+    this._paced = 0;
     this._groundHeight = 0;
     this._middle = [0, 0];
     this._extent = 1;
@@ -151,6 +167,7 @@ export class Scene {
     this._groundHeight = (isPotted(description) ? root[2] : Math.min(low[2], root[2])) - this._potSize;
     this._middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
     this._extent = Math.max(wide, high2);
+    this._frameShadow(low, high);
     if (!isSame) {
       this.camera.frame([low[0], low[1], this._groundHeight], [high[0], high[1], high[2]]);
     }
@@ -169,7 +186,7 @@ export class Scene {
 
   /** Fit the picture to the element. */
   resize() {
-    const ratio = this.isSlow ? 1 : Math.min(window.devicePixelRatio || 1, 2);
+    const ratio = this.isSlow ? this._fineness : Math.min(window.devicePixelRatio || 1, 2);
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width === width && this.canvas.height === height) return;
@@ -192,8 +209,10 @@ export class Scene {
     const matrix = this.camera.update();
     if (this.placer && coordinates) this.placer.place(coordinates);
     if (this.placer) this._upload(this.placer.poses);
-    // The eye takes a shadow that is three frames old for one that is not.
-    if (this.placer && this._frame % (this.isSlow ? 4 : 1) === 0) this._castShadow(matrix, time);
+    // The eye takes a shadow that is some frames old for one that is not.
+    const every = this.isSlow ? SHADOW_EVERY : 1;
+    if (this.placer && this._frame % every === 0) this._castShadow(matrix, time);
+    if (this.isSlow) this._keepPace();
     this._frame++;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -223,7 +242,7 @@ export class Scene {
   _castShadow(matrix, time) {
     const { gl } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this._shadow.target);
-    gl.viewport(0, 0, SHADOW_SIZE, SHADOW_SIZE);
+    gl.viewport(0, 0, this._shadowSize, this._shadowSize);
     gl.clearColor(0, 0, 0, 1);
     gl.disable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT);
@@ -244,13 +263,39 @@ export class Scene {
     gl.uniform3f(at.light, light[0], light[1], light[2]);
     gl.uniform1f(at.ground, this._groundHeight);
     gl.uniform1f(at.isShadow, isShadow ? 1 : 0);
-    gl.uniform4f(at.shadowArea, this._middle[0], this._middle[1], 1 / this._shadowHalf,
-      isShadow ? 1 : 0);
+    const [x, y] = this._shadowMiddle;
+    gl.uniform4f(at.shadowArea, x, y, 1 / this._shadowHalf, isShadow ? 1 : 0);
     gl.uniform1i(at.poses, 0);
   }
 
-  get _shadowHalf() {
-    return 1.6 * this._extent;
+  /**
+   * Where the shadow falls, with room to sway.
+   *
+   * @param {number[]} low
+   * @param {number[]} high
+   */
+  _frameShadow(low, high) {
+    const lean = [0, 1].map((c) => -this.light[c] / this.light[2]);
+    const tall = high[2] - this._groundHeight;
+    const room = 0.06 * this._extent;
+    const from = [0, 1].map((c) => low[c] + Math.min(0, lean[c] * tall) - room);
+    const to = [0, 1].map((c) => high[c] + Math.max(0, lean[c] * tall) + room);
+    this._shadowMiddle = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
+    this._shadowHalf = Math.max(to[0] - from[0], to[1] - from[1]) / 2;
+  }
+
+  /** Draw fewer points while frames come too slowly, and more again when there is time. */
+  _keepPace() {
+    const now = performance.now();
+    this._paced++;
+    if (now - this._paceFrom < 700) return;
+    const fps = (1000 * this._paced) / (now - this._paceFrom);
+    if (this._paceFrom && this._paced > 2) {
+      const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.04;
+      this._fineness = Math.min(1, Math.max(COARSEST, this._fineness * factor));
+    }
+    this._paceFrom = now;
+    this._paced = 0;
   }
 
   /**
@@ -301,9 +346,9 @@ export class Scene {
     }
     const speed = Math.hypot(this.wind[0], this.wind[1]);
     if (speed > 0.05 && this._parts.arrow) {
-      const long = this._treeHeight * 0.34 * Math.tanh(speed / 9);
+      const long = this._treeHeight * 0.6 * Math.tanh(speed / 9);
       const [c, s] = [this.wind[0] / speed, this.wind[1] / speed];
-      const away = 0.62 * this._extent;
+      const away = 0.5 * this._extent + long;
       const z = this._groundHeight + 0.02 * this._treeHeight;
       gl.uniform4f(used.uniforms.placed, this._middle[0] - c * away, this._middle[1] - s * away, z,
         long);
@@ -315,19 +360,31 @@ export class Scene {
   /** @param {Float32Array} matrix */
   _drawGround(matrix) {
     const { gl, look } = this;
-    const used = this._programs.ground;
-    const half = 5 * this._extent;
-    gl.useProgram(used.program);
-    gl.uniformMatrix4fv(used.uniforms.camera, false, matrix);
-    gl.uniform4f(used.uniforms.area, this._middle[0], this._middle[1], half, this._groundHeight);
-    gl.uniform3fv(used.uniforms.groundColor, look.ground);
-    gl.uniform3fv(used.uniforms.backColor, look.back);
-    gl.uniform1f(used.uniforms.shadowShare, this._shadowHalf / half);
-    gl.uniform1f(used.uniforms.softness, 1.6 / SHADOW_SIZE);
+    const ground = this._programs.ground.uniforms;
+    gl.useProgram(this._programs.ground.program);
+    gl.uniformMatrix4fv(ground.camera, false, matrix);
+    gl.uniform4f(ground.area, this._middle[0], this._middle[1], 5 * this._extent,
+      this._groundHeight);
+    gl.uniform3fv(ground.groundColor, look.ground);
+    gl.uniform3fv(ground.backColor, look.back);
+    if (this._parts.ground) drawPart(gl, this._parts.ground);
+
+    const shadow = this._programs.shadow.uniforms;
+    gl.useProgram(this._programs.shadow.program);
+    gl.uniformMatrix4fv(shadow.camera, false, matrix);
+    const lift = 0.0015 * this._extent;
+    gl.uniform4f(shadow.area, this._shadowMiddle[0], this._shadowMiddle[1], this._shadowHalf,
+      this._groundHeight + lift);
+    gl.uniform1f(shadow.softness, this.isSlow ? 0 : 1.5 / this._shadowSize);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, this._shadow.texture);
-    gl.uniform1i(used.uniforms.shadow, 1);
-    if (this._parts.ground) drawPart(gl, this._parts.ground);
+    gl.uniform1i(shadow.shadow, 1);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+    if (this._parts.shadow) drawPart(gl, this._parts.shadow);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
     gl.activeTexture(gl.TEXTURE0);
   }
 
@@ -335,8 +392,8 @@ export class Scene {
     const { gl } = this;
     const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, SHADOW_SIZE, SHADOW_SIZE, 0, gl.RED, gl.UNSIGNED_BYTE,
-      null);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, this._shadowSize, this._shadowSize, 0, gl.RED,
+      gl.UNSIGNED_BYTE, null);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
@@ -387,19 +444,17 @@ export class Scene {
     return { vao, count: mesh.indices.length, buffers };
   }
 
-  /** @returns {Drawable} */
-  _plane() {
+  /**
+   * @param {"ground" | "shadow"} name
+   * @param {{values: number[], indices: number[]}} mesh
+   * @returns {Drawable}
+   */
+  _flat(name, mesh) {
     const { gl } = this;
     const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
     gl.bindVertexArray(vao);
-    const values = [0, 0];
-    const indices = [];
-    for (let k = 0; k < 48; k++) {
-      values.push(Math.cos((2 * Math.PI * k) / 48), Math.sin((2 * Math.PI * k) / 48));
-      indices.push(0, 1 + k, 1 + ((k + 1) % 48));
-    }
-    const buffers = this._fields(this._programs.ground, values, [["corner", 2]], indices);
-    return { vao, count: indices.length, buffers };
+    const buffers = this._fields(this._programs[name], mesh.values, [["corner", 2]], mesh.indices);
+    return { vao, count: mesh.indices.length, buffers };
   }
 
   /**
@@ -506,6 +561,27 @@ function potMesh() {
     ],
     36,
   );
+}
+
+/** A disc of rings, close together where the ground fades. */
+function discMesh() {
+  const values = [0, 0];
+  /** @type {number[]} */
+  const indices = [];
+  const sectors = 40;
+  const rings = [0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1];
+  rings.forEach((r, ring) => {
+    for (let k = 0; k < sectors; k++) {
+      const angle = (2 * Math.PI * k) / sectors;
+      values.push(r * Math.cos(angle), r * Math.sin(angle));
+      const next = (k + 1) % sectors;
+      const outer = 1 + ring * sectors;
+      const inner = outer - sectors;
+      if (ring === 0) indices.push(0, 1 + k, 1 + next);
+      else indices.push(inner + k, outer + k, outer + next, inner + k, outer + next, inner + next);
+    }
+  });
+  return { values, indices };
 }
 
 /** An arrow of length 1 along x, lying flat. */

@@ -130,39 +130,51 @@ void main() {
   color = vec4(base * (0.45 + 0.2 * n.z + 0.55 * lit), 1.0);
 }`;
 
+// The ground fades from vertex to vertex: its pixels are many and must cost nothing.
 export const GROUND_VERTEX = `#version 300 es
 precision highp float;
 uniform mat4 camera;
 uniform vec4 area; // middle x, y, half its size, height
+uniform vec3 groundColor;
+uniform vec3 backColor;
 in vec2 corner;
-out vec2 place;
+out vec3 base;
 void main() {
-  place = corner;
+  base = mix(groundColor, backColor, smoothstep(0.3, 1.0, length(corner)));
   gl_Position = camera * vec4(area.xy + corner * area.z, area.w, 1.0);
 }`;
 
 export const GROUND_FRAGMENT = `#version 300 es
+precision mediump float;
+in vec3 base;
+out vec4 color;
+void main() { color = vec4(base, 1.0); }`;
+
+export const SHADOW_VERTEX = `#version 300 es
 precision highp float;
-in vec2 place;
+uniform mat4 camera;
+uniform vec4 area;
+in vec2 corner;
+out vec2 at;
+void main() {
+  at = 0.5 + 0.5 * corner;
+  gl_Position = camera * vec4(area.xy + corner * area.z, area.w, 1.0);
+}`;
+
+export const SHADOW_FRAGMENT = `#version 300 es
+precision mediump float;
+in vec2 at;
 uniform sampler2D shadow;
-uniform vec3 groundColor;
-uniform vec3 backColor;
-uniform float shadowShare; // of the ground's size
-uniform float softness;
+uniform float softness; // 0 where every pixel counts
 out vec4 color;
 void main() {
-  float far = length(place);
-  vec2 at = place / shadowShare;
-  float dark = 0.0;
-  if (max(abs(at.x), abs(at.y)) < 1.0) {
-    vec2 uv = 0.5 + 0.5 * at;
-    dark = 0.4 * texture(shadow, uv).r;
-    dark += 0.15 * texture(shadow, uv + vec2(softness, 0.0)).r;
-    dark += 0.15 * texture(shadow, uv - vec2(softness, 0.0)).r;
-    dark += 0.15 * texture(shadow, uv + vec2(0.0, softness)).r;
-    dark += 0.15 * texture(shadow, uv - vec2(0.0, softness)).r;
-    dark *= 1.0 - smoothstep(0.75, 1.0, length(at));
+  float dark = texture(shadow, at).r;
+  if (softness > 0.0) {
+    dark = 0.4 * dark + 0.15 * (texture(shadow, at + vec2(softness, 0.0)).r
+      + texture(shadow, at - vec2(softness, 0.0)).r
+      + texture(shadow, at + vec2(0.0, softness)).r
+      + texture(shadow, at - vec2(0.0, softness)).r);
   }
-  vec3 lit = groundColor * (1.0 - 0.42 * dark);
-  color = vec4(mix(lit, backColor, smoothstep(0.35, 1.0, far)), 1.0);
+  if (dark < 0.01) discard;
+  color = vec4(0.0, 0.0, 0.0, 0.4 * dark);
 }`;

@@ -1,5 +1,5 @@
 """
-The parameters of each node, one table a node.
+The parameters of each node, one table per node.
 
 Defaults stand here and nowhere else: the files in ``config/`` hold overrides only.
 
@@ -15,7 +15,10 @@ from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
+from tree_sway_ros.core.wind.simulated.sensor_faults import FAULTS
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
+from tree_sway_ros.files.wind.nmea import SENTENCES
+from tree_sway_ros.files.wind.sonic_ascii import KINDS as SONIC_KINDS
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
 _MODEL = Settings()
@@ -35,18 +38,40 @@ def _convention(verb: str) -> Parameter:
     return Parameter("direction_convention", "to", sentence, choices=choices, source="REP-103")
 
 
-_FRAME = Parameter("frame_id", "map", "Frame of what is published.", source="REP-105")
+_FRAME = Parameter(
+    "frame_id", "map", "The frame of everything that this node publishes.", source="REP-105"
+)
+
+_LIFECYCLE = Parameter(
+    "lifecycle",
+    False,
+    "The node waits for a manager to configure and activate it, as a managed node of ROS does.",
+)
 
 ANEMOMETER: Table = (
-    Parameter("rate", 20.0, "Samples a second.", "Hz", 1.0, 100.0, source="sensors seen: 1-80 Hz"),
-    Parameter("output_type", WIND_TYPE_NAMES[0], "Message type.", choices=WIND_TYPE_NAMES),
+    _LIFECYCLE,
+    Parameter(
+        "rate",
+        20.0,
+        "The node publishes so many samples per second.",
+        "Hz",
+        1.0,
+        100.0,
+        source="sensors seen: 1-80 Hz",
+    ),
+    Parameter(
+        "output_type",
+        WIND_TYPE_NAMES[0],
+        "The node publishes messages of this type.",
+        choices=WIND_TYPE_NAMES,
+    ),
     _convention("Writes"),
     _FRAME,
-    Parameter("mean_speed", 6.0, "Mean wind speed.", "m/s", 0.0, 40.0, live=True),
+    Parameter("mean_speed", 6.0, "The mean wind speed.", "m/s", 0.0, 40.0, live=True),
     Parameter(
         "bearing_to",
         1.5708,
-        "Where the mean wind blows to, clockwise from north; the default is a westerly.",
+        "The mean wind blows to this bearing, clockwise from north; the default is a westerly.",
         "rad",
         -6.3,
         6.3,
@@ -55,7 +80,7 @@ ANEMOMETER: Table = (
     Parameter(
         "turbulence",
         "kaimal",
-        "Spectrum of the turbulence.",
+        "The spectrum of the turbulence.",
         choices=(*SPECTRA, "none"),
         live=True,
         source="IEC 61400-1",
@@ -63,51 +88,82 @@ ANEMOMETER: Table = (
     Parameter(
         "intensity",
         0.2,
-        "Standard deviation along the wind over the mean.",
+        "The turbulence intensity: the standard deviation along the wind over the mean speed.",
         "",
         0.0,
         1.0,
         live=True,
     ),
-    Parameter("height", 10.0, "Of the anemometer above the ground.", "m", 0.5, 200.0),
-    Parameter("seed", 0, "Of the turbulence.", "", 0, 2**31 - 1),
+    Parameter("height", 10.0, "The height of the anemometer above the ground.", "m", 0.5, 200.0),
+    Parameter("seed", 0, "The seed of the turbulence.", "", 0, 2**31 - 1),
     Parameter(
         "gust",
         "none",
-        "What happens to the wind from time to time.",
+        "The event that happens to the wind from time to time.",
         choices=("none", *EVENT_KINDS),
         live=True,
         source="IEC 61400-1",
     ),
-    Parameter("gust_speed", 6.0, "Rise of a gust or step.", "m/s", -40.0, 40.0, live=True),
+    Parameter(
+        "gust_speed",
+        6.0,
+        "A gust or step raises the wind by this much.",
+        "m/s",
+        -40.0,
+        40.0,
+        live=True,
+    ),
     Parameter(
         "gust_angle",
         1.5708,
-        "Angle of a change of direction or a turn.",
+        "A change of direction or a turn goes through this angle.",
         "rad",
         -3.15,
         3.15,
         live=True,
     ),
-    Parameter("gust_duration", 5.0, "Length of the event.", "s", 0.1, 60.0, live=True),
+    Parameter("gust_duration", 5.0, "An event lasts so long.", "s", 0.1, 60.0, live=True),
     Parameter(
         "gust_every",
         20.0,
-        "From one event to the next; 0 for one only.",
+        "The time from one event to the next; with 0 there is only one.",
         "s",
         0.0,
         3600.0,
         live=True,
     ),
+    Parameter(
+        "fault",
+        "none",
+        "The sensor fails in this way from time to time, in each in turn with `all`.",
+        choices=FAULTS,
+        live=True,
+    ),
+    Parameter(
+        "fault_every",
+        20.0,
+        "Time from one fault to the next; the first comes after so long.",
+        "s",
+        0.1,
+        3600.0,
+        live=True,
+    ),
+    Parameter("fault_duration", 1.0, "Each fault lasts so long.", "s", 0.01, 600.0, live=True),
 )
 
 WIND: Table = (
-    Parameter("input_type", WIND_TYPE_NAMES[0], "Message type of `wind`.", choices=WIND_TYPE_NAMES),
+    _LIFECYCLE,
+    Parameter(
+        "input_type",
+        WIND_TYPE_NAMES[0],
+        "The node reads messages of this type from `wind`.",
+        choices=WIND_TYPE_NAMES,
+    ),
     _convention("Reads"),
     Parameter(
         "speed_scale",
         1.0,
-        "Unit of the speed: knots .514444, km/h .277778.",
+        "The unit of the speed in m/s: 0.514444 for knots, 0.277778 for km/h.",
         "",
         0.001,
         1000.0,
@@ -116,7 +172,7 @@ WIND: Table = (
     Parameter(
         "yaw_offset",
         0.0,
-        "Turn of the mast or of north, counter-clockwise.",
+        "The wind is turned by this angle, counter-clockwise, to undo a turned mast.",
         "rad",
         -6.3,
         6.3,
@@ -125,7 +181,7 @@ WIND: Table = (
     Parameter(
         "plane_normal",
         (0.0, 0.0, 1.0),
-        "Normal of the force plane.",
+        "The normal of the force plane.",
         "",
         -1.0,
         1.0,
@@ -134,12 +190,21 @@ WIND: Table = (
     _FRAME,
     Parameter("max_speed", 40.0, "Faster samples are refused.", "m/s", 1.0, FASTEST_WIND),
     Parameter("max_rate", 20.0, "Samples that change faster are refused.", "m/s^2", 1.0, 1000.0),
-    Parameter("longest_refusal", 0.5, "After so long a change is taken as true.", "s", 0.05, 10.0),
-    Parameter("frozen_after", 10.0, "Equal samples for so long are reported.", "s", 1.0, 3600.0),
+    Parameter(
+        "longest_refusal", 0.5, "A change that lasts so long is taken as true.", "s", 0.05, 10.0
+    ),
+    Parameter(
+        "frozen_after",
+        10.0,
+        "A sensor whose samples are equal for so long is reported as frozen.",
+        "s",
+        1.0,
+        3600.0,
+    ),
     Parameter(
         "timeout",
         2.0,
-        "Without a good sample for so long: WARN; five times: STALE.",
+        "Diagnostics say WARN after so long without a good sample, STALE after five times that.",
         "s",
         0.1,
         60.0,
@@ -148,27 +213,37 @@ WIND: Table = (
 )
 
 SOLVER: Table = (
-    Parameter("tree", "benjamina", "Built-in name, or file of a tree or a forest."),
-    Parameter("species", "", "Key of the wood, or a species file; empty for the tree's own."),
-    Parameter("rate", 60.0, "Steps a second.", "Hz", 1.0, 1000.0),
+    _LIFECYCLE,
+    Parameter("tree", "benjamina", "The tree: a built-in name, or the file of a tree or a forest."),
     Parameter(
-        "publish_every", 1, "Frames: one in so many steps is published.", "", 1, 1000, live=True
+        "species",
+        "",
+        "The wood: a key of the species table or a species file; the tree's own if empty.",
+    ),
+    Parameter("rate", 60.0, "The tree is solved so many times per second.", "Hz", 1.0, 1000.0),
+    Parameter(
+        "publish_every", 1, "Poses are published once in so many steps.", "", 1, 1000, live=True
     ),
     Parameter(
         "fidelity",
         "modes",
-        "Model of the sway, from the least to the most; `auto` takes the least within tolerance "
-        "and budget.",
+        "The model of the sway, from the least to the most; `auto` takes the least that keeps "
+        "within tolerance and budget.",
         choices=FIDELITIES,
         source="`branch` is the paper's, `segments` its predecessors'",
     ),
     Parameter(
-        "modes", 0, "How many modes `modes` solves; 0 for 12, or all if fewer.", "", 0, 10_000
+        "modes",
+        0,
+        "The model `modes` solves so many natural modes; 0 means 12, or all if there are fewer.",
+        "",
+        0,
+        10_000,
     ),
     Parameter(
         "tolerance",
         0.005,
-        "Largest error of the tips that `auto` allows, while no `camera` is heard.",
+        "The model `auto` lets the tips err by no more than this, while no `camera` is heard.",
         "m",
         1e-6,
         10.0,
@@ -177,7 +252,7 @@ SOLVER: Table = (
     Parameter(
         "tolerance_pixels",
         0.5,
-        "Largest error of the tips that `auto` allows on the picture of a `camera`.",
+        "The model `auto` lets the tips err by no more than this on the picture of a `camera`.",
         "px",
         0.01,
         100.0,
@@ -186,49 +261,54 @@ SOLVER: Table = (
     Parameter(
         "budget",
         0.0,
-        "Longest time that `auto` lets a frame take, before any tolerance; 0 for no limit.",
+        "The model `auto` keeps a frame within this time, before any tolerance; 0 means no limit.",
         "us",
         0.0,
         1e6,
         live=True,
     ),
-    Parameter("focal_length", 1000.0, "Of that camera.", "px", 1.0, 100_000.0, live=True),
+    Parameter(
+        "focal_length", 1000.0, "The focal length of that camera.", "px", 1.0, 100_000.0, live=True
+    ),
     Parameter(
         "stiffness",
         _MODEL.stiffness,
-        "Stiffness of a branch from its beam, or from its volume.",
+        "The stiffness of a branch follows from its beam, or from its volume.",
         choices=STIFFNESS_RULES,
         source="`volume_rule` is the paper's",
     ),
     Parameter(
         "integrator",
         _MODEL.integrator,
-        "Method that steps the oscillators; refused where its step would be unstable.",
+        "The method that steps the oscillators; it is refused where its step would be unstable.",
         choices=REAL_TIME,
         source="doc/choosing_a_method.md",
     ),
     Parameter(
         "leaves",
         "auto",
-        "Leaves, with their mass, drag and damping: `auto` where the species is evergreen; in a "
-        "forest, of trees that do not say.",
+        "The tree bears leaves, with their mass, drag and damping; with `auto` where its species "
+        "is evergreen. In a forest this is for trees that do not say.",
         choices=tuple(LEAVES),
     ),
     Parameter(
         "leaf_clusters",
         1000,
-        "With leaves, so many clusters are told in `tree_description`; 0 for none.",
+        "In leaf, `tree_description` tells so many clusters of leaves; 0 means none.",
         "",
         0,
         100_000,
     ),
     Parameter(
-        "profile", _MODEL.profile.kind, "Wind over height: the same, or by a law.", choices=PROFILES
+        "profile",
+        _MODEL.profile.kind,
+        "The wind changes with height by this law, or is the same everywhere.",
+        choices=PROFILES,
     ),
     Parameter(
         "anemometer_height",
         _MODEL.profile.anemometer_height,
-        "Of the anemometer over the ground, for the profile.",
+        "The height of the anemometer over the ground, for the profile.",
         "m",
         0.1,
         200.0,
@@ -236,43 +316,62 @@ SOLVER: Table = (
     Parameter(
         "profile_exponent",
         _MODEL.profile.exponent,
-        "Of the power law.",
+        "The exponent of the power law.",
         "",
         0.0,
         1.0,
         source="Davenport 1960",
     ),
     Parameter(
-        "roughness", _MODEL.profile.roughness, "Roughness length of the log law.", "m", 1e-5, 5.0
+        "roughness",
+        _MODEL.profile.roughness,
+        "The roughness length of the logarithmic law.",
+        "m",
+        1e-5,
+        5.0,
     ),
     Parameter(
         "gravity",
         _MODEL.gravity,
-        "Its weight softens a tree; 0 leaves it out, for a scan too noisy to stand.",
+        "The weight of a tree softens it; 0 leaves it out, for a scan too noisy to stand.",
         "m/s^2",
         0.0,
         30.0,
     ),
-    Parameter("damping_ratio", 0.0, "Of every branch; 0 for the species' own.", "", 0.0, 1.0),
+    Parameter(
+        "damping_ratio",
+        0.0,
+        "The damping ratio of every branch; 0 means the species' own.",
+        "",
+        0.0,
+        1.0,
+    ),
     Parameter(
         "interpolation",
         "linear",
-        "The wind between two samples.",
+        "The wind between two samples follows a line, or is held.",
         choices=INTERPOLATIONS,
     ),
     Parameter(
         "wind_delay",
         0.02,
-        "The wind is felt so much later; samples that arrive within it give the same motion in "
-        "every run.",
+        "The tree feels the wind so much later; samples that arrive within this time give the "
+        "same motion in every run.",
         "s",
         0.0,
         2.0,
         live=True,
     ),
-    Parameter("timeout", 2.0, "The last wind is held for so long.", "s", 0.1, 60.0),
     Parameter(
-        "decay", 6.0, "Time constant of the wind after that; the force halves it.", "s", 0.1, 60.0
+        "timeout", 2.0, "When samples stop, the last wind is held for so long.", "s", 0.1, 60.0
+    ),
+    Parameter(
+        "decay",
+        6.0,
+        "After that the wind dies away with this time constant (its force with half of it).",
+        "s",
+        0.1,
+        60.0,
     ),
     _FRAME,
     Parameter("x", 0.0, "Where the tree's own origin lies in the frame.", "m", -1e6, 1e6),
@@ -284,25 +383,72 @@ SOLVER: Table = (
         False,
         "Poses say `frame_id#hash`, with the hash of `tree_description`: whose they are is seen.",
     ),
-    Parameter("marker_rate", 20.0, "Markers a second; 0 for none.", "Hz", 0.0, 20.0),
-    Parameter("marker_classes", 6, "Line widths of the markers.", "", 1, 32),
+    Parameter(
+        "marker_rate",
+        20.0,
+        "Markers are published so many times per second; 0 means never.",
+        "Hz",
+        0.0,
+        20.0,
+    ),
+    Parameter("marker_classes", 6, "The markers have so many line widths.", "", 1, 32),
     Parameter(
         "state_rate", 30.0, "States per second on `tree_state`; 0 for none.", "Hz", 0.0, 1000.0
     ),
-    Parameter("publish_tf", False, "Publish a frame a segment as well; needs tf2_msgs."),
+    Parameter(
+        "publish_tf",
+        False,
+        "The node also publishes one TF frame per segment; this needs tf2_msgs.",
+    ),
 )
 
 PLAYER: Table = (
-    Parameter("file", "", "The wind record: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
-    Parameter("output_type", WIND_TYPE_NAMES[0], "Message type.", choices=WIND_TYPE_NAMES),
+    _LIFECYCLE,
+    Parameter("file", "", "The wind record to play: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
+    Parameter(
+        "output_type",
+        WIND_TYPE_NAMES[0],
+        "The node publishes messages of this type.",
+        choices=WIND_TYPE_NAMES,
+    ),
     _convention("Writes"),
     _FRAME,
-    Parameter("speed", 1.0, "Times real time.", "", 0.01, 1000.0),
-    Parameter("loop", True, "Start again at the end; time goes on."),
-    Parameter("start", 0.0, "Skip so much of the record.", "s", 0.0),
-    Parameter("publish_clock", False, "Publish /clock, for nodes with `use_sim_time`."),
-    Parameter("clock_rate", 250.0, "Clock messages a second of real time.", "Hz", 10.0, 1000.0),
-    Parameter("wait_for_subscriber", True, "Start when somebody listens."),
+    Parameter(
+        "speed", 1.0, "The record is played so many times as fast as it was made.", "", 0.01, 1000.0
+    ),
+    Parameter("loop", True, "At its end the record starts again, while time goes on."),
+    Parameter("start", 0.0, "So much of the record is skipped at its beginning.", "s", 0.0),
+    Parameter(
+        "publish_clock", False, "The node publishes `/clock`, for nodes with `use_sim_time`."
+    ),
+    Parameter(
+        "clock_rate",
+        250.0,
+        "The clock is published so many times per second of real time.",
+        "Hz",
+        10.0,
+        1000.0,
+    ),
+    Parameter("wait_for_subscriber", True, "The record starts when those of `wait_for` listen."),
+    Parameter(
+        "wait_for",
+        "wind",
+        "These topics must have a subscriber, or so many as `topic:number` says. With "
+        "`publish_clock` and `wind/filtered` among them time waits until each sample has come "
+        "back: the replay is exact.",
+    ),
+    Parameter("topic", "", "The topic of the wind in a bag; may be empty if it has but one."),
+    Parameter("yaw", 0.0, "Angle from east to the x axis of the sensor.", "rad", -6.3, 6.3),
+    Parameter(
+        "input_convention",
+        "",
+        "The record's vectors say where the wind blows `to` or comes `from`; empty for the "
+        "format's own.",
+        choices=("", "to", "from"),
+    ),
+    Parameter(
+        "reader_options", "", "More for the reader of the file, such as `rate=20 sentence=MWV`."
+    ),
 )
 
 VIEWER: Table = (
@@ -315,10 +461,52 @@ VIEWER: Table = (
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )
 
+SENSOR: Table = (
+    _LIFECYCLE,
+    Parameter(
+        "address",
+        "udp://:10110",
+        "The instrument is heard at `tcp://host:port`, `udp://:port` or `serial:/dev/x:4800`.",
+    ),
+    Parameter(
+        "sentence",
+        "auto",
+        "The node reads sentences of this kind; with `auto` the kind of the first good one.",
+        choices=("auto", *SENTENCES, *SONIC_KINDS),
+    ),
+    Parameter(
+        "heading",
+        0.0,
+        "The bow or the north marker points there, clockwise from true north.",
+        "rad",
+        -6.3,
+        6.3,
+        live=True,
+    ),
+    Parameter(
+        "declination", 0.0, "Magnetic declination, east positive.", "rad", -3.2, 3.2, live=True
+    ),
+    Parameter(
+        "need_checksum", False, "Sentences without a checksum are refused.", live=True
+    ),
+    Parameter(
+        "silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0
+    ),
+    Parameter(
+        "output_type",
+        WIND_TYPE_NAMES[0],
+        "The node publishes messages of this type.",
+        choices=WIND_TYPE_NAMES,
+    ),
+    _convention("Writes"),
+    _FRAME,
+)
+
 NODE_PARAMETERS: dict[str, Table] = {
     "anemometer": ANEMOMETER,
     "wind": WIND,
     "solver": SOLVER,
     "player": PLAYER,
+    "sensor": SENSOR,
     "viewer": VIEWER,
 }

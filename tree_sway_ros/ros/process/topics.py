@@ -61,7 +61,7 @@ WIND_FILTERED = Topic(
     "wind/filtered",
     "geometry_msgs/msg/Vector3Stamped",
     "The wind that the trees feel, blowing TO, ENU [m/s]: bad samples refused.",
-    depth=10,
+    depth=40,
 )
 FORCE_PLANE = Topic(
     "wind/force_plane",
@@ -71,18 +71,18 @@ FORCE_PLANE = Topic(
 SEGMENT_POSES = Topic(
     "segment_poses",
     "geometry_msgs/msg/PoseArray",
-    "A pose a segment: origin at its root-side node, x along it [m].",
+    "One pose per segment: its origin is the root-side node, x points along the segment [m].",
     depth=2,
 )
 MARKERS = Topic(
     "markers",
     "visualization_msgs/msg/MarkerArray",
-    "The tree for RViz: one LINE_LIST a radius class, ids fixed.",
+    "The tree for RViz: one LINE_LIST per class of radii, with fixed ids.",
 )
 TREE_DESCRIPTION = Topic(
     "tree_description",
     "std_msgs/msg/String",
-    "JSON: name, parent, length, radii and branch of each segment; repeated every 5 s.",
+    "The tree as JSON: name, parent, length, radii and branch of each segment; repeated every 5 s.",
     latched=True,
 )
 TREE_STATE = Topic(
@@ -94,7 +94,7 @@ TREE_STATE = Topic(
 DIAGNOSTICS = Topic(
     "/diagnostics",
     "diagnostic_msgs/msg/DiagnosticArray",
-    "Rates, age and refusals of the wind, jitter, overruns, the model in use.",
+    "Rates, age and refusals of the wind, jitter, overruns and the model in use.",
     depth=10,
 )
 CAMERA = Topic(
@@ -111,7 +111,10 @@ CLOCK = Topic(
     reliable=False,
 )
 TF = Topic(
-    "/tf", "tf2_msgs/msg/TFMessage", "A frame a segment, where `publish_tf` asks for it.", depth=10
+    "/tf",
+    "tf2_msgs/msg/TFMessage",
+    "One frame per segment, where `publish_tf` asks for it.",
+    depth=10,
 )
 
 TOPICS = (
@@ -130,7 +133,7 @@ TOPICS = (
 
 
 def markdown_table() -> str:
-    """Render the topics for the README."""
+    """Render the topics for the reference."""
     lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
     for topic in TOPICS:
         cells = (f"`{topic.name}`", f"`{topic.type_name}`", topic.qos_text, topic.description)

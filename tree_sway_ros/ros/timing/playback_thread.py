@@ -78,6 +78,8 @@ class PlaybackThread:
     def _run(self) -> None:
         try:
             while not self._may_start():
+                if self._playback.has_clock:
+                    self._publish(-1, self._playback.epoch)  # time stands, for all who come
                 if self._stopping.wait(_POLL):
                     return
             self._play()

@@ -92,7 +92,7 @@ class Stepper:
         self._samples.clear()
         self.simulator.reset()
 
-    def advance(self, time_ns: int, periods: int, delay: float) -> None:
+    def advance(self, time_ns: int, periods: int, delay: float, *, may_join: bool = True) -> None:
         """
         Solve up to a time.
 
@@ -104,11 +104,13 @@ class Stepper:
             How many periods to solve.
         delay
             The wind is felt so much later [s].
+        may_join
+            Whether periods may be joined to one step; a replay that is to be exact may not.
 
         """
         while self._requests:
             self._requests.popleft()()
-        n_steps = 1 if self._cost > 0.5e-9 * self._period else periods
+        n_steps = 1 if may_join and self._cost > 0.5e-9 * self._period else periods
         step_ns = self._period * periods // n_steps  # whole numbers: the same dt at any lateness
         dt = step_ns * 1e-9
         for later in range(n_steps - 1, -1, -1):

@@ -22,6 +22,7 @@ from tree_sway_ros.study.methods.method import Method
 from tree_sway_ros.study.methods.operation_count import CountedNumber, counted, flops, plain
 from tree_sway_ros.study.methods.registry import METHODS, method_named
 from tree_sway_ros.study.methods.trajectory import integrate, sample
+from tree_sway_ros.tools.progress import bar
 
 Array = NDArray[Any]
 Wind = Callable[[Array], Array]
@@ -152,7 +153,7 @@ def measure(
             for name, wind in blowing.items()
         }
         unit = seconds_a_step(method_named("semi_implicit_euler"), chain, blowing["smooth"], 60)
-        for key in methods:
+        for key in bar(methods, f"methods, {system}"):
             method = method_named(key)
             wall = seconds_a_step(method, chain, blowing["smooth"], 60) / unit
             cost = flops_a_step(method, chain, blowing["smooth"], 60)

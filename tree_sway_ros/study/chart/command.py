@@ -5,18 +5,21 @@ from __future__ import annotations
 import argparse
 import importlib
 from pathlib import Path
+from typing import Any
 
 from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.tools.progress import waiting
 
-_CHARTS = ("methods", "fidelity", "cost")
+_CHARTS = ("methods", "fidelity", "cost", "portraits")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "what",
-        choices=_CHARTS,
-        help="methods: of integration; fidelity: models of a tree; cost: against its size",
+        choices=(*_CHARTS, "all"),
+        help="methods: of integration; fidelity: models of a tree; cost: against its size; "
+        "portraits: trees at rest and in wind; all: every picture of the documentation",
     )
     parser.add_argument(
         "-o", "--output", default=".", metavar="FOLDER", help="for PNG and CSV (%(default)s)"
@@ -29,12 +32,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Measure, draw, and name the files."""
     folder = Path(arguments.output)
-    module = importlib.import_module(f"tree_sway_ros.study.chart.{arguments.what}")
-    options = {}
-    if arguments.wind is not None and arguments.what == "fidelity":
-        record = read_wind(arguments.wind)
-        options["wind"] = (record.time, record.velocity)
-    getattr(module, f"chart_{arguments.what}")(folder, **options)
-    for path in sorted(folder.glob(f"{arguments.what}*.*")):
-        print(path)
+    for what in _CHARTS if arguments.what == "all" else (arguments.what,):
+        module = importlib.import_module(f"tree_sway_ros.study.chart.{what}")
+        options: dict[str, Any] = {}
+        if arguments.wind is not None and what == "fidelity":
+            record = read_wind(arguments.wind)
+            options["wind"] = (record.time, record.velocity)
+            options["source"] = Path(record.source).name
+        with waiting(f"drawing {what}"):
+            getattr(module, f"chart_{what}")(folder, **options)
+        print(f"{what}: drawn in {folder}")
     return 0

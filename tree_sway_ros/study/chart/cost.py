@@ -24,6 +24,7 @@ from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.chart.fidelity import DAMPING_RATIO, EXAMPLE_WOOD, FRAME
 from tree_sway_ros.study.example_trees import RATIOS, forked_tree
+from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
 
 if TYPE_CHECKING:
@@ -72,10 +73,10 @@ def chart_cost(
     """
     points = [
         point
-        for cut in cuts
+        for cut in bar(cuts, "segments per branch")
         for point in _costs(forked_tree(*RATIOS[1], segments=cut), cut, frames)
     ]
-    for generation in generations:
+    for generation in bar(generations, "generations of branches"):
         # The fourth generation's tree with six segments a branch has been measured above.
         if not (generation == 4 and 6 in cuts):
             points += _costs(forked_tree(*RATIOS[1], generations=generation), 6, frames)
@@ -85,7 +86,7 @@ def chart_cost(
         writer = csv.DictWriter(file, list(Cost.__annotations__))
         writer.writeheader()
         writer.writerows(asdict(point) for point in points)
-    _draw(points, folder / "cost.png")
+    _draw(points, folder / "cost.csv")
     return points
 
 
@@ -119,13 +120,13 @@ def _draw(points: list[Cost], path: Path) -> None:
     )
     forty = [p for p in points if p.n_branches == 40]
     six = sorted((p for p in points if p.segments_a_branch == 6), key=lambda p: p.n_branches)
-    _panel(by_cut, forty, "segments_a_branch", "segments a branch (40 branches)")
+    _panel(by_cut, forty, "segments_a_branch", "segments per branch (40 branches)")
     _panel(by_branches, six, "n_branches", "branches (6 segments each)")
-    by_cut.set_ylabel("CPU time a frame [us]")
+    by_cut.set_ylabel("CPU time per frame [us]")
     by_branches.legend(frameon=False, fontsize=8)
     by_cut.yaxis.set_major_formatter("{x:g}")
     figure.suptitle("What a frame costs: solving (full lines) and placing (dotted)")
-    save_figure(figure, path)
+    save_figure(figure, path.with_suffix(".png"), figures=path)
 
 
 def _panel(axes: Axes, points: list[Cost], field: str, label: str) -> None:

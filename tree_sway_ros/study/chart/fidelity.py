@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +27,12 @@ from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, RATIOS, forked_tree
+from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
 
 FRAME = 1.0 / 60.0
 DAMPING_RATIO = 0.05
+SIMULATED_WIND = "simulated wind of 7 m/s (Kaimal's spectrum)"
 EXAMPLE_WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY)
 
 LADDER: dict[str, dict[str, Any]] = {
@@ -49,18 +51,20 @@ _MARKERS = ("o", "s", "^")
 
 @dataclass(frozen=True)
 class Model:
-    """One point: tree, model, tip error over tip motion in [-], time a frame in [ns]."""
+    """One point: tree, model, tip error over tip motion in [-], time per frame in [ns], wind."""
 
     tree: str
     model: str
     error: float
     nanoseconds: float
+    wind: str = ""
 
 
 def chart_fidelity(
     out_dir: str | Path,
     *,
     wind: tuple[Floats, Floats] | None = None,
+    source: str = "a record",
     duration: float = 20.0,
     trees: Iterable[Tree] | None = None,
     gravity: float = 9.81,
@@ -76,6 +80,8 @@ def chart_fidelity(
     wind
         Times in [s], (m,), and velocities in [m/s], (m, 3), of a record; simulated at 20 Hz and 7
         m/s if None.
+    source
+        What the record is, for the caption.
     duration
         How much of it, in [s].
     trees
@@ -90,14 +96,19 @@ def chart_fidelity(
     part = times <= times[0] + duration
     means = frame_means(times[part], velocity[part], FRAME)
     forest = list(trees) if trees is not None else [forked_tree(*ratio) for ratio in RATIOS]
-    points = [point for tree in forest for point in climb(tree, means, gravity)]
+    name = f"{duration:g} s of {source if wind is not None else SIMULATED_WIND}"
+    points = [
+        replace(point, wind=name)
+        for tree in bar(forest, "trees")
+        for point in climb(tree, means, gravity)
+    ]
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
     with whole_file(folder / "fidelity.csv") as partial, partial.open("w", newline="") as file:
-        writer = csv.DictWriter(file, ["tree", "model", "error", "nanoseconds"])
+        writer = csv.DictWriter(file, list(asdict(points[0])))
         writer.writeheader()
         writer.writerows(asdict(point) for point in points)
-    _draw(points, folder / "fidelity.png")
+    _draw(points, folder / "fidelity.csv")
     return points
 
 
@@ -174,7 +185,7 @@ def _draw(points: list[Model], path: Path) -> None:
     errors, costs = [p.error for p in points], [p.nanoseconds / 1e3 for p in points]
     axes.set(xscale="log", yscale="log")
     axes.set(xlim=(min(costs) / 1.5, 1.6 * max(costs)), ylim=(min(errors) / 2, 1.5))
-    axes.set_xlabel("CPU time a frame, solving and placing [us]", fontsize=11)
+    axes.set_xlabel("CPU time per frame, solving and placing [us]", fontsize=11)
     axes.set_ylabel("tip error over tip motion [-]", fontsize=11)
     ticks = [m * 10**e for e in range(5) for m in (1, 2, 5)]
     low, high = axes.get_xlim()
@@ -185,5 +196,5 @@ def _draw(points: list[Model], path: Path) -> None:
     axes.grid(alpha=0.25)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(title="length and diameter ratio", frameon=False, loc="upper right")
-    figure.suptitle("Each model of the ladder against every segment solved")
-    save_figure(figure, path)
+    figure.suptitle(f"Each model against every segment solved, in {points[0].wind}", fontsize=11)
+    save_figure(figure, path.with_suffix(".png"), figures=path)

@@ -5,7 +5,7 @@ import pytest
 from tree_sway_ros.errors import FormatError, SpeciesError, TreeSwayError
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_yaml import is_forest, parse_forest, read_forest
-from tree_sway_ros.files.yaml_schema import packaged_schema
+from tree_sway_ros.files.yaml_document import packaged_schema
 
 DATA = Path(__file__).parents[2] / "data"
 CONFIG = Path(__file__).parents[4] / "config"

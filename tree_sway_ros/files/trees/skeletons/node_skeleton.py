@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,32 +11,34 @@ from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True)
 class Skeleton:
     """
-    Nodes of one or several trees.
+    Nodes of a tree.
 
     Parameters
     ----------
     point
-        Position of each node in [m].
+        Position of each node in [m], (n, 3).
     diameter
-        Diameter at each node in [m].
+        Diameter at each node in [m], (n,).
     parent
-        Position of each one's parent in these lists, -1 at a root.
+        Row of each one's parent, -1 at the root, (n,).
     labels
         What an error calls each.
 
     """
 
-    point: list[list[float]] = field(default_factory=list)
-    diameter: list[float] = field(default_factory=list)
-    parent: list[int] = field(default_factory=list)
-    labels: list[str] = field(default_factory=list)
+    point: Floats
+    diameter: Floats
+    parent: Ints
+    labels: list[str]
 
     def cylinders(self, source: str, *, cones: bool) -> Cylinders:
         """
         Segments of a tree with one root: one from its parent to each node but the root.
+
+        Several segments may begin at the root node: the thickest is the stem, the others sit on it.
 
         Parameters
         ----------
@@ -51,34 +53,23 @@ class Skeleton:
             If there is nothing but a root.
 
         """
-        parent = np.array(self.parent, dtype=np.int64)
-        outer = np.flatnonzero(parent >= 0)
+        outer = np.flatnonzero(self.parent >= 0)
         if len(outer) == 0:
             raise FormatError(
                 "a root with nothing on it", where=source, cure="give at least two nodes"
             )
-        point, width = np.array(self.point), np.array(self.diameter)
-        inner = parent[outer]
-        number = np.full(len(parent), -1, dtype=np.int64)
+        inner, width = self.parent[outer], self.diameter
+        number = np.full(len(self.parent), -1, dtype=np.int64)
         number[outer] = np.arange(len(outer))
-        base = width[inner] if cones else width[outer]
+        parent, base = number[inner], width[inner] if cones else width[outer]
+        roots = np.flatnonzero(parent < 0)
+        stem = roots[np.argmax(width[outer][roots])]
+        parent[roots[roots != stem]] = stem
         return Cylinders(
-            point[inner],
-            point[outer],
+            self.point[inner],
+            self.point[outer],
             np.stack([base, width[outer]], axis=1),
-            _one_root(number[inner], width[outer]),
+            parent,
             None,
             [self.labels[index] for index in outer],
         )
-
-
-def _one_root(parent: Ints, width: Floats) -> Ints:
-    """
-    Several segments may begin at the root node: the thickest is the stem, the others sit on it.
-
-    """
-    roots = np.flatnonzero(parent < 0)
-    if len(roots) > 1:
-        stem = roots[np.argmax(width[roots])]
-        parent[roots[roots != stem]] = stem
-    return parent

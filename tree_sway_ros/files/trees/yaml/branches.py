@@ -12,6 +12,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import FormatError, TreeError
 from tree_sway_ros.files.trees.assembly import SegmentTable
+from tree_sway_ros.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]
 
@@ -26,22 +27,14 @@ class _Placed:
     first: int
 
 
-def branch_segments(
-    branches: list[Values], lines: list[int], segment_lines: list[list[int]], source: str
-) -> SegmentTable:
+def branch_segments(document: YamlDocument) -> SegmentTable:
     """
     Join named branches to one table of segments.
 
     Parameters
     ----------
-    branches
-        Checked values of each branch.
-    lines
-        Line of each branch.
-    segment_lines
-        Line of each node or segment of each branch.
-    source
-        The file, for the errors.
+    document
+        A tree with ``branches``.
 
     Raises
     ------
@@ -51,8 +44,9 @@ def branch_segments(
         A parent that is not there, a cycle, not exactly one stem, a branch in the air.
 
     """
+    branches = document.values["branches"]
     where = [
-        f"{source}:{line}: branch '{b['name']}'" for b, line in zip(branches, lines, strict=True)
+        f"{document.where('branches', i)}: branch '{b['name']}'" for i, b in enumerate(branches)
     ]
     index = _indices(branches, where)
     parents = _parents(branches, index, where)
@@ -72,9 +66,12 @@ def branch_segments(
         base = its_parent.first + sits_on if its_parent is not None else -1
         table.parent += [base, *range(rows.first, rows.first + len(start) - 1)]
         table.branch += [number] * len(start)
+        # A segment between two nodes is called by the line of the second.
+        key, ahead = ("nodes", 1) if "nodes" in branch else ("segments", 0)
         table.labels += [
-            f"{source}:{line}: segment {i} of branch '{branch['name']}'"
-            for i, line in enumerate(segment_lines[number][-len(start) :])
+            f"{document.where('branches', number, key, i + ahead)}: "
+            f"segment {i} of branch '{branch['name']}'"
+            for i in range(len(start))
         ]
     return table
 

@@ -27,8 +27,7 @@ from tree_sway_ros.files.text_file import path_of, read_head, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.files.yaml_nodes import YamlNode, parse_yaml
-from tree_sway_ros.files.yaml_schema import SchemaCheck, packaged_schema
+from tree_sway_ros.files.yaml_document import YamlDocument, packaged_schema, read_yaml
 
 OpenTree = Callable[[str, int], TreeFile]
 OpenSpecies = Callable[[str], Species]
@@ -87,15 +86,13 @@ def parse_forest(
     open_species: OpenSpecies = open_species,
 ) -> ForestFile:
     """Read a forest from YAML text; see `read_forest`."""
-    root = parse_yaml(text, source)
-    values: dict[str, Any] = SchemaCheck(packaged_schema("forest_schema.json"), source).value(root)
-    assert isinstance(root.value, dict)
-    nodes = root.value["trees"].value
-    assert isinstance(nodes, list)
-    _refuse_same_names(values["trees"], nodes, source)
+    document = read_yaml(text, source, packaged_schema("forest_schema.json"))
+    values = document.values
+    _refuse_same_names(document)
     trees, notes = [], []
-    for entry, node in zip(values["trees"], nodes, strict=True):
-        standing, file_notes = _standing(entry, open_tree, open_species, f"{source}:{node.line}")
+    for number, entry in enumerate(values["trees"]):
+        where = document.where("trees", number)
+        standing, file_notes = _standing(entry, open_tree, open_species, where)
         trees.append(standing)
         notes += [f"{standing.name}: {note}" for note in file_notes]
     anemometer = values.get("anemometer")
@@ -128,20 +125,21 @@ def _standing(
     return standing, tree_file.notes
 
 
-def _refuse_same_names(entries: list[dict[str, Any]], nodes: list[YamlNode], source: str) -> None:
-    lines: dict[str, int] = {}
-    for entry, node in zip(entries, nodes, strict=True):
-        name = entry["name"]
+def _refuse_same_names(document: YamlDocument) -> None:
+    first: dict[str, int] = {}
+    for number, entry in enumerate(document.values["trees"]):
+        name, where = entry["name"], document.where("trees", number)
         if "/" in name:
             raise FormatError(
                 f"a slash in the name '{name}'",
-                where=f"{source}:{node.line}",
+                where=where,
                 cure="leave it out: it stands between tree and branch in the names of segments",
             )
-        if name in lines:
+        if name in first:
+            line = document.where("trees", first[name]).rsplit(":", 1)[1]
             raise FormatError(
-                f"two trees called '{name}', the first in line {lines[name]}",
-                where=f"{source}:{node.line}",
+                f"two trees called '{name}', the first in line {line}",
+                where=where,
                 cure="give each a name of its own",
             )
-        lines[name] = node.line
+        first[name] = number

@@ -14,14 +14,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import SpeciesError
 from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.yaml.tree_yaml import species_of
-from tree_sway_ros.files.yaml_nodes import parse_yaml
-from tree_sway_ros.files.yaml_schema import Schema, SchemaCheck, tree_schema
+from tree_sway_ros.files.yaml_document import Schema, read_yaml, tree_schema
 
 _SUFFIXES = (".yaml", ".yml", ".json")
 
@@ -57,10 +55,9 @@ def open_species(key_or_path: str | Path) -> Species:
 
 def parse_species(text: str, source: str = "text") -> Species:
     """Read a species from YAML text; see `open_species`."""
-    root = parse_yaml(text, source)
-    values: dict[str, Any] = SchemaCheck(species_schema(), source).value(root)
-    species = species_of(values, root, source)
-    return replace(species, title=values.get("name", species.title))
+    document = read_yaml(text, source, species_schema())
+    species = species_of(document)
+    return replace(species, title=document.values.get("name", species.title))
 
 
 def species_schema() -> Schema:
@@ -69,6 +66,7 @@ def species_schema() -> Schema:
     known = ("tree_sway", "name", "species", "wood")
     return {
         "type": "object",
+        "additionalProperties": False,
         "required": ["species"],
         "properties": {key: whole["properties"][key] for key in known},
         "$defs": whole["$defs"],

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import FormatError, SpeciesError, TreeError
@@ -29,8 +28,7 @@ from tree_sway_ros.files.text_file import read_text
 from tree_sway_ros.files.trees.assembly import SegmentTable
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.branches import branch_segments, diameter_pair
-from tree_sway_ros.files.yaml_nodes import YamlNode, parse_yaml
-from tree_sway_ros.files.yaml_schema import SchemaCheck, tree_schema
+from tree_sway_ros.files.yaml_document import YamlDocument, read_yaml, tree_schema
 
 
 def read_yaml_tree(path: Path) -> TreeFile:
@@ -52,47 +50,36 @@ def read_yaml_tree(path: Path) -> TreeFile:
 
 def parse_yaml_tree(text: str, source: str = "text", default_name: str = "tree") -> TreeFile:
     """Read a tree from YAML text; see `read_yaml_tree`."""
-    root = parse_yaml(text, source)
-    values: dict[str, Any] = SchemaCheck(tree_schema(), source).value(root)
-    species = species_of(values, root, source)
+    document = read_yaml(text, source, tree_schema())
+    values, species = document.values, species_of(document)
     if ("branches" in values) == ("segments" in values):
         found = "both branches and segments" if "branches" in values else "no branches or segments"
-        raise FormatError(found, where=f"{source}:{root.line}", cure="give one of the two")
+        raise FormatError(found, where=document.where(), cure="give one of the two")
     if "branches" in values:
-        nodes = _items(_entry(root, "branches"))
-        table = branch_segments(
-            values["branches"],
-            [node.line for node in nodes],
-            [[item.line for item in _items(_points(node))] for node in nodes],
-            source,
-        )
+        table = branch_segments(document)
     else:
-        table = _plain_segments(values["segments"], _items(_entry(root, "segments")), source)
+        table = _plain_segments(document)
     tree = table.build(source, values.get("name", default_name), species.key)
     return TreeFile(tree, species, source)
 
 
-def species_of(values: dict[str, Any], root: YamlNode, source: str) -> Species:
-    """
-    Return the table's species that checked values name, with the wood they give in place of the
-    table's.
-
-    """
+def species_of(document: YamlDocument) -> Species:
+    """Return the table's species that a document names, with its wood in place of the table's."""
+    values = document.values
     key = values.get("species", "broadleaf")
     try:
         species = species_named(key)
     except SpeciesError as error:
-        line = _entry(root, "species").line
-        raise SpeciesError(error.what, where=f"{source}:{line}", cure=error.cure) from None
+        where = document.where("species")
+        raise SpeciesError(error.what, where=where, cure=error.cure) from None
     wood = dict(values.get("wood", {}))
     if "damping_ratio" in wood:
         ratio = wood.pop("damping_ratio")
         for state in ("damping_bare", "damping_in_leaf"):
             if state in wood:
-                line = _entry(_entry(root, "wood"), state).line
                 raise FormatError(
                     f"both damping_ratio and {state}",
-                    where=f"{source}:{line}",
+                    where=document.where("wood", state),
                     cure="give damping_ratio alone, or the two states apart",
                 )
             wood[state] = ratio
@@ -100,13 +87,11 @@ def species_of(values: dict[str, Any], root: YamlNode, source: str) -> Species:
     return replace(species, **wood, is_estimate=species.is_estimate and "modulus" not in wood)
 
 
-def _plain_segments(
-    segments: list[dict[str, Any]], nodes: list[YamlNode], source: str
-) -> SegmentTable:
-    table = SegmentTable()
+def _plain_segments(document: YamlDocument) -> SegmentTable:
+    table, segments = SegmentTable(), document.values["segments"]
     with_parent = sum("parent" in segment for segment in segments)
-    for number, (segment, node) in enumerate(zip(segments, nodes, strict=True)):
-        label = f"{source}:{node.line}: segment {number}"
+    for number, segment in enumerate(segments):
+        label = f"{document.where('segments', number)}: segment {number}"
         if 0 < with_parent < len(segments) and "parent" not in segment:
             raise TreeError(
                 "no parent, where others have one",
@@ -120,21 +105,3 @@ def _plain_segments(
             table.parent.append(segment["parent"])
         table.labels.append(label)
     return table
-
-
-def _entry(node: YamlNode, key: str) -> YamlNode:
-    assert isinstance(node.value, dict)
-    return node.value[key]
-
-
-def _items(node: YamlNode) -> list[YamlNode]:
-    assert isinstance(node.value, list)
-    return node.value
-
-
-def _points(branch: YamlNode) -> YamlNode:
-    assert isinstance(branch.value, dict)
-    for key in ("nodes", "segments"):
-        if key in branch.value:
-            return branch.value[key]
-    return YamlNode([], branch.line)

@@ -1,0 +1,121 @@
+"""A live tree without ROS: it goes in real time, and takes changes while it runs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.trees.source import open_tree
+from tree_sway_ros.page.protocol import PAUSED, decode_description, decode_frame
+from tree_sway_ros.page.session import Choices, Session
+from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind
+
+SEEDLING = Path(__file__).parents[1] / "files" / "data" / "seedling.yaml"
+DEADLINE = 30.0
+
+
+class Sink:
+    """Takes what a session publishes, in place of a server."""
+
+    def __init__(self) -> None:
+        self.descriptions: list[bytes] = []
+        self.frames: list[bytes] = []
+        self.told: list[Any] = []
+
+    def describe(self, description: bytes) -> None:
+        self.descriptions.append(description)
+
+    def publish(self, frame: bytes) -> None:
+        self.frames.append(frame)
+
+    def tell(self, content: Any, values: Any = None) -> None:
+        self.told.append(content)
+
+
+def build(choices: Choices) -> tuple[Any, Any]:
+    if choices.tree == "missing":
+        raise FormatError("no tree 'missing'", cure="name another")
+    settings = Settings(damping_ratio=choices.damping_ratio or None)
+    return open_tree(choices.tree).simulator(settings, fidelity=choices.fidelity), None
+
+
+def until(holds: Callable[[], Any]) -> None:
+    end = time.monotonic() + DEADLINE
+    while not holds():
+        assert time.monotonic() < end, "it did not come to pass"
+        time.sleep(0.005)
+
+
+@pytest.fixture
+def live() -> Iterator[tuple[Session, Sink]]:
+    session, sink = Session(build, Choices(str(SEEDLING)), SimulatedWind(5.0)), Sink()
+    session.serve(sink)  # type: ignore[arg-type]
+    yield session, sink
+    session.stop()
+    assert session.failure is None
+
+
+def test_frames_belong_to_the_description_and_keep_time(live: tuple[Session, Sink]) -> None:
+    _, sink = live
+    until(lambda: len(sink.frames) > 60)
+    identity = decode_description(sink.descriptions[0]).short_identity
+    frames = [decode_frame(frame) for frame in sink.frames[:60]]
+    assert {frame.identity for frame in frames} == {identity}
+    assert [frame.sequence for frame in frames] == list(range(60))
+    assert 0.5 < (frames[-1].stamp - frames[0].stamp) * 1e-9 < 10.0
+    assert np.linalg.norm(frames[-1].wind) > 0.5
+
+
+def test_pause_and_reset(live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    until(lambda: len(sink.frames) > 30)
+    session.apply("pause", True)
+    until(lambda: decode_frame(sink.frames[-1]).flags & PAUSED)
+    still = decode_frame(sink.frames[-1]).coordinates
+    n = len(sink.frames)
+    until(lambda: len(sink.frames) > n + 5)
+    assert (decode_frame(sink.frames[-1]).coordinates == still).all()
+    session.apply("reset", None)
+    until(lambda: not decode_frame(sink.frames[-1]).coordinates.any())
+
+
+def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    session.apply("fidelity", "branch")
+    until(lambda: len(sink.descriptions) == 2)
+    assert session.status()["model"] == "branch"
+    identity = decode_description(sink.descriptions[1]).short_identity
+    until(lambda: decode_frame(sink.frames[-1]).identity == identity)
+
+
+def test_what_cannot_be_built_is_told_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    session.apply("tree", "missing")
+    until(lambda: sink.told)
+    assert "no tree 'missing'" in sink.told[0]["refused"]["reason"]
+    n = len(sink.frames)
+    until(lambda: len(sink.frames) > n + 5)
+    assert session.choices.tree == str(SEEDLING)
+    with pytest.raises(ParameterError, match="cannot be changed"):
+        session.apply("gravity", 0.0)
+
+
+def test_the_wind_changes_at_once_and_a_record_does_not(live: tuple[Session, Sink]) -> None:
+    session, _ = live
+    before = session.wind.mean(10.0, 10.02)
+    session.apply("mean_speed", 10.0)
+    after = session.wind.mean(10.0, 10.02)  # the same gusts about another mean
+    assert 1.5 < np.linalg.norm(after) / np.linalg.norm(before) < 2.5
+    session.wind = RecordedWind(np.array([0.0, 1.0]), np.array([[1.0, 0, 0], [3.0, 0, 0]]))
+    np.testing.assert_allclose(session.wind.mean(1.5, 1.5), [2.0, 0.0, 0.0])
+    with pytest.raises(ParameterError, match="record"):
+        session.apply("mean_speed", 3.0)

@@ -1,0 +1,149 @@
+"""
+Kernels of a stand: many trees on few tables, solved in one call and placed kind by kind.
+
+A tree of a stand is its kind turned about the vertical, scaled, and moved to where it stands. A
+tree scaled by k bends by the same angles in the same wind, and swings k times slower: its inertia
+goes with the fifth power of its size, its stiffness and the wind's moment with the third. So it is
+its kind, stepped by 1/k of the time. (Gravity and the profile of the wind are those of the kind,
+but that the speed is that at its own height.)
+
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.kernel import fused, inlined
+from tree_sway_ros.core.motion.drag import pressure
+from tree_sway_ros.core.motion.placing import place
+from tree_sway_ros.core.motion.wind_basis import expand, step_instance
+from tree_sway_ros.core.motion.wind_basis_table import STEEPEST
+
+STANDING = np.dtype(
+    [
+        ("kind", "i8"),  # its row among the tables
+        ("pace", "i8"),  # its row among the paces
+        ("is_still", "i8"),  # whether it is not solved
+        ("scale", "f8"),  # its height over that of its kind
+        ("speed", "f8"),  # wind at its height over that at its kind's
+        ("cosine", "f8"),  # of half the angle that it is turned by
+        ("sine", "f8"),
+        ("at", "f8", (3,)),  # its root node [m]
+    ]
+)
+"""How a tree of a stand stands."""
+
+_LEVEL = math.sqrt(1.0 - STEEPEST * STEEPEST)
+_pressure = inlined(pressure)
+
+
+@fused
+def step_standing(
+    tables: Any, paces: Any, standing: Any, instances: Any, drag_laws: Floats, winds: Floats
+) -> tuple[int, int]:
+    """
+    Step every tree that is not still.
+
+    Parameters
+    ----------
+    tables, paces, standing, instances
+        Records of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,).
+    drag_laws
+        C and N of each kind, (k, 2).
+    winds
+        Mean wind over the step at each tree in [m/s], (t, 3).
+
+    Returns
+    -------
+    tuple
+        Trees whose wind was held at the limit of their table, and trees whose motion was not
+        finite and that go on from rest.
+
+    """
+    held, restarted = 0, 0
+    for t in range(len(standing)):
+        here = standing[t]
+        if here.is_still:
+            continue
+        table, instance = tables[here.kind], instances[t]
+        c = here.cosine * here.cosine - here.sine * here.sine
+        s = 2.0 * here.cosine * here.sine
+        x = here.speed * (c * winds[t, 0] + s * winds[t, 1])
+        y = here.speed * (c * winds[t, 1] - s * winds[t, 0])
+        z = here.speed * winds[t, 2]
+        level = math.sqrt(x * x + y * y)
+        speed = math.sqrt(level * level + z * z)
+        is_held = False
+        if abs(z) > STEEPEST * speed:
+            is_held = True
+            share = _LEVEL * speed / level if level > 0.0 else 0.0
+            x, y = share * x, share * y
+            z = STEEPEST * speed if z > 0.0 else -STEEPEST * speed
+            if level == 0.0:
+                x = _LEVEL * speed
+        load = _pressure(speed, drag_laws[here.kind, 0], drag_laws[here.kind, 1])
+        if load * speed * speed > table.most_pressure:
+            is_held = True
+            share = math.sqrt(table.most_pressure / load) / speed
+            x, y, z = share * x, share * y, share * z
+        held += 1 if is_held else 0
+        step_instance(table, paces[here.pace], instance, True, x, y, z, load)
+        total = 0.0
+        for i in range(len(instance.eta)):
+            total += 0.0 * instance.eta[i] + 0.0 * instance.rate[i]
+        if total != 0.0:
+            restarted += 1
+            for i in range(len(instance.eta)):
+                instance.eta[i] = instance.rate[i] = instance.force[i] = 0.0
+                instance.middle[i] = instance.middle_rate[i] = 0.0
+    return held, restarted
+
+
+@fused
+def place_standing(
+    tables: Any, standing: Any, instances: Any, which: Ints, shapes: Floats,
+    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, origin: Floats,
+    poses: Floats, out: Floats,
+) -> None:  # fmt: skip
+    """
+    Place trees of one kind.
+
+    Each is placed in memory that stays in the cache, then written out in one run.
+
+    Parameters
+    ----------
+    tables, standing, instances
+        As of `step_standing`.
+    which
+        Trees and their first rows in the pose block, (w, 2).
+    shapes
+        Of the kind, as of `wind_basis.expand`.
+    branches, segments, heads, work, origin
+        Of the kind, as of `placing.place`.
+    x, poses
+        To work in, (N,) and (m, 7).
+    out
+        Pose block of the stand, (n, 7), rows of these trees written.
+
+    """
+    size = len(poses)
+    for row in range(len(which)):
+        t, first = which[row, 0], which[row, 1]
+        here = standing[t]
+        expand(tables[here.kind], instances[t], shapes, x)
+        place(branches, segments, heads, work, x, origin, poses)
+        c, s, scale = here.cosine, here.sine, here.scale
+        turn_x, turn_y = scale * (c * c - s * s), scale * 2.0 * c * s
+        for i in range(size):
+            px, py, pz = poses[i, 0] - origin[0], poses[i, 1] - origin[1], poses[i, 2] - origin[2]
+            qx, qy, qz, qw = poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6]
+            pose = out[first + i]
+            pose[0] = here.at[0] + turn_x * px - turn_y * py
+            pose[1] = here.at[1] + turn_x * py + turn_y * px
+            pose[2] = here.at[2] + scale * pz
+            pose[3], pose[4] = c * qx - s * qy, c * qy + s * qx
+            pose[5], pose[6] = c * qz + s * qw, c * qw - s * qz

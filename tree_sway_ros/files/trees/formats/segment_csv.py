@@ -1,0 +1,59 @@
+"""
+A plain table of segments: one row each, with nodes, diameters, parent and branch.
+
+Columns ``segment, parent, branch, x0, y0, z0, x1, y1, z1, d0, d1`` in any order, in metres;
+``segment`` names the row and ``parent`` refers to such a name, -1 for the root; without ``branch``
+the branches are found from how the segments go on, without ``d1`` a segment is a cylinder.
+
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.files.table_file import parse_table
+from tree_sway_ros.files.text_file import read_lines
+from tree_sway_ros.files.trees.assembly import SegmentTable
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.tree_format import TreeFormat, has_columns
+
+
+def read_csv_tree(path: Path, species: str = "broadleaf") -> TreeFile:
+    """
+    Read a tree from a table of segments.
+
+    Parameters
+    ----------
+    path
+        The file.
+    species
+        Key of its wood.
+
+    Raises
+    ------
+    FormatError
+        A column that is missing, a cell that is no finite number, a segment that stands twice.
+    TreeError
+        A tree that cannot be.
+
+    """
+    text = parse_table(read_lines(path), str(path))
+    columns = {column.lower() for column in text.columns}
+    labels, parents = text.family("segment", "parent", [-1], "segment")
+    tip = "d1" if "d1" in columns else "d0"
+    values = text.strict(["x0", "y0", "z0", "x1", "y1", "z1", "d0", tip])
+    table = SegmentTable(
+        values[:, :3].tolist(),
+        values[:, 3:6].tolist(),
+        values[:, 6:].tolist(),
+        parents.tolist(),
+        labels=labels,
+    )
+    if "branch" in columns:
+        table.branch = text.whole(text.strict(["branch"])[:, 0], "branch").tolist()
+    wood = species_named(species)
+    return TreeFile(table.build(str(path), path.stem, wood.key), wood, str(path))
+
+
+FORMAT = TreeFormat("csv", (".csv",), has_columns("x0", "y0", "z0", "x1", "d0"), read_csv_tree)
