@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.motion.drag import pressure
+from tree_sway_ros.core.motion.numpy_passes import mean_wind_moments
 from tree_sway_ros.core.motion.response import tip_motion, tip_response
-from tree_sway_ros.core.motion.tree_passes import mean_wind_moments
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings

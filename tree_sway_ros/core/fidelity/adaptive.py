@@ -32,6 +32,7 @@ from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, Counts, SwaySimulator
@@ -62,7 +63,7 @@ REVIEW = 2.0
 _SPARE = 2.0 / 3.0
 
 
-class AdaptiveSimulator(KeepsState):
+class AdaptiveSimulator(OneTree, KeepsState):
     """
     A tree on the least model that its scene needs; otherwise as `SwaySimulator`.
 
@@ -131,6 +132,11 @@ class AdaptiveSimulator(KeepsState):
     def n_frozen(self) -> int:
         """Branches that move with their parent as one body in the model in use."""
         return self._shown.n_frozen
+
+    @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+        return self._shown.wind
 
     @property
     def frame_cost(self) -> float:

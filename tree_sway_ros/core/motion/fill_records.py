@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from heapq import heappop, heappush
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,9 +27,11 @@ from tree_sway_ros.core.motion.records import (
     segment_layout,
 )
 from tree_sway_ros.core.reduction.matrices import Reduction
-from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.tree.tree import Tree
+
+if TYPE_CHECKING:
+    from tree_sway_ros.core.reduction.pruning import Pruning
 
 
 def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
