@@ -1,5 +1,5 @@
 """
-What there is to say about a forest: a line a tree, and the sums.
+What there is to say about a forest: a line per tree, and the sums.
 
 """
 

@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--rate",
         type=float,
         default=60.0,
-        help="poses a second that should come [Hz] (%(default)s)",
+        help="poses per second that should come [Hz] (%(default)s)",
     )
 
 

@@ -12,7 +12,7 @@ DT = 0.1
 
 
 def driven(damping, seed, duration=600.0, colour=0.0):
-    """Oscillator of .7 Hz under noise of spectral slope `colour`, (n, 1)."""
+    """Oscillator of 0.7 Hz under noise of spectral slope `colour`, (n, 1)."""
     rng = np.random.default_rng(seed)
     n = int(2 * duration / DT)
     f = np.fft.rfftfreq(n, DT)

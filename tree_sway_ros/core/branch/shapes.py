@@ -27,7 +27,7 @@ N_TWISTS = 3
 
 FEWER = 2
 """
-Shapes, and twists, of any other enriched branch: a third gains .5 % of the motion and costs a half
+Shapes, and twists, of any other enriched branch: a third gains 0.5 % of the motion and costs a half
 more.
 
 """

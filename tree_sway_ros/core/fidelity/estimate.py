@@ -79,7 +79,7 @@ def choose(
     if not within:
         cheapest = min(estimates, key=lambda e: e.cost)
         raise ParameterError(
-            f"no model costs less than {budget:g} us a step",
+            f"no model costs less than {budget:g} us per step",
             where="budget",
             cure=f"allow {cheapest.cost:.3g} us for '{cheapest.name}'",
         )

@@ -87,7 +87,7 @@ def _swings(tree: Tree, branches: Any, rotations: Complexes) -> tuple[Floats, fl
 
 
 def _weights(frequencies: Floats) -> Floats:
-    """Mean square of the load at each frequency, in a wind of intensity .2 from any side, (f,)."""
+    """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side, (f,)."""
     climate = WindClimate.steady(1.0, 0.2)
     density = climate.spectrum(frequencies) * np.trace(climate.covariance)
     steps = np.diff(frequencies)

@@ -29,7 +29,7 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     tree
         The tree.
     reduction
-        Its matrices, two coordinates a branch.
+        Its matrices, two coordinates per branch.
 
     Returns
     -------

@@ -23,7 +23,7 @@ from tree_sway_ros.core.tree.tree import Tree
 
 class Bodies(NamedTuple):
     """
-    Arrays over the bodies, one a segment, in rest axes, which are the world's.
+    Arrays over the bodies, one per segment, in rest axes, which are the world's.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class WindClimate:
         velocity
             Wind in [m/s], (n, 2) or (n, 3).
         rate
-            Samples a second in [Hz].
+            Samples per second in [Hz].
 
         """
         speed = np.linalg.norm(velocity, axis=1)
@@ -76,7 +76,7 @@ class WindClimate:
         mean_speed
             In [m/s].
         intensity
-            Standard deviation over mean of the along-wind speed in [-]; across it .8 of that (IEC
+            Standard deviation over mean of the along-wind speed in [-]; across it 0.8 of that (IEC
             61400-1).
         bearing
             Angle of the mean from x towards y in [rad].

@@ -29,7 +29,7 @@ from tree_sway_ros.core.checks import three_numbers, within
 from tree_sway_ros.core.wind.limits import FASTEST_WIND, is_wind
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
-# 0x8000, which is 327.68 where the count is .01 m/s.
+# 0x8000, which is 327.68 where the count is 0.01 m/s.
 SENTINELS = (
     999.0,
     999.9,

@@ -101,7 +101,7 @@ class GustHistory:
 
     @property
     def n_ahead(self) -> int:
-        """Places that stand upwind of the anemometer, by more than .1 s of the wind's way."""
+        """Places that stand upwind of the anemometer, by more than 0.1 s of the wind's way."""
         return int((self._wanted < -0.1).sum())
 
     @property

@@ -58,7 +58,7 @@ class SwayRecord:
     time
         Of each sample in [s], as in the file, (n,).
     motion
-        One column an axis, (n, c), in [m], [rad], [rad/s] or [m/s^2].
+        One column per axis, (n, c), in [m], [rad], [rad/s] or [m/s^2].
     quantity
         ``displacement``, ``tilt``, ``rate`` or ``acceleration``.
     columns

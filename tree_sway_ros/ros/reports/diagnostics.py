@@ -62,7 +62,7 @@ def status_array(statuses: list[Status], *, prefix: str, hardware: str, stamp: A
 
 class Reporter:
     """
-    Publishes what `collect` returns once a second.
+    Publishes what `collect` returns once per second.
 
     Parameters
     ----------

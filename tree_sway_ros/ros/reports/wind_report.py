@@ -40,7 +40,7 @@ class WindReport:
 
     @property
     def rate(self) -> float:
-        """Samples a second over the last five seconds in [Hz]."""
+        """Samples per second over the last five seconds in [Hz]."""
         now = time.monotonic()
         recent = [arrival for arrival in list(self._arrivals) if now - arrival <= _WINDOW]
         if len(recent) < 2 or now - recent[-1] > 1.0 + 2.0 * (recent[-1] - recent[-2]):

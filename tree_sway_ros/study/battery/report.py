@@ -43,7 +43,7 @@ def run_battery(
     full: bool = False, json: str | Path | None = None, only: Iterable[str] | None = None
 ) -> int:
     """
-    Run the cases, print a line a row, write JSON if asked to.
+    Run the cases, print a line per row, write JSON if asked to.
 
     Parameters
     ----------

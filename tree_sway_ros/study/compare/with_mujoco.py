@@ -169,7 +169,7 @@ def compare_with_mujoco(
 
 
 def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
-    """Tips at each frame in [m], (t, b, 3), with so many steps a frame."""
+    """Tips at each frame in [m], (t, b, 3), with so many steps per frame."""
     model.reset()
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     for frame, blowing in enumerate(bar(wind, f"MuJoCo, {steps} steps per frame")):

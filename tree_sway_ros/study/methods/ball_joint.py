@@ -57,7 +57,7 @@ def swing(
         Rotation vector [rad], (2,), and the chord's velocity across b at the start [1/s], (2,); the
         latter is the vector's own rate only at rest position.
     substeps
-        Runge-Kutta steps a frame.
+        Runge-Kutta steps per frame.
 
     Returns
     -------

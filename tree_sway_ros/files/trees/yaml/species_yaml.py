@@ -6,7 +6,7 @@ keys of a tree's YAML; leaves are those of that entry::
 
     name: elm of the park
     species: ash
-    wood: {modulus: 7.2e9, density: 980, damping_bare: .03}
+    wood: {modulus: 7.2e9, density: 980, damping_bare: 0.03}
 
 """
 

@@ -1,4 +1,4 @@
-"""T2: numerical damping and frequency at 60 steps a second, true damping ratio .02."""
+"""T2: numerical damping and frequency at 60 steps per second, true damping ratio 0.02."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 
 
 class ImplicitMidpoint(MinimalMethod):
-    """No numerical damping; slow frequencies: 5 % at 8 Hz and 60 steps a second."""
+    """No numerical damping; slow frequencies: 5 % at 8 Hz and 60 steps per second."""
 
     name: ClassVar[str] = "implicit_midpoint"
     order: ClassVar[int] = 2
