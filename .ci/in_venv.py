@@ -34,8 +34,8 @@ OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 ALWAYS = ("fast", "progress")
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
-    **dict.fromkeys(("anemometer", "wind", "solver", "player", "viewer", "ros2"), ("ros",)),
-    **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
+    **dict.fromkeys(("anemometer", "wind", "solver", "player", "sensor", "viewer", "ros2"),
+    ("ros",)), **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),

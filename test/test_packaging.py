@@ -19,7 +19,7 @@ import pytest
 import tree_sway_ros
 
 ROOT = Path(__file__).resolve().parent.parent
-NODES = ("anemometer", "player", "solver", "viewer", "wind")
+NODES = ("anemometer", "player", "sensor", "solver", "viewer", "wind")
 IMPORTED = {"yaml": "python3-yaml"}
 
 

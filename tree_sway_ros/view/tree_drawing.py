@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.leaf_drawing import leaf_blades, leaf_colors
 from tree_sway_ros.view.projection import Camera
@@ -19,7 +20,6 @@ _NEAR_BARK = np.array([0.22, 0.15, 0.10])
 _FAR_BARK = np.array([0.72, 0.67, 0.62])
 _POT = "#b5694a"
 _POT_RIM = "#c67f60"
-_POTTED = ("benjamina", "goldcrest")
 _GROUND = "#8d8d86"
 _GHOST = "#dedad6"
 
@@ -191,7 +191,8 @@ def _draw_ground(axes: Axes, tree: Tree, camera: Camera, frame: Frame) -> None:
     from matplotlib.patches import Ellipse, Polygon
 
     x, y = camera.project(tree.start[0])[:2]
-    if tree.species not in _POTTED:
+    is_known = tree.species in species_keys()
+    if not (is_known and species_named(tree.species).habit == "pot"):
         width = 0.5 * (frame.right - frame.left)
         flat = width * max(np.sin(camera.elevation), 0.03)
         axes.add_patch(Ellipse((x, y), width, flat, color=_GROUND, alpha=0.25, lw=0, zorder=0))
