@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Pictures: that they are written, and that what they show is there."""
 
 from dataclasses import replace

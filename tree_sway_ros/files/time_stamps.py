@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Time stamps of loggers: ISO 8601 dates with any number of digits after the second."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Trees to measure on: three of 40 branches, one of 121, and plain stems, made of numbers alone.
 

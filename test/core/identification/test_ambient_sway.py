@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The resonance in a spectrum: slopes of the model, scatter of the answer, refusals."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Natural modes: orthonormal, equal by both ways to find them, softened by weight, refused when they
 buckle.

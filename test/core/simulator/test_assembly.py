@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From a tree to its oscillators: what each model takes into account."""
 
 from __future__ import annotations

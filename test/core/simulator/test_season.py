@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves on or off: lower frequencies, more damping, a load that grows less than the square of the
 wind.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Dropouts, stalls and clocks: what a live stream does to the average of the wind."""
 
 import math

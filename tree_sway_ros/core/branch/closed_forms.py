@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Closed-form calibration of one tapered branch: its key segment in four numbers.
 

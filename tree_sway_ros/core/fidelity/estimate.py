@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How much model a scene needs: what is known of a model before it runs, and the least that will do.
 

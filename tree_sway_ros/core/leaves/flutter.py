@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How leaves flutter: an angle about their stalk from the speed of the air that passes them.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Models 1 and 2 of the ladder: every branch an oscillator of its own, on two axes.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A branch on two axes: its force, its gyroscopic term and one guarded step of the exact propagator.
 

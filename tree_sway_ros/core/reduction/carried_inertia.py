@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The inertia a branch feels when what it carries gives way: what model 2 knows of coupling.
 

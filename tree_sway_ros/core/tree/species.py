@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a tree is made of: wood, damping, drag and leaves of each species, with the sources.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The gate that a wind sample passes: faults are refused and counted, true gusts and steps get in.
 

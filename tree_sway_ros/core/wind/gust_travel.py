@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Gusts travel: a tree feels the wind of the anemometer as long ago as the wind takes from there to
 the tree.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Is the wind there? Rate and age of the samples, and what to call their state."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Messages as bytes: serialised once by rclpy, then their numbers overwritten in place.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Runs the battery and tells what held: a table in the terminal, a JSON file, an exit code."""
 
 from __future__ import annotations

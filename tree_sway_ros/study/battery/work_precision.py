@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Error against cost of every method, in smooth, gusty and turning wind, one segment and a chain of
 six.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree in MuJoCo: the same bodies, springs and drag in an engine that nobody here wrote.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree as an Euler-Bernoulli frame in 3D: a truth for frequencies, mode shapes and static sway.
 

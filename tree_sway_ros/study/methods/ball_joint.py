@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The truth for a branch on two axes: a rod on a ball joint, as a unit vector in space.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Listens to a swaying tree as any other program would: poses as bytes, over DDS.
 

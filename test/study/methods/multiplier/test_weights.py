@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Coefficients of the implicit methods against the conditions of their order and damping."""
 
 from __future__ import annotations

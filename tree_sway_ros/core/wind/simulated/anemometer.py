@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A simulated anemometer: mean wind, turbulence and events, sampled tick by tick without end."""
 
 from __future__ import annotations

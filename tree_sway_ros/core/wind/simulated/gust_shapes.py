@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Gusts, steps and turns of the wind: pure functions of time that add onto any base wind.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Turbulent wind at one point: records drawn from a spectrum of `SPECTRA`.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Diameters that a scan got wrong: a robust taper per branch, and twigs as thin as they are.
 

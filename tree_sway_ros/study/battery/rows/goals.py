@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the default integrator is meant to reach, in figures."""
 
 from __future__ import annotations
