@@ -233,9 +233,7 @@ class Forest:
         self._wind[:] = 0.0
 
 
-def _simulator(
-    tree: PlacedTree, settings: Settings, tolerance: float
-) -> TreeSimulator:
+def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSimulator:
     """Simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:

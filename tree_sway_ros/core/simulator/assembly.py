@@ -27,7 +27,13 @@ from tree_sway_ros.core.motion.fill_records import (
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
-from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.reduction.modes import (
+    Modes,
+    most_driven,
+    natural_modes,
+    refuse_buckling,
+    with_static,
+)
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
@@ -66,6 +72,12 @@ class Oscillators(Protocol):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,)."""
+
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
 
@@ -77,6 +89,9 @@ _COUPLED = ("wind_basis", "modes", "coupled")
 
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
+
+_FEW_MODES = 6
+"""Of more modes than this, two are what the others lack of the static sway along x and y."""
 
 
 class Frozen:
@@ -109,6 +124,13 @@ class Frozen:
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Zeros, both (N,)."""
+        return self._x, self._x
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Stay at rest."""
 
     def forces(self) -> Floats:
         """None, (b, 3)."""
@@ -333,6 +355,7 @@ class CalibratedTree:
             tree,
             species.density,
             carries=carries,
+            shear_ratio=species.shear_ratio,
             enriched=enriched,
             speed_profile=speed,
             leaf_mass=settings.leaf_mass,
@@ -352,7 +375,10 @@ class CalibratedTree:
         )
 
     def _modes(self, model: str, count: int | None) -> Modes:
-        """All modes, or those of the slowest that the wind drives most."""
+        """
+        All modes, or those of the slowest that the wind drives most and the static sway they lack.
+
+        """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
@@ -364,9 +390,13 @@ class CalibratedTree:
         modes = self._slowest.slowest(wanted)
         if not is_driven:
             return modes
-        from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
+        from tree_sway_ros.core.motion.numpy_passes import even_wind_moments, mean_wind_moments
 
-        return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+        if not _FEW_MODES < n_modes < n - 1:
+            return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+        loads = mean_wind_moments(self.coupled.branches, n)
+        driven = most_driven(modes, loads, n_modes - loads.shape[1])
+        return with_static(driven, reduction, loads)
 
     def _modal_bank(self) -> type[ModalBank]:
         if self.plain:

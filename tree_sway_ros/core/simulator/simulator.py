@@ -277,6 +277,14 @@ class SwaySimulator(OneTree, KeepsState):
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
+        return self.bank.oscillators.motion()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), instead of from rest."""
+        self.bank.oscillators.take_over(x, v)
+
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self.bank.oscillators.reset()

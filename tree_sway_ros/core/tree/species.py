@@ -68,7 +68,7 @@ class Species:
     drag_coefficient: float = 1.2
     drag_exponent: float = 0.0
     bare_drag_coefficient: float = 1.2
-    shear_ratio: float = 1.0 / 2.6
+    shear_ratio: float = 1.0 / 14.0
     leaves: LeafTraits = BROAD_LEAVES
     habit: str = "broadleaf"
     clear_bole: float = 0.1
@@ -122,9 +122,7 @@ _TABLE = {
         _with_spruce_drag(
             "spruce", "Norway spruce", 6.3e9, 850.0, leaves=_needles(0.20, 0.36, 0.22)
         ),
-        _with_spruce_drag(
-            "sitka", "Sitka spruce", 5.9e9, 850.0, leaves=_needles(0.26, 0.40, 0.30)
-        ),
+        _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0, leaves=_needles(0.26, 0.40, 0.30)),
         _conifer(
             "pine",
             "Scots pine",
