@@ -105,7 +105,7 @@ class SwaySimulator(OneTree, KeepsState):
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
-        self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
+        self.drag_law = calibrated.drag_law
         self._advance = self.bank.oscillators.advance
         self._max_wind = self.settings.max_wind
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
