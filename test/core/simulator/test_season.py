@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves on or off: lower frequencies, more damping, a load that grows less than the square of the
 wind.
@@ -153,7 +155,7 @@ _too_light = pytest.mark.xfail(
 )
 def test_leaves_lower_the_first_frequency(name, shares):
     """
-    Leaves of 15 to 60 % of the branches' mass bring it to .70 to .95 of that of the bare tree.
+    Leaves of 15 to 60 % of the branches' mass bring it to 0.70 to 0.95 of that of the bare tree.
 
     """
     tree = tree_named(name)
