@@ -175,7 +175,7 @@ def test_leaves_damp():
 
 
 def growth_of_load(tree, settings):
-    """Exponent p of the moment at the base, U^p, in steady wind of 4 to 20 m/s, where crowns were measured."""
+    """Exponent p of the moment at the base, U^p, in winds that crowns were measured in."""
     sim = SwaySimulator(tree, settings=replace(settings, damping_ratio=0.7))
     moment = []
     for speed in SPEEDS:
