@@ -39,6 +39,10 @@ COMMANDS: dict[str, Command] = {
         "a tree sways in wind, all nodes in one process over real DDS",
         "demo goldcrest --speed 8 --seconds 10",
     ),
+    "soak": Command(
+        "run the chain through every fault of a sensor, and tell what it costs",
+        "soak --hours 0.002 --every 1",
+    ),
     "listen": Command(
         "count the poses that a solver in another process streams", "listen --seconds 10"
     ),
