@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The solver node: wind in, poses of every segment out, at a fixed rate."""
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
@@ -85,6 +88,7 @@ class SolverNode(TreeSwayNode):
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
+            model=self.values["fidelity"],
             in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
             profile=WindProfile(
@@ -95,7 +99,7 @@ class SolverNode(TreeSwayNode):
                 ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
             ),
         )
-        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
+        self.simulator: Simulator = source.simulator(settings, **self.values("tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = self._make_pacer()

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves on or off: lower frequencies, more damping, a load that grows less than the square of the
 wind.
@@ -100,13 +102,13 @@ def test_needles_stay(key):
 DOORS = {
     "SwaySimulator": lambda **how: SwaySimulator(builtin_tree("goldcrest"), model="modes", **how),
     "make_simulator": lambda **how: make_simulator(
-        builtin_tree("goldcrest"), species_named("goldcrest"), fidelity="modes", **how
+        builtin_tree("goldcrest"), species_named("goldcrest"), model="modes", **how
     ),
-    "open_tree": lambda **how: open_tree("goldcrest").simulator(fidelity="modes", **how),
-    "auto": lambda **how: open_tree("goldcrest").simulator(fidelity="auto", **how),
-    "segments": lambda **how: open_tree("goldcrest").simulator(fidelity="segments", **how),
+    "open_tree": lambda **how: open_tree("goldcrest").simulator(model="modes", **how),
+    "auto": lambda **how: open_tree("goldcrest").simulator(model="auto", **how),
+    "segments": lambda **how: open_tree("goldcrest").simulator(model="segments", **how),
     "Forest": lambda **how: Forest(
-        [PlacedTree("tree", builtin_tree("goldcrest"))], fidelity="modes", **how
+        [PlacedTree("tree", builtin_tree("goldcrest"))], model="modes", **how
     ).simulators[0],
 }
 
@@ -152,7 +154,7 @@ _too_light = pytest.mark.xfail(
 )
 def test_leaves_lower_the_first_frequency(name, shares):
     """
-    Leaves of 15 to 60 % of the branches' mass bring it to .70 to .95 of that of the bare tree.
+    Leaves of 15 to 60 % of the branches' mass bring it to 0.70 to 0.95 of that of the bare tree.
 
     """
     tree = tree_named(name)

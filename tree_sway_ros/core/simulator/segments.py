@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
 reduced tree.
@@ -22,6 +24,7 @@ from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -43,7 +46,7 @@ LARGEST_TURN = 1.0
 """Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
 
 
-class SegmentsSimulator(KeepsState):
+class SegmentsSimulator(OneTree, KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The parameters of each node, one table per node.
 
@@ -8,9 +10,8 @@ Defaults stand here and nowhere else: the files in ``config/`` hold overrides on
 from __future__ import annotations
 
 from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
-from tree_sway_ros.core.scene.make import FIDELITIES
 from tree_sway_ros.core.simulator.season import LEAVES
-from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, Settings
+from tree_sway_ros.core.simulator.settings import FIDELITIES, STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
@@ -226,7 +227,7 @@ SOLVER: Table = (
     ),
     Parameter(
         "fidelity",
-        "modes",
+        _MODEL.model,
         "The model of the sway, from the least to the most; `auto` takes the least that keeps "
         "within tolerance and budget.",
         choices=FIDELITIES,
@@ -486,12 +487,8 @@ SENSOR: Table = (
     Parameter(
         "declination", 0.0, "Magnetic declination, east positive.", "rad", -3.2, 3.2, live=True
     ),
-    Parameter(
-        "need_checksum", False, "Sentences without a checksum are refused.", live=True
-    ),
-    Parameter(
-        "silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0
-    ),
+    Parameter("need_checksum", False, "Sentences without a checksum are refused.", live=True),
+    Parameter("silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0),
     Parameter(
         "output_type",
         WIND_TYPE_NAMES[0],
