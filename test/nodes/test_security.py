@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The policy for SROS2 names what the nodes say and hear."""
 
 from pathlib import Path

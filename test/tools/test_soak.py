@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The soak, short: the chain through all faults, and the figures at its end."""
 
 from __future__ import annotations

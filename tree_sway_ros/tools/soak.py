@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway soak``: the whole chain through every fault of a sensor, for hours; what it costs.
 
