@@ -85,7 +85,10 @@ COMMANDS: dict[str, Command] = {
 
 #: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
 _STUDIES = {
-    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
+    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")
+
+#: Commands that watch a stream.
+_STREAMS = ("listen", "soak")},
     "study": "campaign",
 }
 _FAILURE = 2
@@ -191,7 +194,11 @@ def _shortened(name: str) -> str:
 
 def _module(command: str) -> Any:
     room = _STUDIES.get(command)
-    where = f"study.{room}.command" if room else f"tools.{command}"
+    where = f"tools.{command}"
+    if command in _STUDIES:
+        where = f"study.{command}.command"
+    elif command in _STREAMS:
+        where = f"tools.stream.{command}"
     return importlib.import_module(f"tree_sway_ros.{where}")
 
 

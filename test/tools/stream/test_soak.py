@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.tools.soak import Health, growth, health
+from tree_sway_ros.tools.stream.soak import Health, growth, health
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def test_growth_is_the_slope_after_the_warm_up() -> None:
