@@ -85,12 +85,12 @@ COMMANDS: dict[str, Command] = {
 
 #: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
 _STUDIES = {
-    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")
-
-#: Commands that watch a stream.
-_STREAMS = ("listen", "soak")},
+    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
     "study": "campaign",
 }
+
+#: Commands that watch a stream.
+_STREAMS = ("listen", "soak")
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -194,10 +194,8 @@ def _shortened(name: str) -> str:
 
 def _module(command: str) -> Any:
     room = _STUDIES.get(command)
-    where = f"tools.{command}"
-    if command in _STUDIES:
-        where = f"study.{command}.command"
-    elif command in _STREAMS:
+    where = f"study.{room}.command" if room else f"tools.{command}"
+    if command in _STREAMS:
         where = f"tools.stream.{command}"
     return importlib.import_module(f"tree_sway_ros.{where}")
 
