@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.tree.resegment import resegment
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.tree_state import TreeState, digest_of
 from tree_sway_ros.core.tree.species import species_named

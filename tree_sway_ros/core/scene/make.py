@@ -13,14 +13,11 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.simulator.segments import SegmentsSimulator
-from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
-
-FIDELITIES = ("auto", *MODELS, "segments")
-"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
 
 class Simulator(Protocol):

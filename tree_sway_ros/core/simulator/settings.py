@@ -10,13 +10,16 @@ from dataclasses import dataclass, field
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
-from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import ParameterError
 
 MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 """Models of the ladder of models, the least first."""
+
+FIDELITIES = ("auto", *MODELS, "segments")
+"""All that a scene can ask for: ``auto`` chooses a model, ``segments`` solves every segment."""
 
 STIFFNESS_RULES = ("beam", "volume_rule")
 """Ways to set the stiffness of a branch."""
@@ -52,7 +55,7 @@ class Settings:
     profile
         Wind over height.
     integrator
-        Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be
+        Method that steps the oscillators, one of `rule_names.REAL_TIME`; one whose step would be
         unstable is refused at the first step. Later steps that are longer are cut.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.

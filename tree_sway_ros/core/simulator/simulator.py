@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.drag import pressure
-from tree_sway_ros.core.oscillators.step_rules import CONDITIONALLY_STABLE
+from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
