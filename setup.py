@@ -9,7 +9,7 @@ from setuptools import find_packages, setup
 PACKAGE = "tree_sway_ros"
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
-NODES = ("anemometer", "wind", "solver", "player", "viewer")
+NODES = ("anemometer", "wind", "solver", "player", "sensor", "viewer")
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
@@ -60,6 +60,7 @@ extras = {
         f"ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}",
         f"ros-jazzy-common-interfaces==5.3.6{LINUX}",
     ],
+    "serial": ["pyserial>=3.5"],
     "bag": ["rosbags>=0.10"],
     "plot": ["matplotlib>=3.6"],
     "h5": ["h5py>=3.7"],

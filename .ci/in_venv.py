@@ -34,8 +34,8 @@ OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 ALWAYS = ("fast", "progress")
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
-    **dict.fromkeys(("anemometer", "wind", "solver", "player", "viewer", "ros2"), ("ros",)),
-    **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
+    **dict.fromkeys(("anemometer", "wind", "solver", "player", "sensor", "viewer", "ros2"),
+    ("ros",)), **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
@@ -179,7 +179,7 @@ def make_ready(environment, extras):
     began = time.monotonic()
     if made_from[0] != wanted()[0]:
         there = set()
-        size = "two minutes and 0.6 GB" if "ros" in extras else "a minute and 0.4 GB"
+        size = "two minutes and 0.6 GB" if "ros" in extras else "a minute and 0.5 GB"
         say(f"setting up {VENV}, once: about {size}{' and the tests' * ('test' in extras)}")
         make_venv(environment)
         pip(environment, "setuptools>=70.1,<81")

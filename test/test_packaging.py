@@ -19,7 +19,7 @@ import pytest
 import tree_sway_ros
 
 ROOT = Path(__file__).resolve().parent.parent
-NODES = ("anemometer", "player", "solver", "viewer", "wind")
+NODES = ("anemometer", "player", "sensor", "solver", "viewer", "wind")
 IMPORTED = {"yaml": "python3-yaml"}
 
 
@@ -61,7 +61,18 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
 
 #: Asked for by a part that says so when it is missing; they come with an extra, not with rosdep.
 OPTIONAL = {
-    *("PIL", "h5py", "mpl_toolkits", "mpmath", "mujoco", "numba", "rosbags", "sksundae"),
+    *(
+        "PIL",
+        "distributed",
+        "h5py",
+        "mpl_toolkits",
+        "mpmath",
+        "mujoco",
+        "numba",
+        "pyarrow",
+        "rosbags",
+        "sksundae",
+    ),
 }
 
 

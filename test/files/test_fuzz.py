@@ -18,11 +18,15 @@ from tree_sway_ros.files.trees.yaml.forest_yaml import parse_forest
 from tree_sway_ros.files.wind.wind_file import WIND_FORMATS, read_wind
 
 DATA = Path(__file__).parent / "data"
-TREES = ["seedling.yaml", "segments.csv", "fork.simpleforest.csv", "fork.archi.csv",
-         "fork.treeqsm23.txt", "fork.treeqsm24.txt", "fork.pytlidar.txt", "forest.treefile.txt",
-         "fork.mtg", "fork.swc", "fork5.mat", "fork7.mat", "fork73.mat", "glade.yaml"]  # fmt: skip
-WINDS = ["sonic.toa5.dat", "mast.nmea", "weather.nmea", "wind.csv", "wind_components.csv",
-         "wind.db3", "wind.mcap"]  # fmt: skip
+WINDS = [
+    *("sonic.toa5.dat", "mast.nmea", "weather.nmea", "wind.csv", "wind_components.csv"),
+    *("wind.db3", "wind.mcap"),
+]
+LARGE = ["tree121.csv", "canopy.toa5.dat"]
+TREES = [
+    *sorted(path.name for path in DATA.iterdir() if path.name not in (*WINDS, *LARGE)),
+    *("fork5.mat", "fork7.mat", "fork73.mat", "glade.yaml"),
+]
 
 SEEDLING = open_tree(DATA / "seedling.yaml")
 TOKENS = [b"nan", b"inf", b"-1", b"0", b"1e308", b"-1e999", b"99999999999999999999", b"", b"\n",

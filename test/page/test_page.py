@@ -30,7 +30,7 @@ class Live:
 
     def __init__(self) -> None:
         source = open_tree("goldcrest")
-        simulator = source.simulator(Settings(), fidelity="modes")
+        simulator = source.simulator(Settings(), model="modes")
         leaves = source.leaves(None, 400)
         self.wind = SimulatedWind(9.0)
         self.session = Session(lambda _: (simulator, leaves), Choices("goldcrest"), self.wind)

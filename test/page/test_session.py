@@ -45,7 +45,7 @@ def build(choices: Choices) -> tuple[Any, Any]:
     if choices.tree == "missing":
         raise FormatError("no tree 'missing'", cure="name another")
     settings = Settings(damping_ratio=choices.damping_ratio or None)
-    return open_tree(choices.tree).simulator(settings, fidelity=choices.fidelity), None
+    return open_tree(choices.tree).simulator(settings, model=choices.fidelity), None
 
 
 def until(holds: Callable[[], Any]) -> None:

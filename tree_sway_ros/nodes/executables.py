@@ -22,6 +22,11 @@ def solver(args: Sequence[str] | None = None) -> int:
     return run("tree_sway_ros.nodes.solver", "SolverNode", args)
 
 
+def sensor(args: Sequence[str] | None = None) -> int:
+    """Run the sensor node; returns the exit code."""
+    return run("tree_sway_ros.nodes.sensor", "SensorNode", args)
+
+
 def viewer(args: Sequence[str] | None = None) -> int:
     """Run the viewer node; returns the exit code."""
     return run("tree_sway_ros.nodes.viewer", "ViewerNode", args)

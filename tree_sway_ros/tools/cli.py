@@ -47,6 +47,10 @@ COMMANDS: dict[str, Command] = {
         "pictures of a tree, and of the wind and the motion of its tip",
         "plot benjamina --seconds 20 -o sway.png",
     ),
+    "render": Command(
+        "a tree in wind as a moving picture: GIF, MP4 or frames",
+        "render goldcrest --speed 9 --seconds 2 -o sway.gif",
+    ),
     "grow": Command(
         "make a tree of a species and a height", "grow --species oak --height 12 -o oak.yaml"
     ),

@@ -51,7 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
     parser.add_argument(
+        "--model",
         "--fidelity",
+        dest="fidelity",
         choices=fidelity.choices,
         default=fidelity.default,
         help="model of the sway (%(default)s)",

@@ -195,3 +195,27 @@ def test_a_time_that_counts_from_another_zero_is_a_gap():
     time[-1] = 1.7e9
     with pytest.raises(FormatError, match=r"gaps of up to 1\.7e"):
         estimate_sway(time, motion)
+
+
+@pytest.mark.parametrize("held", [0.0, 3.0, 5.0])
+@pytest.mark.parametrize("frequency", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_short_pull_in_summer(frequency, held, seed):
+    """Twenty seconds in all, a tenth of critical damping in leaf."""
+    found = estimate_sway(
+        *release(frequency, 0.1, duration=20.0, held=held, noise=0.005, seed=seed)
+    )
+    assert found.kind == "release"
+    assert found.frequency == pytest.approx(frequency, rel=0.02)
+    assert found.damping_ratio == pytest.approx(0.1, rel=0.1)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("noise", [0.005, 0.03])
+def test_a_pull_too_short_for_its_tree_says_why(noise, seed):
+    """Of a sway with too few cycles no other mode, and no noise, is taken in its place."""
+    time, motion = release(0.2, 0.1, duration=20.0, held=5.0, noise=noise, seed=seed)
+    with pytest.raises(
+        FormatError, match=r"cycles of 0\.[12]\d+ Hz after .*; record 3 cycles after"
+    ):
+        estimate_sway(time, motion)

@@ -25,7 +25,7 @@ def modal(tree, **changes):
 
 
 def stiffness_of(tree):
-    models = branch_models(tree, WOOD.density, carries=True)
+    models = branch_models(tree, WOOD.density, carries=True, shear_ratio=WOOD.shear_ratio)
     return reduce_tree(tree, models, WOOD.modulus, WOOD.shear_ratio * WOOD.modulus, 0.0).stiffness
 
 

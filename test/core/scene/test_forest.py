@@ -173,7 +173,7 @@ def test_every_tree_finds_the_model_it_needs(fork, stem):
         PlacedTree("fork", fork()),
         PlacedTree("twig", stem(length=0.1, base=0.02, tip=0.01)),
     ]
-    forest = Forest(trees, fidelity="auto", tolerance=1e-3)
+    forest = Forest(trees, model="auto", tolerance=1e-3)
     chosen = [each.choice.name for each in simulators_of(forest)]
     assert chosen[1] == "frozen"
     assert chosen[0] != "frozen"

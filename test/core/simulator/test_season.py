@@ -100,13 +100,13 @@ def test_needles_stay(key):
 DOORS = {
     "SwaySimulator": lambda **how: SwaySimulator(builtin_tree("goldcrest"), model="modes", **how),
     "make_simulator": lambda **how: make_simulator(
-        builtin_tree("goldcrest"), species_named("goldcrest"), fidelity="modes", **how
+        builtin_tree("goldcrest"), species_named("goldcrest"), model="modes", **how
     ),
-    "open_tree": lambda **how: open_tree("goldcrest").simulator(fidelity="modes", **how),
-    "auto": lambda **how: open_tree("goldcrest").simulator(fidelity="auto", **how),
-    "segments": lambda **how: open_tree("goldcrest").simulator(fidelity="segments", **how),
+    "open_tree": lambda **how: open_tree("goldcrest").simulator(model="modes", **how),
+    "auto": lambda **how: open_tree("goldcrest").simulator(model="auto", **how),
+    "segments": lambda **how: open_tree("goldcrest").simulator(model="segments", **how),
     "Forest": lambda **how: Forest(
-        [PlacedTree("tree", builtin_tree("goldcrest"))], fidelity="modes", **how
+        [PlacedTree("tree", builtin_tree("goldcrest"))], model="modes", **how
     ).simulators[0],
 }
 

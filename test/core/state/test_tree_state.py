@@ -25,7 +25,7 @@ def winds(n, seed=4):
 @pytest.fixture(scope="module", params=FIDELITIES)
 def tree_on(request, fork):
     tree = fork()
-    return lambda: make_simulator(tree, species_named(tree.species), fidelity=request.param)
+    return lambda: make_simulator(tree, species_named(tree.species), model=request.param)
 
 
 def test_a_simulator_goes_on_from_a_state_bit_for_bit(tree_on):
@@ -88,7 +88,7 @@ def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
 
 def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
     tree = fork()
-    sim = make_simulator(tree, species_named(tree.species), fidelity="auto")
+    sim = make_simulator(tree, species_named(tree.species), model="auto")
     for state in (replace(sim.state(), model="modes 99"), replace(sim.state(), digest="0" * 16)):
         with pytest.raises(StateError, match=f"'{state.model}'"):
             sim.set_state(state)

@@ -25,7 +25,7 @@ WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 @pytest.fixture(scope="module")
 def simulator():
     tree = builtin_tree("benjamina", 0)
-    return make_simulator(tree, species_named(tree.species), fidelity="modes")
+    return make_simulator(tree, species_named(tree.species), model="modes")
 
 
 @pytest.fixture(scope="module")

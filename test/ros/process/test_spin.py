@@ -134,7 +134,7 @@ def test_no_ros_is_one_line(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "rclpy", None)
     assert spin.run("fake_nodes", "Node") == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
-    with pytest.raises(MissingDependencyError, match="pip install"):
+    with pytest.raises(MissingDependencyError, match=r"in_venv\.py"):
         spin.require_rclpy()
 
 

@@ -111,7 +111,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     if available < _MIN_CYCLES:
         raise FormatError(
             f"{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing",
-            cure="record at least 3 cycles after the release, better 10",
+            cure="record 3 cycles after the release, better 10, or name the band of the sway",
         )
     # A window that ends where 5 % are left; how long that is takes a first look to know.
     cycles = min(8.0, available)

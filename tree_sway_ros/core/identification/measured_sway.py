@@ -100,7 +100,7 @@ def estimate_sway(
     even, dt, gap = _even(*_checked(time, motion))
     if kind == "ambient":
         return _estimate(_ambient(even, dt, gap, band), "ambient")
-    refusal = "the motion does not die away from one swing"
+    refusal = FormatError("the motion does not die away from one swing")
     try:
         decay = _release(even, dt, gap, band)
         if kind == "release" or _is_release(decay):
@@ -108,12 +108,13 @@ def estimate_sway(
     except FormatError as error:
         if kind == "release":
             raise
-        refusal = error.what
+        refusal = error
     try:
         return _estimate(_ambient(even, dt, gap, band), "ambient")
     except FormatError as error:
         raise FormatError(
-            f"neither a release ({refusal}) nor ambient ({error.what})", cure=error.cure
+            f"neither a release ({refusal.what}) nor ambient ({error.what})",
+            cure=refusal.cure or error.cure,
         ) from None
 
 
@@ -203,16 +204,18 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     spectrum = Spectrum(frequency, power, len(motion) * dt)
     peaks, level = spectrum.peaks(band, width=0.06)
     found: list[FreeDecay] = []
-    refusals: list[FormatError] = []
+    refusals: dict[int, FormatError] = {}
     strong = level > _STRONG * level.max()
-    for rough in peaks[strong]:
+    for number, rough in enumerate(peaks[strong]):
         try:
             _refuse_coarse(gap, float(rough))
             found.append(free_decay(motion, dt, float(rough)))
         except FormatError as refusal:
-            refusals.append(refusal)
-    if not found:
-        raise refusals[int(np.argmax(level[strong]))]
+            refusals[number] = refusal
+    # Where the strongest peak has too few cycles, a weaker one is another mode, or noise.
+    strongest = int(np.argmax(level[strong]))
+    if strongest in refusals:
+        raise refusals[strongest]
     # Beside the sway, a step of the rest has slow parts that die away too; they move little a
     # second.
     fastest = max(found, key=lambda decay: decay.speed)

@@ -73,10 +73,11 @@ class ModalBank:
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
-        self.flexibility = 1.0 / diagonal if m < n else np.zeros(n)
+        self.flexibility = reduction.flexibility if m < n else np.zeros(n)
         held = reduction.stiffness @ modes.shapes * self.flexibility[:, None] / self.stiffness
         self.held = np.ascontiguousarray(held.T)
         self.limit = LOAD_MAX * diagonal
+        self._momentum = (reduction.mass @ modes.shapes).T
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
         self._loads = load_records(branches)
@@ -165,6 +166,15 @@ class ModalBank:
         self._compiled_expand()
         rotations: Floats = self.state[3]
         return rotations
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        return self.rotations().copy(), self.shapes @ self.modal[1]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""

@@ -106,10 +106,13 @@ def step_standing(
 @fused
 def place_standing(
     tables: Any, standing: Any, instances: Any, which: Ints, shapes: Floats,
-    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, origin: Floats, out: Floats,
+    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, origin: Floats,
+    poses: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """
     Place trees of one kind.
+
+    Each is placed in memory that stays in the cache, then written out in one run.
 
     Parameters
     ----------
@@ -121,28 +124,26 @@ def place_standing(
         Of the kind, as of `wind_basis.expand`.
     branches, segments, heads, work, origin
         Of the kind, as of `placing.place`.
-    x
-        To work in, (N,).
+    x, poses
+        To work in, (N,) and (m, 7).
     out
         Pose block of the stand, (n, 7), rows of these trees written.
 
     """
-    size = 0
-    for b in range(len(branches)):
-        size = max(size, branches[b].end)
+    size = len(poses)
     for row in range(len(which)):
         t, first = which[row, 0], which[row, 1]
         here = standing[t]
         expand(tables[here.kind], instances[t], shapes, x)
-        poses = out[first : first + size]
         place(branches, segments, heads, work, x, origin, poses)
         c, s, scale = here.cosine, here.sine, here.scale
         turn_x, turn_y = scale * (c * c - s * s), scale * 2.0 * c * s
         for i in range(size):
             px, py, pz = poses[i, 0] - origin[0], poses[i, 1] - origin[1], poses[i, 2] - origin[2]
-            poses[i, 0] = here.at[0] + turn_x * px - turn_y * py
-            poses[i, 1] = here.at[1] + turn_x * py + turn_y * px
-            poses[i, 2] = here.at[2] + scale * pz
             qx, qy, qz, qw = poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6]
-            poses[i, 3], poses[i, 4] = c * qx - s * qy, c * qy + s * qx
-            poses[i, 5], poses[i, 6] = c * qz + s * qw, c * qw - s * qz
+            pose = out[first + i]
+            pose[0] = here.at[0] + turn_x * px - turn_y * py
+            pose[1] = here.at[1] + turn_x * py + turn_y * px
+            pose[2] = here.at[2] + scale * pz
+            pose[3], pose[4] = c * qx - s * qy, c * qy + s * qx
+            pose[5], pose[6] = c * qz + s * qw, c * qw - s * qz

@@ -131,6 +131,15 @@ class UncoupledBank:
         """Key rotations in [rad], (2 b,)."""
         return self.x
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (2 b,)."""
+        return self.x.copy(), self.v.copy()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (2 b,)."""
+        self.reset()
+        self.x[:], self.v[:] = x, v
+
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
         forces: Floats = self.work["force"]

@@ -105,10 +105,11 @@ class Pruning:
         return replace(
             whole,
             first=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+            partner=np.searchsorted(keep, whole.partner[keep]),
             twist=whole.twist[moving],
             mass=whole.mass[keep][:, keep],
             gravity=whole.gravity[keep][:, keep],
-            elastic=whole.elastic[keep],
+            elastic=whole.elastic[keep][:, keep],
         )
 
     def carriers(self) -> Ints:

@@ -25,8 +25,9 @@ from tree_sway_ros.core.motion.harmonics import COUNT
 from tree_sway_ros.core.motion.standing import STANDING, place_standing, step_standing
 from tree_sway_ros.core.motion.wind_basis import WindBasisBank, fill_pace, instance_layout
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
     LOAD_HELD,
@@ -196,6 +197,7 @@ class Stand:
         )
         self._wind, self._dt = np.zeros(3), math.nan
         self._rooms = [np.zeros(len(bank.shapes)) for bank in banks]
+        self._scratch = [np.zeros((model.tree.n_segments, 7)) for model in self._models]
 
     @property
     def model(self) -> str:
@@ -312,7 +314,7 @@ class Stand:
                 place_standing(
                     self._tables, self._standing, self._instances, rows, bank.all_shapes,
                     model.branches, model.segments, model.heads, bank.work, self._rooms[kind],
-                    self._models[kind].tree.start[0], poses,
+                    self._models[kind].tree.start[0], self._scratch[kind], poses,
                 )  # fmt: skip
         wanted = None if which is None else set(np.atleast_1d(which).tolist())
         for number, simulator in self._own.items():
@@ -425,19 +427,24 @@ def _model_of(name: str, kind: StandKind, settings: Settings) -> SwaySimulator:
         raise type(error)(error.what, where=where, cure=error.cure) from error
 
 
-def _standing_tree(told: StandTree, kind: Tree) -> Tree:
-    root = kind.start[0]
-    scaled = replace(
-        kind,
-        start=root + told.scale * (kind.start - root),
-        end=root + told.scale * (kind.end - root),
-        base_diameter=told.scale * kind.base_diameter,
-        tip_diameter=told.scale * kind.tip_diameter,
+def scaled_tree(tree: Tree, scale: float) -> Tree:
+    """Return a tree of another size, its root node where it was."""
+    root = tree.start[0]
+    return replace(
+        tree,
+        start=root + scale * (tree.start - root),
+        end=root + scale * (tree.end - root),
+        base_diameter=scale * tree.base_diameter,
+        tip_diameter=scale * tree.tip_diameter,
     )
+
+
+def _standing_tree(told: StandTree, kind: Tree) -> Tree:
+    scaled = scaled_tree(kind, told.scale)
     return PlacedTree(told.name, scaled, told.x, told.y, told.z, told.yaw).placed()
 
 
-def _own_simulator(told: StandTree, kind: StandKind, settings: Settings) -> Simulator:
+def _own_simulator(told: StandTree, kind: StandKind, settings: Settings) -> TreeSimulator:
     tree = _standing_tree(told, kind.tree)
     species = kind.species if kind.species is not None else species_named(kind.tree.species)
-    return make_simulator(tree, species, settings, fidelity=told.fidelity)
+    return make_simulator(tree, species, settings, model=told.fidelity)

@@ -22,6 +22,7 @@ from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -43,7 +44,7 @@ LARGEST_TURN = 1.0
 """Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
 
 
-class SegmentsSimulator(KeepsState):
+class SegmentsSimulator(OneTree, KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 

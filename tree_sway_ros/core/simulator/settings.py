@@ -19,7 +19,7 @@ MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 """Models of the ladder of models, the least first."""
 
 FIDELITIES = ("auto", *MODELS, "segments")
-"""All that a scene can ask for: ``auto`` chooses a model, ``segments`` solves every segment."""
+"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
 STIFFNESS_RULES = ("beam", "volume_rule")
 """Ways to set the stiffness of a branch."""
@@ -33,8 +33,9 @@ class Settings:
     Parameters
     ----------
     model
-        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes`` or
-        ``coupled``.
+        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes``,
+        ``coupled`` or ``segments``; or ``auto``, which takes the least that will do, and takes some
+        seconds to judge them all.
     n_modes
         How many modes the models ``wind_basis`` and ``modes`` step; 12, or all if there are
         fewer, if None.
@@ -71,7 +72,7 @@ class Settings:
 
     """
 
-    model: str = "subtree"
+    model: str = "modes"
     n_modes: int | None = None
     mode_choice: str = "driven"
     degree: int = 5
@@ -91,7 +92,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
-        _one_of("model", self.model, MODELS)
+        _one_of("model", self.model, FIDELITIES)
         _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)

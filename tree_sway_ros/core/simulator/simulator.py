@@ -17,6 +17,7 @@ from tree_sway_ros.core.checks import array_to_fill, array_to_read, within
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
@@ -52,7 +53,7 @@ class Counts:
     restarted: int = 0
 
 
-class SwaySimulator(KeepsState):
+class SwaySimulator(OneTree, KeepsState):
     """
     A tree that sways.
 
@@ -63,7 +64,7 @@ class SwaySimulator(KeepsState):
     species
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
-        How it is modelled.
+        How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
     threads
@@ -280,6 +281,14 @@ class SwaySimulator(KeepsState):
         centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
+        return self.bank.oscillators.motion()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), instead of from rest."""
+        self.bank.oscillators.take_over(x, v)
 
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""

@@ -9,6 +9,8 @@ from typing import Any
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.stands.stand_table import is_stand_table, read_stand_table
+from tree_sway_ros.files.stands.stand_yaml import is_stand_yaml, read_stand_yaml
 from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
@@ -72,7 +74,7 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
     ----------
     name_or_path
         As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds
-        several.
+        several, or a stand: a table with x, y, species and height, or a YAML file that names one.
     seed, **options
         As of `open_tree`; a forest has none.
 
@@ -85,14 +87,19 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
 
     """
     path = path_of(name_or_path)
-    if str(name_or_path) not in BUILTIN_TREES and is_forest(path):
+    is_scene = is_forest(path) or is_stand_yaml(path) or is_stand_table(path)
+    if str(name_or_path) not in BUILTIN_TREES and is_scene:
         if options:
             raise ParameterError(
                 f"option '{next(iter(options))}' for a forest",
                 where=str(path),
                 cure="convert its trees first, and name the new files in the forest",
             )
-        return read_forest(path, open_tree)
+        if is_forest(path):
+            return read_forest(path, open_tree)
+        if is_stand_yaml(path):
+            return read_stand_yaml(path, open_tree)
+        return read_stand_table(path, seed=seed)
     if str(name_or_path) in BUILTIN_TREES or not path.exists():
         return open_tree(name_or_path, seed, **options)
     files = [each.checked() for each in read_trees(path, **options)]

@@ -24,6 +24,7 @@ NODE_CLASSES = {
     "wind": ("tree_sway_ros.nodes.wind", "WindNode"),
     "solver": ("tree_sway_ros.nodes.solver", "SolverNode"),
     "player": ("tree_sway_ros.nodes.player", "PlayerNode"),
+    "sensor": ("tree_sway_ros.nodes.sensor", "SensorNode"),
     "viewer": ("tree_sway_ros.nodes.viewer", "ViewerNode"),
 }
 

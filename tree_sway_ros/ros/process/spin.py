@@ -65,7 +65,7 @@ def require_rclpy() -> Any:
     except ImportError as error:
         raise MissingDependencyError(
             f"ROS 2 (rclpy) cannot be imported: {error}",
-            cure="source /opt/ros/jazzy/setup.bash, or pip install 'tree_sway_ros[ros]'",
+            cure="source /opt/ros/jazzy/setup.bash, or run it with python3 .ci/in_venv.py",
         ) from None
 
 

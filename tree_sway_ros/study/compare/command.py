@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--model",
         choices=("auto", *MODELS[1:]),
         default="modes",
-        help="of ours; auto: the cheapest for 5 %% of the motion (%(default)s)",
+        help="of ours; auto: the cheapest for 10 %% of the motion (%(default)s)",
     )
 
 

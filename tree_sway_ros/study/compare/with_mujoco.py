@@ -28,7 +28,7 @@ from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 from tree_sway_ros.tools.progress import bar, waiting
 
 FRAME = 1.0 / 60.0
-AUTO = 0.05
+AUTO = 0.1
 """
 Error over motion that a model may say it has, where the cheapest is asked for; both root mean
 square.

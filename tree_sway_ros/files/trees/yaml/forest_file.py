@@ -91,7 +91,6 @@ class ForestFile:
         self,
         settings: Settings | None = None,
         *,
-        fidelity: str = "auto",
         tolerance: float = 0.005,
         **changes: Any,
     ) -> Forest:
@@ -100,7 +99,7 @@ class ForestFile:
 
         Parameters
         ----------
-        settings, fidelity, tolerance, **changes
+        settings, tolerance, **changes
             As for `make_simulator`, for every tree.
 
         Raises
@@ -112,7 +111,6 @@ class ForestFile:
         return Forest(
             self.trees,
             settings,
-            fidelity=fidelity,
             tolerance=tolerance,
             anemometer=self.anemometer,
             convection_ratio=self.convection_ratio,

@@ -1,0 +1,84 @@
+"""A stand as a file gave it: its kinds, and where each tree stands; used like a `ForestFile`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree, scaled_tree
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+
+
+@dataclass(frozen=True, eq=False)
+class StandFile(ForestFile):
+    """
+    A stand.
+
+    Parameters
+    ----------
+    kinds
+        What trees are, by name.
+    standing
+        Each tree with its name, its kind and its place.
+
+    """
+
+    kinds: dict[str, StandKind] = field(default_factory=dict)
+    standing: tuple[StandTree, ...] = ()
+
+    def simulator(  # type: ignore[override]
+        self,
+        settings: Settings | None = None,
+        *,
+        fidelity: str = "wind_basis",
+        tolerance: float = 0.005,
+        progress: Callable[[int], object] = lambda done: None,
+        **changes: Any,
+    ) -> Stand:
+        """
+        Make a simulator of all trees, on the model `wind_basis` but for those that say otherwise.
+
+        Parameters
+        ----------
+        settings, progress, **changes
+            As for `Stand`.
+        fidelity, tolerance
+            Not used: they are there for `ForestFile`.
+
+        Raises
+        ------
+        TreeSwayError
+            As `Stand`.
+
+        """
+        return Stand(
+            self.standing,
+            self.kinds,
+            settings,
+            anemometer=self.anemometer,
+            convection_ratio=self.convection_ratio,
+            progress=progress,
+            **changes,
+        )
+
+
+def stand_file(
+    name: str, standing: tuple[StandTree, ...], kinds: dict[str, StandKind], **told: Any
+) -> StandFile:
+    """Lay a stand out as a file of trees; other arguments are those of `ForestFile`."""
+    trees = tuple(
+        PlacedTree(
+            each.name,
+            scaled_tree(kinds[each.kind].tree, each.scale),
+            each.x,
+            each.y,
+            each.z,
+            each.yaw,
+            species=kinds[each.kind].species,
+        )
+        for each in standing
+    )
+    return StandFile(name, trees, kinds=kinds, standing=standing, **told)

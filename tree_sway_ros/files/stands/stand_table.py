@@ -1,0 +1,167 @@
+"""
+A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories have.
+
+Trees of one species are scaled from few that are grown: heights of a species within a factor of
+three share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a tree
+without a name is called after its row, one without a yaw is turned at random.
+
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.growth.grow import grow
+from tree_sway_ros.core.scene.stand import LARGEST, SMALLEST, StandKind, StandTree
+from tree_sway_ros.core.simulator.settings import FIDELITIES
+from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.errors import FormatError, ParameterError, TreeSwayError
+from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
+from tree_sway_ros.files.table_file import TextTable, parse_table
+from tree_sway_ros.files.text_file import read_head, read_lines
+
+COLUMNS = ("x", "y", "species", "height")
+"""Columns that a stand has."""
+
+_CLASS = 3.0
+
+
+def is_stand_table(path: Path) -> bool:
+    """Whether a file is a table with the columns of a stand."""
+    if not path.is_file():
+        return False
+    for line in read_head(path).decode("utf-8", errors="replace").splitlines():
+        if line.strip() and not line.startswith("#"):
+            cells = {cell.strip(' "').lower() for cell in line.replace(";", ",").split(",")}
+            return set(COLUMNS) <= cells
+    return False
+
+
+def read_stand_table(
+    path: Path, kinds: Mapping[str, StandKind] | None = None, *, seed: int = 0, **told: Any
+) -> StandFile:
+    """
+    Read a stand from a table.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kinds
+        Trees that stand for a species; others are grown.
+    seed
+        Of the trees that are grown, and of how trees are turned.
+    **told
+        Further arguments of `ForestFile`.
+
+    Raises
+    ------
+    FormatError
+        No tree, a missing column, a cell that is no finite number, a height that no tree has, two
+        trees of one name; with the line.
+    SpeciesError
+        A species that no table knows; with the line.
+
+    """
+    table = parse_table(read_lines(path), str(path))
+    x, y, height = table.strict(["x", "y", "height"]).T
+    species = _texts(table, "species")
+    names = _texts(table, "name") or [f"tree{row + 1}" for row in range(len(x))]
+    _refuse_same(names, table)
+    given = dict(kinds or {})
+    classes = _height_classes(species, height)
+    standing, made = [], dict[str, StandKind]()
+    rng = np.random.default_rng(seed)
+    z = _numbers(table, "z", np.zeros(len(x)))
+    yaw = _numbers(table, "yaw", rng.uniform(0.0, 2.0 * np.pi, len(x)))
+    fidelity = _texts(table, "fidelity") or ["wind_basis"] * len(x)
+    for row, kind in enumerate(species):
+        where = table.where(row)
+        if not height[row] > 0.0:
+            raise FormatError(f"a height of {height[row]:g} m", where=where, cure="above 0")
+        if fidelity[row] not in FIDELITIES:
+            raise FormatError(
+                f"unknown fidelity '{fidelity[row]}'",
+                where=where,
+                cure=f"use one of: {', '.join(FIDELITIES)}",
+            )
+        try:
+            if kind in given:
+                called, of_kind = kind, given[kind]
+            else:
+                size = classes[row]
+                called = f"{kind} {size:.3g} m"
+                of_kind = made.get(called) or _grown(kind, float(size), seed)
+            made[called] = of_kind
+            scale = height[row] / float(np.ptp(of_kind.tree.end[:, 2]))
+            if not SMALLEST <= scale <= LARGEST:
+                raise ParameterError(
+                    f"{height[row]:g} m is {scale:.3g} times the height of '{called}'",
+                    cure=f"give {SMALLEST:g} to {LARGEST:g} times",
+                )
+            at = float(x[row]), float(y[row]), float(z[row])
+            standing.append(
+                StandTree(names[row], called, *at, scale, float(yaw[row]), fidelity[row])
+            )
+        except TreeSwayError as error:
+            raise type(error)(error.what, where=where, cure=error.cure) from None
+    told = {"name": path.stem, "source": str(path)} | told
+    return stand_file(standing=tuple(standing), kinds=made, **told)
+
+
+def _height_classes(species: list[str], heights: Floats) -> Floats:
+    """Height that each tree is scaled from: the mean of its species, or of those of its class."""
+    grown = np.array(heights)
+    for kind in set(species):
+        own = np.flatnonzero((np.array(species) == kind) & (heights > 0.0))
+        if len(own):
+            middle = float(np.median(heights[own]))
+            steps = np.round(np.log(heights[own] / middle) / math.log(_CLASS))
+            for step in np.unique(steps):
+                grown[own[steps == step]] = np.exp(np.log(heights[own[steps == step]]).mean())
+    return grown
+
+
+def _grown(species: str, height: float, seed: int) -> StandKind:
+    wood = species_named(species)
+    return StandKind(grow(species, height, rng=np.random.default_rng(seed)), wood)
+
+
+def _texts(table: TextTable, column: str) -> list[str]:
+    """Texts of a column; an empty list if there is none of that name, an error for empty cells."""
+    if column not in (each.lower() for each in table.columns):
+        return []
+    texts = table.cells(table.index_of(column), range(len(table.texts)))
+    for row, text in enumerate(texts):
+        if not text:
+            raise FormatError(f"no {column}", where=table.where(row), cure="fill the cell")
+    return texts
+
+
+def _numbers(table: TextTable, column: str, otherwise: Floats) -> Floats:
+    if column not in (each.lower() for each in table.columns):
+        return otherwise
+    numbers: Floats = table.strict([column])[:, 0]
+    return numbers
+
+
+def _refuse_same(names: list[str], table: TextTable) -> None:
+    seen: dict[str, int] = {}
+    for row, name in enumerate(names):
+        if name in seen:
+            raise FormatError(
+                f"a second tree called '{name}', the first is in line {table.numbers[seen[name]]}",
+                where=table.where(row),
+                cure="name each",
+            )
+        if "/" in name:
+            raise FormatError(
+                f"a slash in the name '{name}'", where=table.where(row), cure="leave it out"
+            )
+        seen[name] = row

@@ -1,0 +1,77 @@
+"""
+A stand from YAML: a table of its trees, and what is not in the table.
+
+Keys, kinds and ranges are those of ``stand_schema.json``::
+
+    name: north slope
+    stand: trees.csv
+    kinds:
+      - {species: oak, tree: scans/oak.mat}
+    convection_ratio: 1.4
+
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from tree_sway_ros.core.scene.stand import StandKind
+from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.files.stands.stand_file import StandFile
+from tree_sway_ros.files.stands.stand_table import read_stand_table
+from tree_sway_ros.files.text_file import path_of, read_head, read_text
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.yaml_document import packaged_schema, read_yaml
+
+_STAND = re.compile(r"""^\{?\s*["']?stand["']?\s*:""", re.MULTILINE)
+
+
+def is_stand_yaml(path: Path) -> bool:
+    """Whether a file looks like a stand: YAML with ``stand`` at its outermost."""
+    if path.suffix.lower() not in (".yaml", ".yml", ".json") or not path.is_file():
+        return False
+    return _STAND.search(read_head(path).decode("utf-8", errors="replace")) is not None
+
+
+def read_stand_yaml(path: Path, open_tree: Callable[[str | Path], TreeFile]) -> StandFile:
+    """
+    Read a stand from a YAML file and the table that it names.
+
+    Parameters
+    ----------
+    path
+        The file.
+    open_tree
+        Opens a tree by its name or path.
+
+    Raises
+    ------
+    FormatError
+        Not YAML, not what the schema says, or a table that is none.
+    TreeSwayError
+        A kind that cannot be opened; with the line.
+
+    """
+    document = read_yaml(read_text(path), str(path), packaged_schema("stand_schema.json"))
+    values = document.values
+    kinds = {}
+    for number, entry in enumerate(values.get("kinds", ())):
+        beside = path.parent / path_of(entry["tree"])
+        try:
+            opened = open_tree(beside if beside.is_file() else entry["tree"])
+        except TreeSwayError as error:
+            where = document.where("kinds", number)
+            raise type(error)(error.what, where=where, cure=error.cure) from error
+        kinds[entry["species"]] = StandKind(opened.tree, opened.species)
+    anemometer = values.get("anemometer")
+    return read_stand_table(
+        path.parent / path_of(values["stand"]),
+        kinds,
+        seed=values.get("seed", 0),
+        name=values.get("name", path.stem),
+        source=str(path),
+        anemometer=None if anemometer is None else tuple(anemometer),
+        convection_ratio=values.get("convection_ratio", 1.0),
+    )

@@ -1,0 +1,6 @@
+"""
+Checks of the models against truth, on trees that flatter nobody.
+
+Trees are random and crooked, winds measured and simulated, truth solves every segment.
+
+"""
