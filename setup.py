@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Launch a tree that sways: a source of wind, the wind node, the solver, and RViz if asked for.
 

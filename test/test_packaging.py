@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a package carries: one version, its resources, and executables where ``ros2 run`` looks."""
 
 from __future__ import annotations

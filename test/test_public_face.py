@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What ``import tree_sway_ros`` offers: some twenty names, none of which costs anything unasked."""
 
 from __future__ import annotations

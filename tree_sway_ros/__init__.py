@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Trees that sway as the wind blows: a reduced-order model of a tree and the ROS 2 nodes around it.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The page in a real browser: what is drawn, what hands do, what it says when the line is cut."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The binary form: the vectors read in Python and in JavaScript, and what is refused."""
 
 from __future__ import annotations

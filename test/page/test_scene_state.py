@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From a running tree to frames and back: rebuilt poses against the solver's own."""
 
 from __future__ import annotations

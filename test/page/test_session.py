@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A live tree without ROS: it goes in real time, and takes changes while it runs."""
 
 from __future__ import annotations

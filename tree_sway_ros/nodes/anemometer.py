@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The anemometer node: a simulated wind, as any driver would publish it."""
 
 from __future__ import annotations

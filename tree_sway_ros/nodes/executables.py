@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The executables that ``ros2 run tree_sway_ros`` starts; they can be imported without ROS."""
 
 from __future__ import annotations

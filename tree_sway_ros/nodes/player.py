@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The player node: a recorded wind, as it was, faster, or around and around."""
 
 from __future__ import annotations

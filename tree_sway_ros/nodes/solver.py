@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The solver node: wind in, poses of every segment out, at a fixed rate."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The state of the solver's trees on `tree_state`, from when somebody first listens."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The wind node: whatever an anemometer sends, as the wind that trees feel."""
 
 from __future__ import annotations

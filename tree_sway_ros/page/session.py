@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A live tree without ROS: a thread that steps it in real time and hands each state to the server.
 

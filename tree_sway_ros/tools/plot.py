@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway plot``: the wind and the motion of the tip over time, or with ``--portrait`` the tree
 itself.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A moving picture of a tree, as a file."""
 
 from __future__ import annotations

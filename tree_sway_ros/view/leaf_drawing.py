@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Clusters of leaves as small polygons, lit from above."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree on matplotlib axes: bark thick as it is, far branches paler, leaves if there are any."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The ways a branch moves: orthogonal, right-handed, the static one first, and closer to the truth the
 more there are.

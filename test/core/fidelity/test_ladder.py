@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The error of every model, told before a step is taken, against the truth."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Natural modes as oscillators: exact decay, the static rest of the modes left out, loads held."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The linear answer of every model against the same model stepped in light wind."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Several trees in one wind: each moves as it would alone, turned, moved and in its own time."""
 
 from __future__ import annotations

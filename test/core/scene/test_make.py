@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Every model of a tree behind one face, and every segment solved as one of them."""
 
 from __future__ import annotations

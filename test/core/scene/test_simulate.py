@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree taken through a wind in one call: tips, moment and strain, and what is refused."""
 
 from __future__ import annotations

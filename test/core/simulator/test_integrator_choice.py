@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Other methods behind the same simulator, and their refusal where they would explode."""
 
 from __future__ import annotations

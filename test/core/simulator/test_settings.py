@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Settings: each one out of range is refused by name, with what to give instead."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tree in the wind: laws that hold for every model."""
 
 from __future__ import annotations

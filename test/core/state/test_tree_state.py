@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """States that are kept and set: a simulator goes on as if nothing had been."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The wind of the last while in a few numbers."""
 
 from __future__ import annotations

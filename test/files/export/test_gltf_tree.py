@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """glTF as others read it: by pygltflib, by trimesh, and by the specification alone."""
 
 import json

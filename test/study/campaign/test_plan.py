@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Study files: every combination once, and what is wrong with one is named."""
 
 from __future__ import annotations

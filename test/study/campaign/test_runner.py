@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Studies over processes: the same numbers in any number of them; what is killed loses nothing."""
 
 from __future__ import annotations

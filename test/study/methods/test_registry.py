@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Methods by name, and that what the solver runs is the method's own step."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Models against every segment solved on random crooked trees, with weight and twist."""
 
 from __future__ import annotations

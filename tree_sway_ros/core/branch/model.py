@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Every branch as a bending body: its axes, its mass and load along it, the ways it bends and twists.
 

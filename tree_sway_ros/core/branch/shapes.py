@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The ways a branch bends and twists: its static shape, and for an enriched branch the shapes that
 follow from it.

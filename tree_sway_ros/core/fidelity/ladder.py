@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The ladder of models of one tree: the error of every model in any wind, known before a step.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What the wind does to a branch: one load centre per branch, so that cost does not depend on how
 finely it is cut.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The one place where records are filled: what stepping and placing know of a tree, laid out for them.
 

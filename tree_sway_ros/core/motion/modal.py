@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Models 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The load step on whole levels of a tree at a time, in plain numpy: `tree_passes` where nothing is
 compiled.

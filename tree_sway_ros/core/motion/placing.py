@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Key rotations to poses: the segments of each branch follow its key, the branches are joined from the
 root.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Kernels of a stand: many trees on few tables, solved in one call and placed kind by kind.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Models 1 and 2 of the ladder: every branch an oscillator of its own, on two axes.
 
@@ -5,7 +7,7 @@ Model 1, `branch`, is the paper's: a branch feels its own wind and its own inert
 `subtree`, gives it the inertia of all it carries and the moment of all the wind on it, and lets it
 move with its parent; it still swings at a pace of its own.
 
-The load is found once a step, at the state half a step on (exponential midpoint rule), and held
+The load is found once per step, at the state half a step on (exponential midpoint rule), and held
 over the step; what depends on the branch's own angle is corrected once within the step
 (`two_axis.step_branch`).
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Model `wind_basis`: a tree as a dozen oscillators, driven by a table of all even winds.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The table of the model `wind_basis`: what every even wind does to the modes of a tree.
 

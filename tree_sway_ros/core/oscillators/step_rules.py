@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The step rules that the solver can run, each as a function of a linear oscillator's state and load.
 

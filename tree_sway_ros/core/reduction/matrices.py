@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 

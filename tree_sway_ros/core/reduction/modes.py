@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
 

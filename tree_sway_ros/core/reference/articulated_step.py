@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 One step of the articulated tree: springs and dampers implicit, everything else explicit, second
 order.

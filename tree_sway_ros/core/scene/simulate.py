@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the simulator of one tree shares with that of a forest, so that both are used alike."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A calibrated tree some of whose branches move with their parents: the models between one model and
 the next.

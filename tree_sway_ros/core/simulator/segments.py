@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
 reduced tree.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves of a species: how large, how many, how heavy, how quick to flutter.
 

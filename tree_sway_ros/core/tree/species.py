@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a tree is made of: wood, damping, drag and leaves of each species, with the sources.
 
@@ -42,7 +44,7 @@ class Species:
     drag_exponent
         N of the drag law in [-]: how much the crown streamlines.
     bare_drag_coefficient
-        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, .82 to
+        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.
     shear_ratio
         Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood

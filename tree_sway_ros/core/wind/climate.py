@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The wind of the last while in a few numbers: what a choice of model needs to know of it.
 
@@ -55,7 +57,7 @@ class WindClimate:
         velocity
             Wind in [m/s], (n, 2) or (n, 3).
         rate
-            Samples a second in [Hz].
+            Samples per second in [Hz].
 
         """
         speed = np.linalg.norm(velocity, axis=1)
@@ -82,7 +84,7 @@ class WindClimate:
         mean_speed
             In [m/s].
         intensity
-            Standard deviation over mean of the along-wind speed in [-]; across it .8 of that (IEC
+            Standard deviation over mean of the along-wind speed in [-]; across it 0.8 of that (IEC
             61400-1).
         bearing
             Angle of the mean from x towards y in [rad].

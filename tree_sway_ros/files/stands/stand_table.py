@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories have.
 

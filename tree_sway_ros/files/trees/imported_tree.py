@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree as a file gave it: its shape, its wood, and what the importer had to do to it."""
 
 from __future__ import annotations
@@ -94,9 +96,7 @@ class TreeFile:
 
         """
         model = replace(settings or Settings(), **changes)
-        return make_simulator(
-            self.tree, self.species, model, tolerance=tolerance
-        )
+        return make_simulator(self.tree, self.species, model, tolerance=tolerance)
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Where an instrument is heard: ``tcp://host:port``, ``udp://:port``, ``serial:/dev/x:9600``."""
 
 from __future__ import annotations

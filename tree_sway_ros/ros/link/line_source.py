@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A thread that listens to an instrument and, whenever the link breaks, takes it up again."""
 
 from __future__ import annotations

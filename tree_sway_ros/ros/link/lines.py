@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Bytes as they come, cut into lines; what is no line of a sensor is dropped and counted."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A table of parameters on a node: declared with descriptors, checked by our own rules, changed while
 it runs.

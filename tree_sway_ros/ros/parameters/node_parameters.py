@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The parameters of each node, one table per node.
 
@@ -485,12 +487,8 @@ SENSOR: Table = (
     Parameter(
         "declination", 0.0, "Magnetic declination, east positive.", "rad", -3.2, 3.2, live=True
     ),
-    Parameter(
-        "need_checksum", False, "Sentences without a checksum are refused.", live=True
-    ),
-    Parameter(
-        "silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0
-    ),
+    Parameter("need_checksum", False, "Sentences without a checksum are refused.", live=True),
+    Parameter("silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0),
     Parameter(
         "output_type",
         WIND_TYPE_NAMES[0],

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Several nodes in one process, over real DDS: for the demo, for tests, for programs of one's own.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the four nodes have in common: parameters, topics from the table, reports, failures."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Does the stream keep up, and with which model? What the solver says on `/diagnostics`."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 From ticks to steps: each period of the grid is solved with the mean wind over that very period.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One case from plain data to plain numbers, in whatever process it is asked."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway compare``: our simulator against MuJoCo, on one tree in one wind, in one run."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The experiment: a whole plant in a wind from the right, its key segments solved in both forms.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Random crooked trees to judge models on: three habits, 40 to 120 branches, nothing symmetrical.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Winds to judge models in: a record, turbulence, and those that are hard on an estimate.
 

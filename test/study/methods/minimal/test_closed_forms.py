@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What each method on the angles keeps, kills or gets exactly right, by its own theory."""
 
 from __future__ import annotations

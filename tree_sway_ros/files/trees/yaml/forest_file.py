@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Trees that stand together, as a file gave them; used like a `TreeFile`."""
 
 from __future__ import annotations
