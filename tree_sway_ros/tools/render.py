@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         record = read_wind(arguments.wind)
         wind = RecordedWind(record.time, record.velocity)
-    simulator = scene.simulator(in_leaf=told_leaves(arguments), fidelity=arguments.fidelity)
+    simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.fidelity)
     began = time.monotonic()
     frames, winds = _swayed(simulator, wind, arguments)
     animate_poses(

@@ -27,7 +27,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.trees.source import open_tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
 
 OAK = species_named("oak")
 SPEEDS = np.geomspace(STREAMLINING_FROM, STREAMLINING_TO, 7)
@@ -100,24 +100,22 @@ def test_needles_stay(key):
     assert wood.leaves.is_evergreen == (wood.habit != "broadleaf")
 
 
+SPRUCE = species_named("spruce")
 DOORS = {
-    "SwaySimulator": lambda **how: SwaySimulator(builtin_tree("goldcrest"), model="modes", **how),
-    "make_simulator": lambda **how: make_simulator(
-        builtin_tree("goldcrest"), species_named("goldcrest"), model="modes", **how
-    ),
-    "open_tree": lambda **how: open_tree("goldcrest").simulator(model="modes", **how),
-    "auto": lambda **how: open_tree("goldcrest").simulator(model="auto", **how),
-    "segments": lambda **how: open_tree("goldcrest").simulator(model="segments", **how),
-    "Forest": lambda **how: Forest(
-        [PlacedTree("tree", builtin_tree("goldcrest"))], model="modes", **how
-    ).simulators[0],
+    "SwaySimulator": lambda tree, **how: SwaySimulator(tree, **how),
+    "make_simulator": lambda tree, **how: make_simulator(tree, **how),
+    "auto": lambda tree, **how: make_simulator(tree, model="auto", **how),
+    "segments": lambda tree, **how: make_simulator(tree, model="segments", **how),
+    "file": lambda tree, **how: TreeFile(tree, SPRUCE, "a file").simulator(**how),
+    "Forest": lambda tree, **how: Forest([PlacedTree("tree", tree)], **how).simulators[0],
 }
 
 
 @pytest.mark.parametrize("door", DOORS)
-def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door):
-    assert DOORS[door]().settings.in_leaf is True
-    assert DOORS[door](in_leaf=False).settings.in_leaf is False
+def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door, fork):
+    tree = replace(fork(), species="spruce")
+    assert DOORS[door](tree).settings.in_leaf is True
+    assert DOORS[door](tree, in_leaf=False).settings.in_leaf is False
 
 
 def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():

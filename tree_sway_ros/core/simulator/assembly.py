@@ -202,6 +202,24 @@ class Bank:
             self._plain_placing.place(rotations, origin, out)
             return
         self._compiled_placing(rotations, origin, out)
+        self._place_frozen(rotations, out)
+
+    def on_threads(self, threads: int) -> Callable[[Floats, Floats, Floats], None]:
+        """Return what `place` does on several threads; on one where nothing is compiled."""
+        if self.plain:
+            return self.place
+        from tree_sway_ros.core.motion.threaded_placing import ThreadedPlacing
+
+        work = self.oscillators.work
+        threaded = ThreadedPlacing(self.branches, self.segments, self.heads, work, threads)
+
+        def place_all(rotations: Floats, origin: Floats, out: Floats) -> None:
+            threaded.place(rotations, origin, out)
+            self._place_frozen(rotations, out)
+
+        return place_all
+
+    def _place_frozen(self, rotations: Floats, out: Floats) -> None:
         if self.frozen is not None:
             self.frozen.place(self.branches, self.oscillators.work, rotations, out)
 
