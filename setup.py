@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
 
 import re
@@ -9,7 +11,7 @@ from setuptools import find_packages, setup
 PACKAGE = "tree_sway_ros"
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
-NODES = ("anemometer", "wind", "solver", "player", "viewer")
+NODES = ("anemometer", "wind", "solver", "player", "sensor", "viewer")
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
@@ -60,6 +62,7 @@ extras = {
         f"ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}",
         f"ros-jazzy-common-interfaces==5.3.6{LINUX}",
     ],
+    "serial": ["pyserial>=3.5"],
     "bag": ["rosbags>=0.10"],
     "plot": ["matplotlib>=3.6"],
     "h5": ["h5py>=3.7"],

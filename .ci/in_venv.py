@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Run a command in this checkout's own virtual environment, made first if it is not there.
 
@@ -34,7 +36,9 @@ OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 ALWAYS = ("fast", "progress")
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
-    **dict.fromkeys(("anemometer", "wind", "solver", "player", "viewer", "ros2"), ("ros",)),
+    **dict.fromkeys(
+        ("anemometer", "wind", "solver", "player", "sensor", "viewer", "ros2"), ("ros",)
+    ),
     **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
     "tree-sway battery": ("battery",),

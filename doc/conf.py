@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Sphinx: the pages of this folder, and the API from the docstrings."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Launch a tree that sways: a source of wind, the wind node, the solver, and RViz if asked for.
 
@@ -17,12 +19,19 @@ from launch_ros.actions import Node
 
 PACKAGE = "tree_sway_ros"
 CHAIN = "wind wind/filtered"
+SOURCES = {
+    "simulated": ["anemometer"],
+    "player": ["player"],
+    "sensor": ["sensor"],
+    "live": [],
+}
 ARGUMENTS = (
     ("tree", "", "benjamina, goldcrest, broadleaf, or a file of trees; as configured if empty"),
-    ("source", "simulated", "where the wind comes from", ["simulated", "player", "live"]),
+    ("source", "simulated", "where the wind comes from", [*SOURCES]),
     ("file", "", "wind record for source:=player"),
     ("topic", "", "topic of the wind in a bag; as configured if empty"),
     ("reader_options", "", "more for the reader of the file: 'rate=20 yaw=1.57'"),
+    ("address", "", "of the instrument for source:=sensor, such as tcp://host:port"),
     ("wind_topic", "wind", "topic of the wind for source:=live"),
     ("rate", "", "frames a second; as configured if empty"),
     ("x", "", "where the tree stands in the frame, to the east [m]; as configured if empty"),
@@ -33,6 +42,7 @@ ARGUMENTS = (
     ("namespace", "", "of all nodes and topics: one a tree"),
     ("params_file", "", "ROS parameter file whose values override those of config/"),
     ("use_sim_time", "", "follow /clock; with source:=player the player publishes it"),
+    ("lifecycle", "", "nodes wait for a lifecycle manager; as configured if empty"),
     ("page", "false", "serve a page for the browser: start the viewer"),
     ("rviz", "false", "start RViz"),
 )
@@ -53,7 +63,7 @@ def start_nodes(context):
     """Make the nodes that the arguments ask for."""
     given = {name: LaunchConfiguration(name).perform(context) for name, *_ in ARGUMENTS}
     config = os.path.join(get_package_share_directory(PACKAGE), "config")
-    source = {"simulated": ["anemometer"], "player": ["player"], "live": []}[given["source"]]
+    source = SOURCES[given["source"]]
     viewer = ["viewer"] if is_true("page", given["page"]) else []
     nodes = [make_node(name, given, config) for name in (*source, "wind", "solver", *viewer)]
     if is_true("rviz", given["rviz"]):
@@ -91,6 +101,10 @@ def overrides_of(name, given):
         overrides["use_sim_time"] = with_clock and name != "player"
         if name == "player":
             overrides["publish_clock"] = with_clock
+    if given["lifecycle"] and name != "viewer":
+        overrides["lifecycle"] = is_true("lifecycle", given["lifecycle"])
+    if name == "sensor" and given["address"]:
+        overrides["address"] = given["address"]
     if name == "player":
         names = ("file", "topic", "reader_options")
         overrides.update({each: given[each] for each in names if given[each]})

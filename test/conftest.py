@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 For all tests: repeatable Hypothesis, one thread per test, small trees, and derivatives against
 differences.

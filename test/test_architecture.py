@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The contract of the code's layout: layers, sizes, names, docstrings; read from the source, not run.
 
@@ -228,7 +230,7 @@ def test_names_say_what_is_inside() -> None:
 
 def test_the_core_is_tested_as_much_as_it_is_written() -> None:
     """
-    At least .7 lines of tests a line of the core.
+    At least 0.7 lines of tests a line of the core.
 
     Counted are lines of code, on both sides alike: no blank lines, no comments, no docstrings. The
     core is tree_sway_ros/core; its tests are test/core and test/golden (other solvers).

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What keeps the repository in order: its settings are files that their programs can read."""
 
 from __future__ import annotations
@@ -53,3 +55,17 @@ def test_scripts_can_be_run_and_are_sound_shell() -> None:
     script = ROOT / ".ci" / "run"
     assert os.access(script, os.X_OK)
     assert subprocess.run(["bash", "-n", str(script)], check=False).returncode == 0
+
+
+def test_every_source_file_says_whose_it_is_and_under_which_licence() -> None:
+    sources = [ROOT / "setup.py", ROOT / ".ci" / "in_venv.py", ROOT / ".ci" / "run"]
+    for folder in ("tree_sway_ros", "test", "launch"):
+        for suffix in ("py", "js", "css", "html"):
+            sources += [p for p in (ROOT / folder).rglob(f"*.{suffix}") if "data" not in p.parts]
+    silent = [
+        str(path.relative_to(ROOT))
+        for path in sources
+        if "SPDX-License-Identifier: Apache-2.0" not in path.read_text(encoding="utf-8")[:400]
+    ]
+    assert len(sources) > 500
+    assert not silent, "put the two lines of setup.py at the top of: " + ", ".join(silent)

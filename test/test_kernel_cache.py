@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Compiled kernels on disk: keyed by all they are made from, and never a reason to fail."""
 
 from __future__ import annotations

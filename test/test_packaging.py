@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a package carries: one version, its resources, and executables where ``ros2 run`` looks."""
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ import pytest
 import tree_sway_ros
 
 ROOT = Path(__file__).resolve().parent.parent
-NODES = ("anemometer", "player", "solver", "viewer", "wind")
+NODES = ("anemometer", "player", "sensor", "solver", "viewer", "wind")
 IMPORTED = {"yaml": "python3-yaml"}
 
 

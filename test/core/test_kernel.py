@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How hot functions are compiled: numpy's division, one precision in and out, the plain function kept.
 

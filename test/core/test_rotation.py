@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Rotations of the hot path: the axioms of a group, and scipy as the judge."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The fixtures of the tests of nodes, and one chain that all rows of a module share."""
 
 import importlib.util

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a live stream must survive of its sensor: one test per fault, all on one running chain."""
 
 import pytest

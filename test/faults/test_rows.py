@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a live stream must survive, row by row, and the tests that show it."""
 
 import ast

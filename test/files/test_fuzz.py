@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Damaged files: a clear error or a sound result, never a crash, a hang or a memory gone."""
 
 import resource

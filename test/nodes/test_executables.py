@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import os
 import signal
 import subprocess
@@ -110,7 +112,7 @@ def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
     process.wait()
     frames = started(observer, run("solver", *arguments, remap=remap), "mortal")
     begin = stamp_to_ns(frames[0].header.stamp)
-    # What remembers longest is the estimate of the sensor's period: .9 a sample, 20 a second.
+    # What remembers longest is the estimate of the sensor's period: 0.9 per sample, 20 per second.
     settled = begin + 8 * 10**9
 
     def late(messages):

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """No more model than the scene needs: the solver listens where it is seen from."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import importlib.util
 from pathlib import Path
 from xml.etree import ElementTree
@@ -9,8 +11,8 @@ from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
-    *("tree", "file", "topic", "reader_options", "rate"),
-    *("x", "y", "z", "yaw", "frame_id", "use_sim_time"),
+    *("tree", "address", "file", "topic", "reader_options", "rate"),
+    *("x", "y", "z", "yaw", "frame_id", "use_sim_time", "lifecycle"),
 )
 GIVEN = dict.fromkeys(ARGUMENTS, "")
 
@@ -41,6 +43,7 @@ def start(launch_file, monkeypatch, **given):
         ("simulated", {"anemometer", "wind", "solver"}),
         ("player", {"player", "wind", "solver"}),
         ("live", {"wind", "solver"}),
+        ("sensor", {"sensor", "wind", "solver"}),
     ],
 )
 def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executables):
@@ -78,7 +81,7 @@ def test_arguments_that_are_not_given_override_nothing(launch_file):
 
 
 def test_what_is_shipped_in_config_overrides_no_default():
-    for name in ("anemometer", "player", "wind", "solver"):
+    for name in ("anemometer", "player", "sensor", "wind", "solver"):
         content = yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text())
         assert content == {f"/**/{name}": {"ros__parameters": {}}}
 

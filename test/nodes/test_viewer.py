@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The viewer over real DDS: the page gets from topics what rebuilds the solver's own poses."""
 
 import asyncio

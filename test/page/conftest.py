@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A headless Chromium for tests, driven over its DevTools protocol."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The page in a real browser: what is drawn, what hands do, what it says when the line is cut."""
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ class Live:
 
     def __init__(self) -> None:
         source = open_tree("goldcrest")
-        simulator = source.simulator(Settings(), fidelity="modes")
+        simulator = source.simulator(Settings(), model="modes")
         leaves = source.leaves(None, 400)
         self.wind = SimulatedWind(9.0)
         self.session = Session(lambda _: (simulator, leaves), Choices("goldcrest"), self.wind)

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From a running tree to frames and back: rebuilt poses against the solver's own."""
 
 from __future__ import annotations
@@ -58,7 +60,7 @@ def swayed(simulator: Any, state: SceneState, speed: float) -> tuple[list[bytes]
 def tall() -> tuple[SceneState, list[bytes], list[Any]]:
     """A broadleaf of 8 m in a wind of 7 m/s."""
     tree = grow("broadleaf", 8.0, rng=np.random.default_rng(0))
-    simulator = make_simulator(tree, species_named(tree.species), fidelity="modes")
+    simulator = make_simulator(tree, species_named(tree.species), model="modes")
     state = SceneState(simulator)
     return state, *swayed(simulator, state, 7.0)
 
@@ -101,14 +103,14 @@ def test_javascript_rebuilds_it_as_well(tall: Any, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", BUILTIN_TREES)
 def test_a_frame_of_any_tree_of_the_package_is_small(name: str) -> None:
-    state = SceneState(open_tree(name).simulator(fidelity="modes"))
+    state = SceneState(open_tree(name).simulator(model="modes"))
     assert len(state.frame(0)) <= 96
 
 
 @pytest.mark.parametrize("fidelity", ["branch", "auto", "segments"])
 def test_every_model_can_be_told(fidelity: str) -> None:
     source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
-    simulator = source.simulator(fidelity=fidelity)
+    simulator = source.simulator(model=fidelity)
     state = SceneState(simulator)
     frames, exact = swayed(simulator, state, 4.0)
     placer = Placer(decode_description(state.description))
@@ -122,7 +124,7 @@ def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
         PlacedTree(f"t{i}", source.tree, x=2.0 * i, yaw=0.7 * i, species=source.species)
         for i in range(3)
     )
-    simulator = ForestFile("three", trees, "").simulator(fidelity="modes")
+    simulator = ForestFile("three", trees, "").simulator(model="modes")
     state = SceneState(simulator)
     assert state.bases[0].matrix is state.bases[1].matrix is state.bases[2].matrix
     frames, exact = swayed(simulator, state, 5.0)

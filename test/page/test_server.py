@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The page's server as clients meet it: frames by credit, controls, and those who mean no good."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A live tree without ROS: it goes in real time, and takes changes while it runs."""
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ def build(choices: Choices) -> tuple[Any, Any]:
     if choices.tree == "missing":
         raise FormatError("no tree 'missing'", cure="name another")
     settings = Settings(damping_ratio=choices.damping_ratio or None)
-    return open_tree(choices.tree).simulator(settings, fidelity=choices.fidelity), None
+    return open_tree(choices.tree).simulator(settings, model=choices.fidelity), None
 
 
 def until(holds: Callable[[], Any]) -> None:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The page's modules under the TypeScript compiler, where npm can bring it."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 // The vectors in vectors/, read in JavaScript: `node --test test/page/vectors.test.mjs`.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway calibrate``: from a measured sway to a tree that sways so."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The command line: what is found, what is refused, and how it says so."""
 
 from __future__ import annotations

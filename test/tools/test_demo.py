@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The demo as a user starts it: a process of its own, over real DDS, to its end."""
 
 from __future__ import annotations

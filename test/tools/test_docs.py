@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tables of the pages are those of the code."""
 
 from __future__ import annotations

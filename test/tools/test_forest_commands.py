@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Commands that take a forest as they take a tree, and options of readers."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What `tree-sway info` says, against what is known of the tree."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How the axis of a mode is told to people."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What is shown while a command works: nothing for short waits, a bar or lines for long ones."""
 
 from __future__ import annotations

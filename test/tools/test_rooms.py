@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The drawing of the rooms: from the imports, without a circle, in an order of storeys."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway show`` as a user starts it: a page with a moving tree, and what it refuses."""
 
 from __future__ import annotations

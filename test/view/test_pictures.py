@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Pictures: that they are written, and that what they show is there."""
 
 from dataclasses import replace
@@ -47,7 +49,7 @@ def test_bark_is_as_thick_as_it_is(tmp_path: Path) -> None:
     picture = pixels(picture_at_rest(pole(), tmp_path / "pole.png"))
     dark = picture.max(axis=2) < 180
     lower, upper = int(0.65 * len(picture)), int(0.25 * len(picture))
-    # .2 m below, .1 m above; an edge of a pixel or two on top of each.
+    # 0.2 m below, 0.1 m above; an edge of a pixel or two on top of each.
     assert 1.6 < dark[lower].sum() / dark[upper].sum() < 2.3
 
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Array types: float64, int64 and the complex numbers of responses."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Checks of numbers that come from outside: one error, with the range, instead of a crash."""
 
 from __future__ import annotations

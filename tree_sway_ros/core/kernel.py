@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker.
 

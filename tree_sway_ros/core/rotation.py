@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Rotations of the hot path, as scalars: quaternions w x y z and rotation vectors.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Time stamps of loggers: ISO 8601 dates with any number of digits after the second."""
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
     blocks = [_microseconds(stamps[i : i + _BLOCK]) for i in range(0, len(stamps), _BLOCK)]
     microseconds = np.concatenate([np.empty(0, dtype=np.int64), *blocks])
     is_good = microseconds != _NONE
-    # Differences in whole numbers first: a date in float64 seconds is good to .2 us only.
+    # Differences in whole numbers first: a date in float64 seconds is good to 0.2 us only.
     first = int(microseconds[is_good][0]) if is_good.any() else 0
     seconds = np.full(len(stamps), np.nan)
     seconds[is_good] = (microseconds[is_good] - first) / 1e6

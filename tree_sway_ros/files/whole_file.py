@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Write a file whole or not at all: what stood there before stays until the new one is complete."""
 
 from __future__ import annotations

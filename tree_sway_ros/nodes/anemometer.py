@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The anemometer node: a simulated wind, as any driver would publish it."""
 
 from __future__ import annotations
@@ -28,15 +30,25 @@ class AnemometerNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("anemometer", **options)
+
+    def configure(self) -> None:
+        """Make the wind."""
         self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
         self._model = self._make_model()
         self._faults = self._make_faults()
         self._ticks = self._faulty_since = 0
         self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
         self.report_with("simulated anemometer", self._report)
-        self._pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
+        self._pacer = self._make_pacer()
+
+    def activate(self) -> None:
+        """Blow."""
+        self._pacer = self._make_pacer()
         self.on_close(self._pacer.stop)
         self._pacer.start()
+
+    def _make_pacer(self) -> Pacer:
+        return Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse gusts and faults that overlap."""

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The executables that ``ros2 run tree_sway_ros`` starts; they can be imported without ROS."""
 
 from __future__ import annotations
@@ -20,6 +22,11 @@ def wind(args: Sequence[str] | None = None) -> int:
 def solver(args: Sequence[str] | None = None) -> int:
     """Run the solver node; returns the exit code."""
     return run("tree_sway_ros.nodes.solver", "SolverNode", args)
+
+
+def sensor(args: Sequence[str] | None = None) -> int:
+    """Run the sensor node; returns the exit code."""
+    return run("tree_sway_ros.nodes.sensor", "SensorNode", args)
 
 
 def viewer(args: Sequence[str] | None = None) -> int:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The player node: a recorded wind, as it was, faster, or around and around."""
 
 from __future__ import annotations
@@ -29,6 +31,9 @@ class PlayerNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("player", **options)
+
+    def configure(self) -> None:
+        """Read the record."""
         if not self.values["file"]:
             raise ParameterError("no file to play", cure="give -p file:=wind.csv")
         self._record = read_wind(self.values["file"], **self._reader_options())
@@ -36,7 +41,7 @@ class PlayerNode(TreeSwayNode):
             self.get_logger().info(note)
         self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
         self._wind = self.publisher(WIND, self._writer.message_class, alone=True)
-        has_clock, speed = self.values["publish_clock"], self.values["speed"]
+        has_clock = self.values["publish_clock"]
         self._clock_publisher: Any = self.publisher(CLOCK) if has_clock else None
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):
@@ -45,11 +50,11 @@ class PlayerNode(TreeSwayNode):
                 "it starts at 1 s"
             )
             epoch = None
-        playback = Playback(
+        self._playback = Playback(
             self._record.time,
             epoch=epoch,
             **self.values("start", "loop"),
-            clock_period=speed / self.values["clock_rate"] if has_clock else 0.0,
+            clock_period=self.values["speed"] / self.values["clock_rate"] if has_clock else 0.0,
         )
         wanted = required(self.values["wait_for"]) if self.values["wait_for_subscriber"] else {}
         self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
@@ -58,17 +63,24 @@ class PlayerNode(TreeSwayNode):
             self._answers = Answers()
             self.subscription(WIND_FILTERED, self._hear)
             wanted[WIND_FILTERED.name] += 1  # our own
-        self._thread = PlaybackThread(
-            playback,
-            speed,
+        self._thread = self._make_thread()
+        self.report_with(self._record.source, self._report)
+
+    def activate(self) -> None:
+        """Play from the start, once those who must listen do."""
+        self._thread = self._make_thread()
+        self.on_close(self._thread.stop)
+        self._thread.start()
+
+    def _make_thread(self) -> PlaybackThread:
+        return PlaybackThread(
+            self._playback,
+            self.values["speed"],
             publish=self._publish,
             may_start=self._may_start,
             on_end=self._end,
             on_error=self.fail,
         )
-        self.report_with(self._record.source, self._report)
-        self.on_close(self._thread.stop)
-        self._thread.start()
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a clock in steps so long that nodes would take them for a clock set forward."""

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The solver node: wind in, poses of every segment out, at a fixed rate."""
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
@@ -46,6 +49,9 @@ class SolverNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("solver", **options)
+
+    def configure(self) -> None:
+        """Open the tree, reduce it and make its kernels ready."""
         with Progress(self.get_logger().info) as progress:
             progress.stage(f"opening tree '{self.values['tree']}'")
             source = self._open()
@@ -58,11 +64,19 @@ class SolverNode(TreeSwayNode):
             self.get_logger().warning(doubt)
         for note in source.notes:
             self.get_logger().info(note)
-        self.pacer.start()
         self.get_logger().info(
             f"ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, "
             f"{self.values['rate']:g} Hz"
         )
+
+    def activate(self) -> None:
+        """Sway, from rest."""
+        self.pacer = self._make_pacer()
+        self.on_close(self.pacer.stop)
+        self.pacer.start()
+
+    def _make_pacer(self) -> Pacer:
+        return Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
 
     def _open(self) -> Any:
         source = open_scene(self.values["tree"])
@@ -74,6 +88,7 @@ class SolverNode(TreeSwayNode):
         settings = Settings(
             n_modes=self.values["modes"] or None,
             **self.values("stiffness", "integrator", "gravity"),
+            model=self.values["fidelity"],
             in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
             profile=WindProfile(
@@ -84,10 +99,10 @@ class SolverNode(TreeSwayNode):
                 ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
             ),
         )
-        self.simulator: Any = source.simulator(settings, **self.values("fidelity", "tolerance"))
+        self.simulator: Simulator = source.simulator(settings, **self.values("tolerance"))
         self._camera: Any = None
         self._refused_cameras = 0
-        self.pacer = Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
+        self.pacer = self._make_pacer()
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
         tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
         self._tell_demand()
@@ -102,7 +117,6 @@ class SolverNode(TreeSwayNode):
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
         self.report_with(source.tree.name, self._statuses)
-        self.on_close(self.pacer.stop)
 
     def _make_wind(self) -> WindAverage:
         return WindAverage(**self.values("interpolation", "timeout", "decay"))

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The state of the solver's trees on `tree_state`, from when somebody first listens."""
 
 from __future__ import annotations
@@ -7,6 +9,7 @@ import threading
 from typing import Any
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.page.scene_state import SceneState, wind_of
 from tree_sway_ros.ros.process.topics import TREE_STATE
 from tree_sway_ros.ros.timing.stepping import Divider
@@ -30,7 +33,7 @@ class StatePublisher:
 
     """
 
-    def __init__(self, node: Any, simulator: Any, leaves: LeafClusters | None) -> None:
+    def __init__(self, node: Any, simulator: Simulator, leaves: LeafClusters | None) -> None:
         self._node, self._simulator, self._leaves = node, simulator, leaves
         self._publisher = node.publisher(TREE_STATE, alone=True)
         rate = node.values["state_rate"]

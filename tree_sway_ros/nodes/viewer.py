@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The viewer node: the page of doc/streaming.md, fed from `tree_state` and `tree_description`."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The wind node: whatever an anemometer sends, as the wind that trees feel."""
 
 from __future__ import annotations
@@ -38,6 +40,9 @@ class WindNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("wind", **options)
+
+    def configure(self) -> None:
+        """Subscribe and publish; what comes while inactive is dropped."""
         self._report = WindReport()
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
@@ -55,6 +60,8 @@ class WindNode(TreeSwayNode):
         self._intake.convention = self._convention
 
     def _receive(self, message: Any) -> None:
+        if not self.is_active:
+            return
         sample = wind_from_message(message)
         frame_id = self.values["frame_id"]
         if sample.frame_id not in ("", frame_id):

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The browser page: what goes over a thin line, the server that sends it, and the page's own modules.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Who may connect: the token, the Origin of a page, the Host that a browser believes it talks to.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a receiver needs to rebuild every pose from a frame: the rest tree, how its branches bend, and
 the basis of the state.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Sockets before they are clients: how many may be open, and how long one may take to ask.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A receiver's side in Python: a frame and its description to poses, by the solver's own placing.
 

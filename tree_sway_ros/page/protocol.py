@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The binary form of a swaying tree: a description sent once, then frames that stand for themselves.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The page's server: files, a description once, the newest frame to whoever has asked for one more.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A live tree without ROS: a thread that steps it in real time and hands each state to the server.
 
@@ -16,6 +18,7 @@ from typing import Any
 
 from tree_sway_ros.core.scene.demand import tell_demand
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.page.server import PageServer
@@ -45,7 +48,7 @@ class Choices:
 
     tree: str
     count: str = "1"
-    fidelity: str = "modes"
+    fidelity: str = Settings().model
     damping_ratio: float = 0.0
 
 

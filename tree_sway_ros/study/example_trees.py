@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Trees to measure on: three of 40 branches, one of 121, and plain stems, made of numbers alone.
 
@@ -62,7 +64,7 @@ def forked_tree(
 
 def broom_tree(*, segments: int = 6) -> Tree:
     """
-    Make a tree of 1 + 12 + 36 + 72 branches: 6, 2.2, .9 and .4 m long, radii from 60 to 4 mm.
+    Make a tree of 1 + 12 + 36 + 72 branches: 6, 2.2, 0.9 and 0.4 m long, radii from 60 to 4 mm.
 
     Parameters
     ----------

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway calibrate``: fit a tree's modulus and damping to one measured sway."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 # PYTHON_ARGCOMPLETE_OK
 """
 The command line ``tree-sway``: one module per command, imported when it is asked for.
@@ -39,6 +41,10 @@ COMMANDS: dict[str, Command] = {
         "a tree sways in wind, all nodes in one process over real DDS",
         "demo goldcrest --speed 8 --seconds 10",
     ),
+    "soak": Command(
+        "run the chain through every fault of a sensor, and tell what it costs",
+        "soak --hours 0.002 --every 1",
+    ),
     "listen": Command(
         "count the poses that a solver in another process streams", "listen --seconds 10"
     ),
@@ -46,6 +52,10 @@ COMMANDS: dict[str, Command] = {
     "plot": Command(
         "pictures of a tree, and of the wind and the motion of its tip",
         "plot benjamina --seconds 20 -o sway.png",
+    ),
+    "render": Command(
+        "a tree in wind as a moving picture: GIF, MP4 or frames",
+        "render goldcrest --speed 9 --seconds 2 -o sway.gif",
     ),
     "grow": Command(
         "make a tree of a species and a height", "grow --species oak --height 12 -o oak.yaml"
@@ -78,6 +88,9 @@ _STUDIES = {
     **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
     "study": "campaign",
 }
+
+#: Commands that watch a stream.
+_STREAMS = ("listen", "soak")
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -182,6 +195,8 @@ def _shortened(name: str) -> str:
 def _module(command: str) -> Any:
     room = _STUDIES.get(command)
     where = f"study.{room}.command" if room else f"tools.{command}"
+    if command in _STREAMS:
+        where = f"tools.stream.{command}"
     return importlib.import_module(f"tree_sway_ros.{where}")
 
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway convert``: any tree this package reads, written in a format that others read."""
 
 from __future__ import annotations

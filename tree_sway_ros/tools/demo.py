@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway demo``: a tree sways in wind, all nodes in one process, over real DDS.
 
@@ -51,7 +53,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
     parser.add_argument(
+        "--model",
         "--fidelity",
+        dest="fidelity",
         choices=fidelity.choices,
         default=fidelity.default,
         help="model of the sway (%(default)s)",

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway docs``: the tables of topics, parameters and species, taken from the code and put into
 the pages.

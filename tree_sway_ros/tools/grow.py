@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway grow``: a plausible tree of a species and a size, written as a file."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway info``: what a tree is, and how it would sway."""
 
 from __future__ import annotations

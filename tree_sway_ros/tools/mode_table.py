@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that
 bends most.

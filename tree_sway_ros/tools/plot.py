@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway plot``: the wind and the motion of the tip over time, or with ``--portrait`` the tree
 itself.
@@ -13,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.scene.make import Simulator, simulators_of
-from tree_sway_ros.core.simulator.settings import MODELS
+from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -48,7 +51,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
     )
     parser.add_argument(
-        "--model", choices=MODELS, default="modes", help="model of the sway (%(default)s)"
+        "--model",
+        choices=FIDELITIES,
+        default=Settings().model,
+        help="model of the sway (%(default)s)",
     )
     picture = "picture (sway.png, or the next name that is free)"
     add_output_arguments(parser, picture, required=False)
@@ -83,7 +89,7 @@ def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace, outpu
 
 def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> Simulator:
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
-    model: dict[str, Any] = {"fidelity": arguments.model, "in_leaf": told_leaves(arguments)}
+    model: dict[str, Any] = {"model": arguments.model, "in_leaf": told_leaves(arguments)}
     try:
         return scene.simulator(**model)
     except TreeError as error:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a command shows while it works: a bar for what is counted, a line for what is not.
 

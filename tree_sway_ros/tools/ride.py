@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree taken through a wind without ROS, as fast as the machine can.
 
@@ -12,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.scene.make import Simulator
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.files.wind.record import WindRecord

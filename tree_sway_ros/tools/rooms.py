@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The drawing of the house: every room of the package and the arrows of its imports, from the source.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway show``: a tree in wind on a page of the browser, without ROS.
 
@@ -58,7 +60,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     fidelity = _parameter("solver", "fidelity")
     parser.add_argument(
+        "--model",
         "--fidelity",
+        dest="fidelity",
         choices=fidelity.choices,
         default=fidelity.default,
         help="model of the sway (%(default)s)",
@@ -123,7 +127,7 @@ def build_scene(choices: Choices, arguments: argparse.Namespace) -> tuple[Any, A
         scene = stand(scene, count)
     in_leaf = told_leaves(arguments)
     settings = replace(Settings(), damping_ratio=choices.damping_ratio or None, in_leaf=in_leaf)
-    simulator = scene.simulator(settings, fidelity=choices.fidelity)
+    simulator = scene.simulator(settings, model=choices.fidelity)
     return simulator, scene.leaves(in_leaf, _LEAVES)
 
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a command writes: where, that nothing is lost by it, and a line about it."""
 
 from __future__ import annotations

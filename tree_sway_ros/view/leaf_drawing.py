@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Clusters of leaves as small polygons, lit from above."""
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.species import leaf_traits
 from tree_sway_ros.view.projection import Camera
 
 
@@ -48,16 +51,6 @@ _NEEDLES = _Spray(
     length=1.0,
     width=0.36,
 )
-_NEEDLED = ("goldcrest", "spruce", "sitka", "pine", "douglas_fir")
-_GREEN = np.array([0.30, 0.50, 0.20])
-_GREENS = {
-    "goldcrest": np.array([0.63, 0.70, 0.22]),
-    "spruce": np.array([0.20, 0.36, 0.22]),
-    "sitka": np.array([0.26, 0.40, 0.30]),
-    "pine": np.array([0.28, 0.42, 0.28]),
-    "douglas_fir": np.array([0.22, 0.38, 0.20]),
-    "benjamina": np.array([0.22, 0.45, 0.16]),
-}
 _SUN = np.array([-0.35, -0.5, 0.8])
 
 # A blade of unit length along x, from its stalk to its tip.
@@ -83,7 +76,7 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
         Corners of each blade in [m], (k m, 6, 3), and the unit vector across it, (k m, 3).
 
     """
-    spray = _NEEDLES if species in _NEEDLED else _LEAVES
+    spray = _NEEDLES if leaf_traits(species).are_needles else _LEAVES
     m, k = len(poses), len(spray.seats)
     cluster = Rotation.from_quat(np.repeat(poses[:, 3:], k, axis=0))
     turn = np.column_stack([np.tile(spray.fans, m), np.tile(spray.tilts, m)])
@@ -112,7 +105,7 @@ def leaf_colors(species: str, normal: Floats, depth: Floats, camera: Camera) -> 
         The light comes from above and over the viewer's left shoulder.
 
     """
-    green = _GREENS.get(species, _GREEN)
+    green = np.array(leaf_traits(species).green)
     turn = camera.azimuth - 0.5 * np.pi
     sine, cosine = np.sin(turn), np.cos(turn)
     x, y, z = _SUN / np.linalg.norm(_SUN)

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of a tree or several, as files: at rest, and beside themselves in wind."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Wind and the motion of a tree's tip over time."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """matplotlib, asked for only when a picture is wanted, and never with a window."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree on matplotlib axes: bark thick as it is, far branches paler, leaves if there are any."""
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.leaf_drawing import leaf_blades, leaf_colors
 from tree_sway_ros.view.projection import Camera
@@ -19,7 +22,6 @@ _NEAR_BARK = np.array([0.22, 0.15, 0.10])
 _FAR_BARK = np.array([0.72, 0.67, 0.62])
 _POT = "#b5694a"
 _POT_RIM = "#c67f60"
-_POTTED = ("benjamina", "goldcrest")
 _GROUND = "#8d8d86"
 _GHOST = "#dedad6"
 
@@ -99,11 +101,43 @@ def draw_tree(
 
     """
     from matplotlib.collections import PolyCollection
+    from matplotlib.patches import Ellipse, Polygon
 
     axes.set(xlim=(frame.left, frame.right), ylim=(frame.bottom, frame.top), aspect="equal")
     axes.axis("off")
-    own = frame_around(np.vstack([tree.start, tree.end]), camera)
-    _draw_ground(axes, tree, camera, own)
+    pot, (middle, width, height) = ground_shapes(tree, camera)
+    for corners, color in pot:
+        axes.add_patch(Polygon(corners, color=color, lw=0, zorder=0))
+    if not pot:
+        axes.add_patch(Ellipse(middle, width, height, color=_GROUND, alpha=0.25, lw=0, zorder=0))
+    polygons, colors, edges = painted_shapes(tree, start, end, camera, frame, leaves)
+    drawn = PolyCollection(polygons, facecolors=colors, edgecolors=colors, linewidths=edges)
+    drawn.set_joinstyle("round")
+    axes.add_collection(drawn)
+
+
+def painted_shapes(
+    tree: Tree,
+    start: Floats,
+    end: Floats,
+    camera: Camera,
+    frame: Frame,
+    leaves: tuple[Floats, Floats] | None = None,
+) -> tuple[list[Floats], Floats, Floats]:
+    """
+    Shapes of a tree on the picture plane, the far ones first.
+
+    Parameters
+    ----------
+    tree, start, end, camera, frame, leaves
+        As of `draw_tree`.
+
+    Returns
+    -------
+    tuple
+        Corners of each shape in [m], (k, 2); colours (s, 3), 0 to 1; widths of edges in [pt], (s,).
+
+    """
     base, tip = camera.project(start), camera.project(end)
     depth = _depth(camera, 0.5 * (start + end), frame)
     polygons = list(_tapered(base, tip, tree.base_diameter, tree.tip_diameter))
@@ -120,14 +154,7 @@ def draw_tree(
         away = np.concatenate([away, seen[..., 2].mean(axis=1)])
         edges = np.concatenate([edges, np.full(len(seen), 0.1)])
     far_first = np.argsort(-away)
-    drawn = PolyCollection(
-        [polygons[i] for i in far_first],
-        facecolors=colors[far_first],
-        edgecolors=colors[far_first],
-        linewidths=edges[far_first],
-    )
-    drawn.set_joinstyle("round")
-    axes.add_collection(drawn)
+    return [polygons[i] for i in far_first], colors[far_first], edges[far_first]
 
 
 def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
@@ -186,21 +213,32 @@ def _depth(camera: Camera, points: Floats, frame: Frame) -> Floats:
     return np.asarray(0.5 + (away - 0.5 * (away.min() + away.max())) / span)
 
 
-def _draw_ground(axes: Axes, tree: Tree, camera: Camera, frame: Frame) -> None:
-    """Draw a shadow on the ground, or the pot of a pot plant."""
-    from matplotlib.patches import Ellipse, Polygon
+def ground_shapes(
+    tree: Tree, camera: Camera
+) -> tuple[list[tuple[Floats, str]], tuple[tuple[float, float], float, float]]:
+    """
+    What a tree stands in or on, on the picture plane in [m].
 
-    x, y = camera.project(tree.start[0])[:2]
-    if tree.species not in _POTTED:
-        width = 0.5 * (frame.right - frame.left)
-        flat = width * max(np.sin(camera.elevation), 0.03)
-        axes.add_patch(Ellipse((x, y), width, flat, color=_GROUND, alpha=0.25, lw=0, zorder=0))
-        return
+    Returns
+    -------
+    tuple
+        Corners and colour of each part of the pot of a pot plant, and the ellipse of the shadow of
+        any other: its middle, width and height.
+
+    """
+    frame = frame_around(np.vstack([tree.start, tree.end]), camera)
+    x, y = camera.project(tree.start[0])[:2].tolist()
+    width = 0.5 * (frame.right - frame.left)
+    shadow = (x, y), width, width * max(float(np.sin(camera.elevation)), 0.03)
+    is_known = tree.species in species_keys()
+    if not (is_known and species_named(tree.species).habit == "pot"):
+        return [], shadow
     # As deep as the margin below the root allows.
     deep = 0.85 * (y - frame.bottom)
     wide = 1.05 * deep
+    pot = []
     for color, above, below, high in ((_POT, 0.5, 0.37, 1.0), (_POT_RIM, 0.54, 0.54, 0.2)):
         sides = np.array([-above, above, below, -below])
         levels = np.array([0.0, 0.0, -high, -high])
-        corners = np.column_stack([x + wide * sides, y + deep * levels])
-        axes.add_patch(Polygon(corners, color=color, lw=0, zorder=0))
+        pot.append((np.column_stack([x + wide * sides, y + deep * levels]), color))
+    return pot, shadow

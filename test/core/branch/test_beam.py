@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Quadrature along a branch: exact where it should be, whatever the cut, and the beam's own shapes.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The closed forms of one tapered branch, against beams that are solved another way."""
 
 from __future__ import annotations

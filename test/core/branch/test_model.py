@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a branch knows: where its children sit, its mass, its load and its leaves."""
 
 from __future__ import annotations

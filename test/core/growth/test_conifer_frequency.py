@@ -1,7 +1,9 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Grown conifers sway as often as measured ones of the same size.
 
-602 conifers of eight species: f0 = .0766 + 3.1219 DBH / H^2 in Hz, cm and m (Moore & Maguire 2004,
+602 conifers of eight species: f0 = 0.0766 + 3.1219 DBH / H^2 in Hz, cm and m (Moore & Maguire 2004,
 Trees 18). One factor for all trees is allowed, as roots give way and the model is clamped; it is
 told here.
 

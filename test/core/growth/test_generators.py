@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Laws that every grown tree obeys, whatever the seed."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What makes people recognise each plant, as numbers."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Shoots put together, scaled, and turned into a tree."""
 
 import numpy as np

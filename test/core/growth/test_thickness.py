@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The pipe model on trees small enough to compute by hand."""
 
 import numpy as np

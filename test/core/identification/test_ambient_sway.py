@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The resonance in a spectrum: slopes of the model, scatter of the answer, refusals."""
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ DT = 0.1
 
 
 def driven(damping, seed, duration=600.0, colour=0.0):
-    """Oscillator of .7 Hz under noise of spectral slope `colour`, (n, 1)."""
+    """Oscillator of 0.7 Hz under noise of spectral slope `colour`, (n, 1)."""
     rng = np.random.default_rng(seed)
     n = int(2 * duration / DT)
     f = np.fft.rfftfreq(n, DT)

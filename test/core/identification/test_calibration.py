@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A modulus fitted to a frequency gives that frequency, in the model that the simulator steps."""
 
 from __future__ import annotations

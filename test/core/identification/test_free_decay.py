@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Poles of damped exponentials: exact without noise, and as uncertain as they say with it."""
 
 from __future__ import annotations

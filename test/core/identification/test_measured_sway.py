@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Records in closed form, and the frequency and damping found in them."""
 
 from __future__ import annotations

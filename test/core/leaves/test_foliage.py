@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Leaves: how much of them there is, where they are, and what carries them."""
 
 from functools import cache

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Drag on a branch: the integral along it, nothing along the grain, and never so much that it
 overshoots.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Odd real spherical harmonics: orthonormal, odd, complete up to their degree."""
 
 from __future__ import annotations

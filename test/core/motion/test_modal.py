@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Natural modes as oscillators: exact decay, the static rest of the modes left out, loads held."""
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ def modal(tree, **changes):
 
 
 def stiffness_of(tree):
-    models = branch_models(tree, WOOD.density, carries=True)
+    models = branch_models(tree, WOOD.density, carries=True, shear_ratio=WOOD.shear_ratio)
     return reduce_tree(tree, models, WOOD.modulus, WOOD.shear_ratio * WOOD.modulus, 0.0).stiffness
 
 

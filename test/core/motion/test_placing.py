@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Placing: rest is the input, lengths are kept, children stay where they grow, the chord turns by the
 key rotation.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Frozen subtrees, placed as one body, against the placing of branches that do not bend."""
 
 from __future__ import annotations

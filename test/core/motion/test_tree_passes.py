@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How branches move on each other and hand on loads: virtual work, balance of forces, rigid motion.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Every branch an oscillator of its own: the exact propagator at work, carried loads, the paper's
 equation.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Divided differences of the exponential against many digits, where naive formulas lose theirs."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The two-axis branch: its formulas against Lagrange's own, its step against a numpy twin, its guard.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Inertia with a subtree that gives way: between stiff riders and the coupled tree's own pace."""
 
 from __future__ import annotations

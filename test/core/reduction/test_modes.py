@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Natural modes: orthonormal, equal by both ways to find them, softened by weight, refused when they
 buckle.
@@ -158,7 +160,7 @@ def test_frequencies_do_not_depend_on_where_a_stem_points(stem, direction):
 
 def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
     """
-    .7154 .7254 1.4084 1.7586 Hz: Euler-Bernoulli frame of 17,424 degrees of freedom, E 8 GPa, 900
+    0.7154 0.7254 1.4084 1.7586 Hz: Euler-Bernoulli frame of 17,424 degrees of freedom, E 8 GPa, 900
     kg/m^3.
 
     """

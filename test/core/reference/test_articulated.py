@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The articulated tree against the beam frame, energy, order of the method, and storms."""
 
 from functools import cache

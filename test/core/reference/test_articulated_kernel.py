@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The articulated-body algorithm and its modes against plain sums over bodies."""
 
 from functools import cache

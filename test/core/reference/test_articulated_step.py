@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The step's own stability function, its drag, and the damping it is asked for."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Tips from poses, their record, and the score of a model."""
 
 import numpy as np

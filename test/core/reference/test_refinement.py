@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Segments cut in pieces: the same wood, and what sits on it stays."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Rotations against scipy, and torques against the work they do."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What every simulator refuses before a kernel runs, and what it goes on from."""
 
 from __future__ import annotations

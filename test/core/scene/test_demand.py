@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a scene asks, handed to trees that can choose."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Several trees in one wind: each moves as it would alone, turned, moved and in its own time."""
 
 from __future__ import annotations
@@ -173,7 +175,7 @@ def test_every_tree_finds_the_model_it_needs(fork, stem):
         PlacedTree("fork", fork()),
         PlacedTree("twig", stem(length=0.1, base=0.02, tip=0.01)),
     ]
-    forest = Forest(trees, fidelity="auto", tolerance=1e-3)
+    forest = Forest(trees, model="auto", tolerance=1e-3)
     chosen = [each.choice.name for each in simulators_of(forest)]
     assert chosen[1] == "frozen"
     assert chosen[0] != "frozen"

@@ -1,11 +1,17 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Every model of a tree behind one face, and every segment solved as one of them."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.resegment import resegment
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError
@@ -22,7 +28,7 @@ def stem():
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
 def test_every_model_leans_with_the_wind_and_goes_back_to_rest(stem, fidelity):
-    sim = make_simulator(stem, WOOD, fidelity=fidelity, tolerance=1e-4)
+    sim = make_simulator(stem, WOOD, model=fidelity, tolerance=1e-4)
     rest = sim.place().copy()
     for _ in range(240):
         assert sim.step((8.0, 0.0, 0.0), DT) == 0
@@ -39,7 +45,7 @@ def test_every_model_leans_with_the_wind_and_goes_back_to_rest(stem, fidelity):
 def test_a_stem_leans_as_far_in_every_model(stem):
     lean = {}
     for fidelity in ("branch", "subtree", "coupled", "segments"):
-        sim = make_simulator(stem, WOOD, fidelity=fidelity, damping_ratio=0.5)
+        sim = make_simulator(stem, WOOD, model=fidelity, damping_ratio=0.5)
         for _ in range(600):
             sim.step((6.0, 0.0, 0.0), DT)
         sim.place()
@@ -50,7 +56,7 @@ def test_a_stem_leans_as_far_in_every_model(stem):
 
 def test_long_steps_of_every_segment_are_cut():
     tree = forked_tree(0.5, 0.6)
-    one, many = (make_simulator(tree, WOOD, fidelity="segments") for _ in range(2))
+    one, many = (make_simulator(tree, WOOD, model="segments") for _ in range(2))
     one.step((5.0, 1.0, 0.0), 8 * DT)
     for _ in range(8):
         many.step((5.0, 1.0, 0.0), DT)
@@ -58,10 +64,10 @@ def test_long_steps_of_every_segment_are_cut():
 
 
 def test_what_a_model_does_not_know_is_refused(stem):
-    with pytest.raises(ParameterError, match=r"unknown fidelity 'best'.*auto"):
-        make_simulator(stem, WOOD, fidelity="best")
+    with pytest.raises(ParameterError, match=r"unknown model 'best'.*auto"):
+        make_simulator(stem, WOOD, model="best")
     with pytest.raises(ParameterError, match="volume_rule"):
-        make_simulator(stem, WOOD, fidelity="segments", stiffness="volume_rule")
+        make_simulator(stem, WOOD, model="segments", stiffness="volume_rule")
 
 
 def test_every_segment_bears_the_leaves_that_the_reduced_tree_does():
@@ -71,7 +77,7 @@ def test_every_segment_bears_the_leaves_that_the_reduced_tree_does():
     model = {"gravity": 9.81, "damping_ratio": 0.1}
     leafy, bare = (
         [
-            make_simulator(tree, wood, fidelity=name, in_leaf=each, **model).frequencies(1)[0]
+            make_simulator(tree, wood, model=name, in_leaf=each, **model).frequencies(1)[0]
             for name in ("coupled", "segments")
         ]
         for each in (True, False)
@@ -84,9 +90,30 @@ def test_every_segment_is_pushed_by_the_leaves_too():
     tree, wood = forked_tree(0.5, 0.6), species_named("spruce")
     ways = []
     for name in ("coupled", "segments"):
-        sim = make_simulator(tree, wood, fidelity=name, gravity=0.0, damping_ratio=0.7)
+        sim = make_simulator(tree, wood, model=name, gravity=0.0, damping_ratio=0.7)
         for _ in range(600):
             sim.step((2.0, 0.0, 0.0), DT)
         sim.place()
         ways.append(sim.tip_displacement[0])
     assert ways[1] == pytest.approx(ways[0], rel=0.05)
+
+
+@pytest.mark.parametrize("model", FIDELITIES)
+def test_a_tree_is_used_like_a_forest_of_one(stem, model):
+    sim = make_simulator(stem, WOOD, model=model)
+    sim.step((3.0, 1.0, 0.0), DT)
+    assert sim.simulators == (sim,)
+    assert sim.gusts is None
+    assert sim.wind == pytest.approx([3.0, 1.0, 0.0])
+
+
+@pytest.mark.parametrize("model", ["auto", "segments"])
+def test_a_reduced_simulator_keeps_to_one_reduced_model(stem, model):
+    with pytest.raises(ParameterError, match=f"'{model}' is no model .* make_simulator knows"):
+        SwaySimulator(stem, WOOD, model=model)
+
+
+def test_the_model_is_that_of_the_settings(stem):
+    assert make_simulator(stem, WOOD, Settings(model="branch")).model == "branch"
+    assert make_simulator(stem, WOOD, Settings(model="branch"), model="modes").model == "modes"
+    assert make_simulator(replace(stem, species="oak")).species is species_named("oak")

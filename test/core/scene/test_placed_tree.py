@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Trees where they stand: turned and moved without a change to anything else; joined to one record.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree taken through a wind in one call: tips, moment and strain, and what is refused."""
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ def test_the_base_carries_the_moment_of_a_steady_wind(stem, fidelity):
     """A lone stem at rest in wind: the wood carries what the wind exerts about the root."""
     tree = stem(base=0.03, tip=0.015, cuts=12)
     changes = {"gravity": 0.0, "damping_ratio": 0.5, "enrich": "stem"}
-    record = simulate(tree, STEADY, fidelity=fidelity, **changes)
-    simulator = make_simulator(tree, species_named(tree.species), fidelity=fidelity, **changes)
+    record = simulate(tree, STEADY, model=fidelity, **changes)
+    simulator = make_simulator(tree, species_named(tree.species), model=fidelity, **changes)
     for wind in STEADY:
         simulator.step(wind, 1 / 60)
     assert record.base_moment[-1] == pytest.approx(simulator.base_moment, rel=0.01, abs=1e-6)
@@ -35,8 +37,8 @@ def test_the_base_carries_the_moment_of_a_steady_wind(stem, fidelity):
 def test_a_tree_that_carries_others_carries_their_moment_too(fork):
     tree = fork()
     changes = {"gravity": 0.0, "damping_ratio": 0.5}
-    record = simulate(tree, STEADY, fidelity="coupled", **changes)
-    simulator = make_simulator(tree, species_named(tree.species), fidelity="coupled", **changes)
+    record = simulate(tree, STEADY, model="coupled", **changes)
+    simulator = make_simulator(tree, species_named(tree.species), model="coupled", **changes)
     for wind in STEADY:
         simulator.step(wind, 1 / 60)
     assert record.base_moment[-1, 1] == pytest.approx(simulator.base_moment[1], rel=0.05)
@@ -45,20 +47,20 @@ def test_a_tree_that_carries_others_carries_their_moment_too(fork):
 def test_a_record_is_cut_into_means_over_steps(stem):
     time = np.arange(0.0, 3.01, 0.5)
     wind = SimpleNamespace(time=time, velocity=np.outer(time, [1.0, 0.0, 0.0]))
-    record = simulate(stem(), wind, rate=10.0, seconds=2.0, fidelity="modes")
+    record = simulate(stem(), wind, rate=10.0, seconds=2.0, model="modes")
     assert len(record.time) == 20
     assert record.time[-1] == pytest.approx(2.0)
     assert record.wind[:, 0] == pytest.approx(np.arange(20) / 10 + 0.05)
 
 
 def test_chosen_branches_are_told_by_name(fork):
-    record = simulate(fork(), STEADY[:5], branches=[0, 2], fidelity="modes")
+    record = simulate(fork(), STEADY[:5], branches=[0, 2], model="modes")
     assert record.tips.shape == (5, 2, 3)
     assert record.branch_names == tuple(fork().branch_names[k] for k in (0, 2))
 
 
 def test_the_record_as_text_is_read_back(fork):
-    record = simulate(fork(), STEADY[:7], fidelity="modes")
+    record = simulate(fork(), STEADY[:7], model="modes")
     text = record.to_csv()
     assert text.startswith("time,wind_x,wind_y,wind_z,moment_x")
     rows = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1)
@@ -68,7 +70,7 @@ def test_the_record_as_text_is_read_back(fork):
 
 def test_progress_runs_from_nothing_towards_the_whole(stem):
     told = []
-    simulate(stem(), STEADY[:300], fidelity="subtree", progress=told.append)
+    simulate(stem(), STEADY[:300], model="subtree", progress=told.append)
     assert told[0] == 0.0
     assert told == sorted(told)
     assert 0.9 < told[-1] < 1.0
@@ -83,7 +85,7 @@ def test_progress_runs_from_nothing_towards_the_whole(stem):
         (STEADY, {"rate": 0.0}, "rate 0 Hz"),
         (STEADY, {"seconds": -1.0}, "-1 s"),
         (STEADY, {"branches": [7]}, "branch 7"),
-        (STEADY, {"fidelity": "best"}, "unknown fidelity 'best'"),
+        (STEADY, {"model": "best"}, "unknown model 'best'"),
     ],
 )
 def test_what_cannot_be_simulated_is_refused(stem, wind, changes, words):

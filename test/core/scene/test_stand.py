@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Stands: many trees of a few kinds, each as if it were solved alone."""
 
 from __future__ import annotations

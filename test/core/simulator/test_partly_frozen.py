@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Trees with frozen branches, stepped against the same with none."""
 
 from __future__ import annotations

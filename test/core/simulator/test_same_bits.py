@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The same poses bit for bit in every process: compiling or not, on one thread or on two."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Settings: each one out of range is refused by name, with what to give instead."""
 
 from __future__ import annotations
@@ -6,19 +8,20 @@ import dataclasses
 
 import pytest
 
-from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.simulator.settings import FIDELITIES, MODELS, Settings
 from tree_sway_ros.errors import ParameterError
 
 
 def test_the_defaults_stand():
     chosen = Settings()
+    assert chosen.model == "modes"
     assert chosen.model in MODELS
     assert chosen.damping_ratio is None
     with pytest.raises(dataclasses.FrozenInstanceError):
         chosen.model = "frozen"
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", FIDELITIES)
 def test_every_model_can_be_asked_for(model):
     assert Settings(model=model).model == model
 
@@ -26,7 +29,7 @@ def test_every_model_can_be_asked_for(model):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        (dict(model="fast"), "unknown model 'fast'; use one of: frozen, branch, subtree"),
+        (dict(model="fast"), "unknown model 'fast'; use one of: auto, frozen, branch"),
         (dict(stiffness="felt"), "unknown stiffness 'felt'; use one of: beam, volume_rule"),
         (dict(enrich="some"), "unknown enrich 'some'; use one of: none"),
         (
@@ -39,7 +42,7 @@ def test_every_model_can_be_asked_for(model):
         (dict(n_modes=0), "n_modes: 0 modes; ask for 1 or more"),
         (dict(volume_stiffness=0.0), "volume_stiffness 0.0; give a finite number above 0"),
         (dict(volume_damping=float("inf")), "volume_damping inf"),
-        (dict(max_wind=float("nan")), "max_wind nan"),
+        (dict(max_wind=float("nan")), "max_wind: nan is out of range"),
         (dict(gravity=-9.81), r"gravity -9.81 m/s\^2; give 0 or more"),
         (dict(gravity=float("nan")), "gravity nan"),
     ],

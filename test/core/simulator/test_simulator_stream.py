@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a live stream may throw at a simulator: bad winds, storms, stalls, steps of any length,
 restarts.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """States that are kept and set: a simulator goes on as if nothing had been."""
 
 from __future__ import annotations
@@ -7,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.scene.make import FIDELITIES, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.tree_state import TreeState, digest_of
 from tree_sway_ros.core.tree.species import species_named
@@ -24,7 +27,7 @@ def winds(n, seed=4):
 @pytest.fixture(scope="module", params=FIDELITIES)
 def tree_on(request, fork):
     tree = fork()
-    return lambda: make_simulator(tree, species_named(tree.species), fidelity=request.param)
+    return lambda: make_simulator(tree, species_named(tree.species), model=request.param)
 
 
 def test_a_simulator_goes_on_from_a_state_bit_for_bit(tree_on):
@@ -87,7 +90,7 @@ def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
 
 def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
     tree = fork()
-    sim = make_simulator(tree, species_named(tree.species), fidelity="auto")
+    sim = make_simulator(tree, species_named(tree.species), model="auto")
     for state in (replace(sim.state(), model="modes 99"), replace(sim.state(), digest="0" * 16)):
         with pytest.raises(StateError, match=f"'{state.model}'"):
             sim.set_state(state)

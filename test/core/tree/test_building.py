@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From segments in any order to a tree: what is inferred, how it is ordered, what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Parents before what they carry; circles are left out."""
 
 from __future__ import annotations

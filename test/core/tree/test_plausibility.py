@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Wrong units are refused or told, with the likely unit and the option that mends them."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree cut anew: the same shape, the same names, and the same motion however finely it is cut."""
 
 from __future__ import annotations

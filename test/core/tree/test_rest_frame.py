@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The frame of a segment: along it, and turned the least."""
 
 from __future__ import annotations

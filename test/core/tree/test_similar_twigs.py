@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Twigs that copy: which ones, how many, and that they move as the one they copy."""
 
 from __future__ import annotations

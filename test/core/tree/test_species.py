@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The table of woods: complete, physical, and clear about what it does not know."""
 
 from __future__ import annotations

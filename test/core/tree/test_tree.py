@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tree's own figures, against hand counts."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Dropouts, stalls and clocks: what a live stream does to the average of the wind."""
 
 import math
@@ -145,7 +147,7 @@ class TestClocks:
         _, before = run(average, 5.0, since=900.0)
         _, after = run(average, 5.0, since=0.0)
         means = np.concatenate([before[60:], after])
-        assert np.abs(np.diff(means, axis=0)).max() < 0.3  # the fade of .5 s, and the wind itself
+        assert np.abs(np.diff(means, axis=0)).max() < 0.3  # the fade of 0.5 s, and the wind itself
         fresh = WindAverage()
         _, expected = run(fresh, 5.0)
         np.testing.assert_allclose(after[120:], expected[120:], atol=1e-6)
@@ -161,7 +163,7 @@ class TestClocks:
         _, before = run(average, 5.0)
         _, after = run(average, 5.0, since=4000.0)
         means = np.concatenate([before[60:], after])
-        assert np.abs(np.diff(means, axis=0)).max() < 0.3  # the fade of .5 s, and the wind itself
+        assert np.abs(np.diff(means, axis=0)).max() < 0.3  # the fade of 0.5 s, and the wind itself
         assert average.state(4005.0) == "live"
 
     def test_set_forward_in_a_dropout_it_does_not_drop_to_calm_at_once(self):

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The wind of the last while in a few numbers."""
 
 from __future__ import annotations
@@ -63,3 +65,16 @@ def test_the_first_sample_counts_whole():
     tracker = ClimateTracker()
     tracker.add(np.array([2.0, 0.0, 0.0]), 1.0 / 60.0)
     np.testing.assert_allclose(tracker.climate.mean, [4.0, 0.0])
+
+
+def test_a_wind_that_beats_is_told_from_turbulence():
+    t = np.arange(0.0, 20.0, 1.0 / 60.0)
+    still = np.zeros_like(t)
+    wind = np.stack([5.0 + np.sin(2.0 * np.pi * 0.8 * t), still, still], axis=1)
+    climate = WindClimate.of_samples(wind, 60.0)
+    assert climate.beat == pytest.approx(0.8, abs=0.03)
+    assert climate.beat_share > 0.8
+    f = np.geomspace(0.01, 30.0, 4000)
+    assert f[np.argmax(climate.spectrum(f))] == pytest.approx(0.8, abs=0.03)
+    gust = np.stack([5.0 + np.exp(-((t - 10.0) ** 2)), still, still], axis=1)
+    assert WindClimate.of_samples(gust, 60.0).beat_share == 0.0

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import math
 
 import numpy as np
@@ -109,7 +111,7 @@ def test_a_true_step_passes_after_half_a_second_at_most(change):
     gate = warmed_up()
     accepted = offer_all_from(gate, 1.0, [(3.0 + change, 0.0, 0.0)] * 30)
     first = int(np.argmax(accepted))
-    assert 0 < first <= 10  # refused at once, in after .5 s
+    assert 0 < first <= 10  # refused at once, in after 0.5 s
     assert accepted[first:].all()
     assert gate.counts.spike == first
 

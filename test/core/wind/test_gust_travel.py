@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Gusts that travel: every place feels the anemometer's wind, later by the way over the speed."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Wind over height: the two laws by their own definitions."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The one way in: units and sign before the gate, the force plane after it, one set of limits."""
 
 from __future__ import annotations

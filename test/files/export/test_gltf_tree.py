@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """glTF as others read it: by pygltflib, by trimesh, and by the specification alone."""
 
 import json
@@ -25,7 +27,7 @@ WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 @pytest.fixture(scope="module")
 def simulator():
     tree = builtin_tree("benjamina", 0)
-    return make_simulator(tree, species_named(tree.species), fidelity="modes")
+    return make_simulator(tree, species_named(tree.species), model="modes")
 
 
 @pytest.fixture(scope="module")

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +26,7 @@ def tree():
 def test_rest_poses_are_the_solvers(name):
     """Not only the direction of each segment: its roll too, or a driven mesh is twisted."""
     tree = builtin_tree(name, 0)
-    simulator = make_simulator(tree, species_named(tree.species), fidelity="modes")
+    simulator = make_simulator(tree, species_named(tree.species), model="modes")
     np.testing.assert_allclose(rest_poses(tree), simulator.place(), atol=1e-12)
 
 

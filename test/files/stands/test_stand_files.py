@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Stands from tables and from YAML, and what is wrong with others, by line."""
 
 from __future__ import annotations

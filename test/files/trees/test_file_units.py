@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Units and the axis up of a file that does not say them."""
 
 from __future__ import annotations

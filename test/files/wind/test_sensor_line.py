@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Any line at all: wind that is finite, a refusal or nothing, and never an exception."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Tips of a 40-branch tree in a turning, gusty wind, by MuJoCo at a step that has converged.
 

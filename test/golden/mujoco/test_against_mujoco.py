@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The articulated reference and the reduced model against tips that MuJoCo found (`make_golden.py`).
 

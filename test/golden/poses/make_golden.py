@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Make the golden poses: every built-in tree, bare, in 60 s of simulated wind, in each reduced model.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Poses of the built-in trees are those that were recorded, within rounding, on any machine."""
 
 from __future__ import annotations

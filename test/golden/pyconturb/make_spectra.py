@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Make `spectra.csv` with PyConTurb (J. Rinker, DTU, MIT licence), an independent turbulence
 generator.

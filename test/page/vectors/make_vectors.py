@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Make the test vectors that Python and JavaScript both read: a description, frames, what they say.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import math
 from pathlib import Path
 
@@ -51,8 +53,16 @@ def test_a_whole_number_will_do_for_a_float():
 
 @pytest.mark.parametrize(
     ("default", "bad"),
-    [(1.0, True), (1.0, "4"), (1, 1.5), (1, True), (True, 2), (True, "yes"), ("a", 3), ((0.0, 1.0),
-    (1.0,))],
+    [
+        (1.0, True),
+        (1.0, "4"),
+        (1, 1.5),
+        (1, True),
+        (True, 2),
+        (True, "yes"),
+        ("a", 3),
+        ((0.0, 1.0), (1.0,)),
+    ],
 )
 def test_another_kind_is_refused(default, bad):
     with pytest.raises(ParameterError, match="parameter 'x'"):

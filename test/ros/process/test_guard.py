@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import inspect
 
 from tree_sway_ros.ros.process.guard import CallbackGuard

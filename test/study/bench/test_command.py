@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The benchmark's tree, and that a race is refused where the two sides disagree."""
 
 from __future__ import annotations

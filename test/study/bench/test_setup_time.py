@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """That set-ups are timed from nothing, each on its model."""
 
 from __future__ import annotations

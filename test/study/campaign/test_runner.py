@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Studies over processes: the same numbers in any number of them; what is killed loses nothing."""
 
 from __future__ import annotations
@@ -82,7 +84,7 @@ def test_a_killed_worker_loses_nothing(alone, tmp_path):
 
 def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
     wrong = cases(1, settings={"fidelity": "best"})
-    with pytest.raises(TreeSwayError, match="unknown fidelity 'best'"):
+    with pytest.raises(TreeSwayError, match="unknown model 'best'"):
         run_study([*wrong, *cases(2)], tmp_path, workers=1)
     assert all(result_path(tmp_path, case).is_file() for case in cases(2))
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The charts of the ladder of models: what they measure, write and draw."""
 
 import csv

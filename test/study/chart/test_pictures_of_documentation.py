@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The charts of the documentation show the figures beside them, and these are what is measured."""
 
 from __future__ import annotations

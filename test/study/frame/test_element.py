@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Element matrices against the textbook's closed forms and against rigid motions."""
 
 import numpy as np

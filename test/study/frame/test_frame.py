@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The beam frame against closed forms (V1, V2, V12, V13) and against an independent beam model."""
 
 from dataclasses import replace

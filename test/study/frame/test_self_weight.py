@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Internal forces of a tree at rest against statics by hand."""
 
 import numpy as np

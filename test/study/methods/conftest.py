@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A chain, a smooth wind and the reference that the tests of the methods share."""
 
 from __future__ import annotations

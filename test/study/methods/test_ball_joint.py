@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The ball joint, and the two-axis kernel against it and against closed forms."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Branches in blocks: the same step as one by one, whatever the number."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The chain's matrices against energies of its motion, closed forms, and what it refuses."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Small dense algebra against numpy and scipy, compiled and plain."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The two forms of the equation say the same; their derivatives are those of differences."""
 
 from __future__ import annotations

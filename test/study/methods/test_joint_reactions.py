@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Newton's laws on the whole chain: force and moment at the joints, power, virtual work."""
 
 from __future__ import annotations

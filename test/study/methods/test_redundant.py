@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Accelerations under constraints that repeat, contradict nothing and may be none the wiser."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Running a method: when loads are taken, when a run ends, what is counted."""
 
 from __future__ import annotations

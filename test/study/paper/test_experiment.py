@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The paper's experiment: both forms agree, lengths are kept, the plant leans with the wind."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 One branch as a beam: quadrature along its segments, bending by a load, slope and displacement.
 
@@ -174,6 +176,42 @@ class BranchBeam:
             bending += lever @ force + within @ moment
         return bending
 
+    def moment_in_space(self, load: Floats, force: Floats, moment: Floats) -> Floats:
+        """
+        Internal moment under loads from any side.
+
+        Parameters
+        ----------
+        load
+            Force per length at the points in [N/m], (m, 5, 3).
+        force, moment
+            Force that each child hands over, and its moment about the root of the tree, (c, 3).
+
+        Returns
+        -------
+        Floats
+            Of all that acts beyond each point, about that point, (m, 5, 3).
+
+        """
+        both = np.concatenate([load, np.cross(self.point, load)], axis=-1)
+        points, nodes, _ = self.from_base(both)
+        beyond = nodes[-1] - points
+        if len(force) > 0:
+            beyond += self.child_lever[1] @ np.hstack([force, moment])
+        out: Floats = beyond[..., 3:] - np.cross(self.point, beyond[..., :3])
+        return out
+
+    def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
+        """
+        Curvature by an internal moment, for a modulus of 1: bent by what acts across the branch,
+        twisted by what acts about it, (m, 5, 3).
+
+        """
+        along = self.tangent[:, None, :]
+        twist = (moment * along).sum(axis=-1, keepdims=True) * along
+        out: Floats = (moment - twist + twist / (2.0 * shear_ratio)) / self.second_moment[..., None]
+        return out
+
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
         """
@@ -274,6 +312,51 @@ class SlopeShape:
 
         """
         return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
+
+
+class RotationField:
+    """
+    A way for a branch to bend and twist in space: rotation phi(s) per unit of its coordinate.
+
+    Parameters
+    ----------
+    beam
+        The branch.
+    curvature
+        d phi / d s at the points in [1/m], (m, 5, 3).
+
+    """
+
+    def __init__(self, beam: BranchBeam, curvature: Floats) -> None:
+        """Integrate curvature to rotation and rotation to displacement."""
+        self.beam = beam
+        self.curvature = curvature
+        self.slope, _, self.child_slope = beam.from_base(curvature)
+        self.points, self.nodes, self.children = beam.from_base(
+            np.cross(self.slope, beam.tangent[:, None, :])
+        )
+        """Displacement in [m/rad]: points (m, 5, 3), nodes (m + 1, 3), children (c, 3)."""
+
+    @classmethod
+    def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:
+        """Turn about one axis, (3,), by the slope of a shape."""
+        return cls(shape.beam, shape.curvature[..., None] * axis)
+
+    @cached_property
+    def twisting(self) -> Floats:
+        """Curvature about the branch itself, (m, 5)."""
+        return np.asarray(np.einsum("sgk,sk->sg", self.curvature, self.beam.tangent))
+
+    def stiffness(self, other: RotationField, modulus: float, shear_modulus: float) -> float:
+        """
+        Energy between two fields in [N m/rad]: E I of bending, across the branch as it runs in
+        space, and G J of twist about it, J = 2 I.
+
+        """
+        twist = self.twisting * other.twisting
+        bend = np.einsum("sgk,sgk->sg", self.curvature, other.curvature) - twist
+        rigidity = modulus * bend + 2.0 * shear_modulus * twist
+        return float(self.beam.integral(self.beam.second_moment * rigidity))
 
 
 def cross_matrix(v: Floats) -> Floats:

@@ -1,10 +1,12 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Closed-form calibration of one tapered branch: its key segment in four numbers.
 
 A branch of length L has diameter d(s) = d0 (1 - tau s / L), so EI(s) = EI0 (1 - tau s / L)^4, and a
 wind load per length that is proportional to d(s). Its key segment turns by theta, the angle of the
 chord from root to tip, so that the tip moves by L theta. The constants below make the static tip
-and the first natural frequency those of the Euler-Bernoulli beam, within .1 % for tau up to .9.
+and the first natural frequency those of the Euler-Bernoulli beam, within 0.1 % for tau up to 0.9.
 
 Symbols: L length [m], tau taper [-], EI0 bending stiffness at the base [N m^2], rho density
 [kg/m^3], A0 cross-section at the base [m^2].
@@ -38,7 +40,7 @@ def key_stiffness(length: float, taper: float, bending_stiffness: float) -> floa
     length
         L in [m].
     taper
-        tau in [-], 0 to .9.
+        tau in [-], 0 to 0.9.
     bending_stiffness
         EI at the base in [N m^2].
 
@@ -68,7 +70,7 @@ def key_inertia(length: float, taper: float, density: float, base_area: float) -
     length
         L in [m].
     taper
-        tau in [-], 0 to .9.
+        tau in [-], 0 to 0.9.
     density
         rho in [kg/m^3].
     base_area

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Every branch as a bending body: its axes, its mass and load along it, the ways it bends and twists.
 
@@ -27,6 +29,7 @@ from tree_sway_ros.core.branch.shapes import (
     Carried,
     Coordinate,
     ways_to_move,
+    wind_load,
 )
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.tree.tree import Tree
@@ -81,6 +84,7 @@ def branch_models(
     density: float,
     *,
     carries: bool,
+    shear_ratio: float = 1.0 / 14.0,
     enriched: frozenset[int] = frozenset(),
     speed_profile: Floats | None = None,
     leaf_mass: Floats | None = None,
@@ -97,6 +101,8 @@ def branch_models(
         Of green wood in [kg/m^3].
     carries
         Whether children load and shape their parents; if not, every branch is alone (the paper).
+    shear_ratio
+        Shear modulus over Young's in [-].
     enriched
         Branches that get further shapes and twists.
     speed_profile
@@ -118,7 +124,8 @@ def branch_models(
     models: list[BranchModel] = []
     area, area_moment = np.zeros(n), np.zeros((n, 3))
     weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
-    sums = Carried(area, area_moment, weight, weight_moment, weight_second)
+    force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
+    sums = Carried(area, area_moment, force, torque, weight, weight_moment, weight_second)
     children_of: list[list[int]] = [[] for _ in range(n)]
     for branch in range(1, n):
         children_of[tree.branch_parent[branch]].append(branch)
@@ -142,12 +149,19 @@ def branch_models(
         if speed_profile is not None:
             drag_area *= (speed_profile[here] ** 2)[:, None]
         carried = sums[children if carries else children[:0]]
-        ways = ways_to_move(beam, drag_area, mass, carried, *_richness(tree, branch, enriched))
+        richness = _richness(tree, branch, enriched)
+        ways = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)
         models.append(BranchModel(beam, drag_area, mass, ways, children))
         point, dm = beam.point, beam.weight * mass
         area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
         area_moment[branch] = np.einsum("sg,sgk->k", beam.weight * drag_area, point)
         area_moment[branch] += area_moment[children].sum(axis=0)
+        for case, wind in enumerate(np.eye(3)):
+            pushed = beam.weight[..., None] * wind_load(beam, drag_area, wind)
+            force[branch, case] = pushed.sum(axis=(0, 1))
+            torque[branch, case] = np.cross(point, pushed).sum(axis=(0, 1))
+        force[branch] += force[children].sum(axis=0)
+        torque[branch] += torque[children].sum(axis=0)
         weight[branch] = dm.sum() + weight[children].sum()
         weight_moment[branch] = np.einsum("sg,sgk->k", dm, point)
         weight_moment[branch] += weight_moment[children].sum(axis=0)
@@ -156,11 +170,12 @@ def branch_models(
     return models[::-1]
 
 
-def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
-    """Shapes and twists of a branch."""
+def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int, int]:
+    """Shapes and twists of a branch, and how many of these are by the wind."""
     if branch not in enriched:
-        return 1, 0
-    return (N_SHAPES, N_TWISTS) if tree.branch_parent[branch] < 0 else (FEWER, FEWER)
+        return 1, 0, 0
+    is_stem = tree.branch_parent[branch] < 0
+    return (N_SHAPES, N_TWISTS, 1) if is_stem else (FEWER, N_TWISTS, 2)
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

@@ -1,18 +1,25 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree that uses no more model than its scene needs, and changes models unseen.
 
-The error and the cost of every model in the wind of the last minute are known beforehand
-(`fidelity_ladder`); the cheapest that stays within the tolerance is used, or, where none that can
-be afforded does, the most accurate of those. When wind or camera ask for another, the new one first
-sways along unseen until it has forgotten that it started at rest, then the picture goes over to it
-within a second: every pose is a mix of two that agree but for the tolerance. A model is left
-upwards as soon as it must be, downwards only when a lesser one would do with a third to spare, so
-that a wind on the border does not flicker.
+The error and the cost of every model in the wind of the last minute, and in the wind that blows
+now, are known beforehand (`ladder`); the cheapest that stays within the tolerance in both is used,
+or, where none that can be afforded does, the most accurate of those.
+
+**Up at once.** A load beyond what the model was chosen for is noticed in the step in which it
+comes. The better model goes on from the motion that is shown, its coordinates mapped one by one;
+what the two still differ by fades within 0.4 s.
+
+**Down slowly.** A lesser model first sways along unseen until it has forgotten that it started at
+rest, then the picture goes over to it within a second. It is taken only when it would do with a
+third to spare, so that a wind on the border does not flicker.
 
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -21,12 +28,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, Counts, SwaySimulator
@@ -42,13 +50,22 @@ RUN_IN = 10.0
 CROSS_FADE = 1.0
 """How long the picture takes to go over in [s]."""
 
+HAND_OVER = 0.4
+"""How long it takes in [s] until a better model is shown as it is."""
+
+SURPRISE = 1.2
+"""Load over the largest that the model was chosen for, at which the choice is looked at again."""
+
+GUST_MEMORY = 5.0
+"""Time in [s] after which a gust counts 1/e."""
+
 REVIEW = 2.0
 """How often the choice is looked at again in [s]."""
 
 _SPARE = 2.0 / 3.0
 
 
-class AdaptiveSimulator(KeepsState):
+class AdaptiveSimulator(OneTree, KeepsState):
     """
     A tree on the least model that its scene needs; otherwise as `SwaySimulator`.
 
@@ -86,15 +103,17 @@ class AdaptiveSimulator(KeepsState):
         self.pace = 1.0
         """Cost here over the cost that the ladder says: set it once it is measured."""
         self._expected = expected or WindClimate.steady(8.0, 0.2)
-        self._tracker = ClimateTracker()
         self._built: dict[str, SwaySimulator] = {}
         self._among_whole: dict[str, Any] = {}
-        self.choice = self._choose(self._expected)
+        self.choice = self._expect()
         for estimate in self.ladder.estimates(WindClimate.steady(0.0, 0.0)):
             self._simulator(estimate)  # now, for a change must not hold up the stream
         self._shown = self._simulator(self.choice)
         self._next: SwaySimulator | None = None
         self._next_age = self._since_review = 0.0
+        self._left: SwaySimulator | None = None
+        self._behind = 0.0
+        self._turns_apart, self._poses_apart = np.zeros(0), np.zeros((tree.n_segments, 7))
 
     @property
     def model(self) -> str:
@@ -117,6 +136,11 @@ class AdaptiveSimulator(KeepsState):
         return self._shown.n_frozen
 
     @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+        return self._shown.wind
+
+    @property
     def frame_cost(self) -> float:
         """What a step and a placing of the chosen model take on this machine in [us]."""
         return self.pace * self.choice.cost
@@ -137,13 +161,18 @@ class AdaptiveSimulator(KeepsState):
         return self._next is not None
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """Advance one step, as `SwaySimulator.step`; now and then look at the choice again."""
+        """Advance one step, as `SwaySimulator.step`; look at the choice again when it is time."""
+        self._feel(wind_mean, dt)
         held = self._shown.counts.held
         status = self._shown.step(wind_mean, dt)
         self.counts.steps += 1
         self.counts.refused += status & WIND_REFUSED
         self.counts.held += self._shown.counts.held - held
         self._tracker.add(self._shown.wind, dt)
+        self._behind = max(self._behind - dt / HAND_OVER, 0.0)
+        if self._left is not None:
+            self._left.step(wind_mean, dt)
+            self._set_apart(self._left)
         if self._next is not None:
             self._next.step(wind_mean, dt)
             self._next_age += dt
@@ -151,7 +180,6 @@ class AdaptiveSimulator(KeepsState):
                 self._shown, self._next = self._next, None
         self._since_review += dt
         if self._since_review >= REVIEW:
-            self._since_review = 0.0
             self.review()
         return status
 
@@ -175,6 +203,8 @@ class AdaptiveSimulator(KeepsState):
         share = self._faded
         if self._next is not None and share > 0.0:
             shown += share * (self._whole_rotations(self._next) - shown)
+        if self._behind > 0.0:
+            shown += _smooth(self._behind) * self._turns_apart
         return shown
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
@@ -202,19 +232,19 @@ class AdaptiveSimulator(KeepsState):
                 + ", ".join(self._built),
             )
         simulator.set_state(replace(state, model=simulator.model, digest=simulator.digest()))
-        self._shown, self._next = simulator, None
+        self._shown, self._next, self._left, self._behind = simulator, None, None, 0.0
         estimates = self.ladder.estimates(self._tracker.climate)
         self.choice = next(each for each in estimates if each.name == state.model)
 
     def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
         """Poses of a state, (n, 7); the simulator stays as it is."""
-        kept = self._shown, self._next, self.choice
+        kept = self._shown, self._next, self.choice, self._left, self._behind
         theirs = self._built.get(state.model, self._shown)
         before = theirs.state()
         self.set_state(state)
         rotations = self._whole_rotations(self._shown)
         theirs.set_state(before)
-        self._shown, self._next, self.choice = kept
+        self._shown, self._next, self.choice, self._left, self._behind = kept
         return self.place_rotations(rotations, out)
 
     def review(self) -> Estimate:
@@ -222,20 +252,27 @@ class AdaptiveSimulator(KeepsState):
         Look at the choice again: call it when the tolerance has changed. Returns what is chosen.
 
         """
-        if self._next is not None:
-            return self.choice
-        wanted = self._choose(self._tracker.climate, current=self.choice)
-        if wanted.name != self.choice.name:
+        self._since_review, self._judged = 0.0, self._gust
+        estimates = self._estimates(self._tracker.climate, self._gust_climate())
+        wanted = self._choose(estimates, current=self.choice)
+        now = next(e for e in estimates if e.name == self.choice.name)
+        if wanted.name == self.choice.name:
+            self.choice = wanted
+        elif wanted.error < now.error:
+            self._hand_over(wanted)
+        elif self._next is None:
             self._next, self._next_age = self._simulator(wanted), 0.0
             self._next.reset()
-        self.choice = wanted
-        return wanted
+            self.choice = wanted
+        return self.choice
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, as `SwaySimulator.place`."""
         poses = self._shown.place(out)
         if self._next is not None and self._faded > 0.0:
             _mix(poses, self._next.place(), self._faded)
+        if self._behind > 0.0:
+            _shift(poses, _smooth(self._behind) * self._poses_apart)
         return poses
 
     def reset(self) -> None:
@@ -243,14 +280,61 @@ class AdaptiveSimulator(KeepsState):
         Go back to rest and to the wind that was expected, at once on the model that it asks for.
 
         """
-        self._tracker = ClimateTracker()
-        self.choice = self._choose(self._expected)
-        self._shown, self._next = self._simulator(self.choice), None
+        self.choice = self._expect()
+        self._shown, self._next, self._left = self._simulator(self.choice), None, None
         self._shown.reset()
-        self._since_review = 0.0
+        self._since_review = self._behind = 0.0
 
-    def _choose(self, climate: WindClimate, current: Estimate | None = None) -> Estimate:
-        estimates = self.ladder.estimates(climate)
+    def _expect(self) -> Estimate:
+        """Choose for the wind that is expected."""
+        self._tracker = ClimateTracker()
+        self._gust, self._bearing = 0.0, (1.0, 0.0)
+        self._judged = float(np.linalg.norm(self._expected.mean))
+        return self._choose(self.ladder.estimates(self._expected))
+
+    def _feel(self, wind_mean: ArrayLike, dt: float) -> None:
+        """Notice a load beyond what the model was chosen for, before the step in which it comes."""
+        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
+        load = x * x + y * y + z * z
+        self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
+        if self._gust < load <= self.settings.max_wind**2:
+            self._gust, self._bearing = load, (x, y)
+            if load > SURPRISE * self._judged:
+                self.review()
+
+    def _gust_climate(self) -> WindClimate:
+        """Forecast until the next look: the last gust holds on, as unsteady as the last minute."""
+        mean = np.array(self._bearing)
+        mean *= self._gust / max(float(np.linalg.norm(mean)), 1e-9)
+        return replace(self._tracker.climate, mean=mean, speed=math.sqrt(self._gust))
+
+    def _hand_over(self, wanted: Estimate) -> None:
+        """Let a better model go on from the motion that is shown."""
+        shown = self._next if self._next is not None and self._faded > 0.5 else self._shown
+        better = self._simulator(wanted)
+        if better is not shown:
+            x, v = shown.motion()
+            into_whole = self._into_whole(shown)
+            here = self._among(better)
+            better.take_over((into_whole @ x)[here], (into_whole @ v)[here])
+            self._left, self._shown = shown, better
+        self._next, self.choice = None, wanted
+
+    def _set_apart(self, left: SwaySimulator) -> None:
+        """Note by how much the picture would jump from a model to the one now shown."""
+        self._turns_apart = self._whole_rotations(left) - self._whole_rotations(self._shown)
+        poses, others = left.place(), self._shown.place()
+        apart = np.einsum("jk,jk->j", poses[:, 3:], others[:, 3:]) < 0.0
+        poses[apart, 3:] *= -1.0
+        self._poses_apart = poses - others
+        self._left, self._behind = None, 1.0
+
+    def _estimates(self, *climates: WindClimate) -> list[Estimate]:
+        """Judge every model in several winds by the worst."""
+        each = [self.ladder.estimates(climate) for climate in climates]
+        return [max(of_model, key=lambda e: e.error) for of_model in zip(*each, strict=True)]
+
+    def _choose(self, estimates: list[Estimate], current: Estimate | None = None) -> Estimate:
         affordable = [e for e in estimates if self.pace * e.cost <= self.budget]
         affordable = (affordable or estimates[:1]) if self.budget > 0.0 else estimates
         same = next((e for e in affordable if current and e.name == current.name), None)
@@ -266,18 +350,28 @@ class AdaptiveSimulator(KeepsState):
     @property
     def _faded(self) -> float:
         """How far the picture has gone over to the next model."""
-        share = max((self._next_age - RUN_IN) / CROSS_FADE, 0.0)
-        return share * share * (3.0 - 2.0 * share)
+        return _smooth(max((self._next_age - RUN_IN) / CROSS_FADE, 0.0))
 
     def _whole_rotations(self, simulator: SwaySimulator) -> Floats:
         """Key rotations of a model among those of the whole tree, (N,), a new array."""
+        rotations: Floats = self._into_whole(simulator) @ simulator.rotations()
+        return rotations
+
+    def _into_whole(self, simulator: SwaySimulator) -> Any:
+        """Matrix from the coordinates of a model to those of the whole tree."""
         name = self._name_of(simulator)
         if name not in self._among_whole:
             self._among_whole[name] = coordinates_within(
                 simulator.joints, self.ladder.moving(name), self.joints
             )
-        rotations: Floats = self._among_whole[name] @ simulator.rotations()
-        return rotations
+        return self._among_whole[name]
+
+    def _among(self, simulator: SwaySimulator) -> Ints:
+        """Where the coordinates of a model stand among those of the whole tree, (n,)."""
+        first = self.joints["coordinate"][self.ladder.moving(self._name_of(simulator))]
+        counts = simulator.joints["n_coordinates"]
+        within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        return np.repeat(first, counts) + within
 
     def _name_of(self, simulator: SwaySimulator) -> str:
         return next(name for name, each in self._built.items() if each is simulator)
@@ -296,6 +390,16 @@ class AdaptiveSimulator(KeepsState):
 def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
     """Find the cheapest within a tolerance, if there is one."""
     return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)
+
+
+def _smooth(share: float) -> float:
+    return share * share * (3.0 - 2.0 * share)
+
+
+def _shift(poses: Floats, by: Floats) -> None:
+    """Add a small difference to poses, in place."""
+    poses += by
+    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
 
 
 def _mix(poses: Floats, others: Floats, share: float) -> None:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How much model a scene needs: what is known of a model before it runs, and the least that will do.
 
@@ -79,7 +81,7 @@ def choose(
     if not within:
         cheapest = min(estimates, key=lambda e: e.cost)
         raise ParameterError(
-            f"no model costs less than {budget:g} us a step",
+            f"no model costs less than {budget:g} us per step",
             where="budget",
             cure=f"allow {cheapest.cost:.3g} us for '{cheapest.name}'",
         )

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a frame costs, from counts: known before a model is run, so that a budget can choose among
 models.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The ladder of models of one tree: the error of every model in any wind, known before a step.
 
@@ -35,10 +37,10 @@ from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
 
-MARGIN = 1.3
+MARGIN = 1.6
 """Estimated over computed error: the wind is not quite linear in its effect."""
 
-FLOOR = 0.03
+FLOOR = 0.06
 """Share of the motion by which even the coupled model may err against every segment solved."""
 
 TABLE_FLOOR, TABLE_MARGIN = 0.02, 3.0
@@ -87,7 +89,7 @@ class FidelityLadder:
         """Find the response of every model."""
         self.tree, self.species = tree, species
         whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
-        self._coefficient = species.drag_law(bool(whole.settings.in_leaf))
+        self._drag_law = whole.drag_law
         best, best_modes = _best(tree)
         bank = whole.bank(best, best_modes)
         rotations = key_response(bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES)
@@ -106,6 +108,7 @@ class FidelityLadder:
             if model == "coupled":
                 model, n_modes = best, best_modes
             self._add(model, n_modes, share)
+        self._grams = np.stack([self._motion, *(each.error for each in self._models.values())])
         del self._truth
 
     def calibrated(self, estimate: Estimate) -> CalibratedTree:
@@ -139,13 +142,14 @@ class FidelityLadder:
             From the cheapest to the dearest.
 
         """
-        load = pressure(climate.speed, *self._coefficient)
-        swing = _root(self._motion, climate, with_mean=False) * load
-        offset = _root(self._motion, climate, with_mean=True) * load
+        load = pressure(climate.speed, *self._drag_law)
+        means, swings = _mean_squares(self._grams, climate)
+        swing, offset = load * math.sqrt(swings[0]), load * math.sqrt(means[0] + swings[0])
+        errors = MARGIN * load * np.sqrt(means[1:] + swings[1:])
         found = []
-        for each in self._models.values():
-            floor = (FLOOR + each.table_error) * offset if each.model != "frozen" else 0.0
-            bound = MARGIN * _root(each.error, climate, with_mean=True) * load + floor
+        tables = [each.table_error for each in self._models.values()]
+        for each, error, table in zip(self._models.values(), errors.tolist(), tables, strict=True):
+            bound = error + ((FLOOR + table) * offset if each.model != "frozen" else 0.0)
             found.append(Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen))
         return sorted(found, key=lambda e: e.cost)
 
@@ -203,10 +207,19 @@ def _gram(response: Complexes) -> Floats:
     return np.asarray(gram, dtype=np.float64)
 
 
-def _root(gram: Floats, climate: WindClimate, *, with_mean: bool) -> float:
-    """Root mean square that a load makes of a response, per unit of drag pressure."""
-    density = np.einsum("fij,ij->f", gram, climate.covariance) * climate.spectrum(_FREQUENCIES)
-    square = float((0.5 * (density[1:] + density[:-1]) * np.diff(_FREQUENCIES)).sum())
-    if with_mean:
-        square += float(climate.mean @ gram[0] @ climate.mean)
-    return math.sqrt(max(square, 0.0))
+def _mean_squares(grams: Floats, climate: WindClimate) -> tuple[Floats, Floats]:
+    """
+    Mean squares that the mean of a load and its swings make of responses, per unit of drag
+    pressure, both (k,), for `_gram` of each, (k, f, 2, 2).
+
+    """
+    spectrum = climate.spectrum(_FREQUENCIES) * _SPANS
+    weights = np.multiply.outer(spectrum, climate.covariance).ravel()
+    swings = grams.reshape(len(grams), -1) @ weights
+    means = grams[:, 0] @ climate.mean @ climate.mean
+    return np.maximum(means, 0.0), np.maximum(swings, 0.0)
+
+
+_SPANS = np.gradient(_FREQUENCIES)
+_SPANS[[0, -1]] *= 0.5
+"""Weights of the trapezoidal rule."""

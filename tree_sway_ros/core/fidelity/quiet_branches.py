@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Which branches hardly move on their parents: those that may be frozen.
 
@@ -87,7 +89,7 @@ def _swings(tree: Tree, branches: Any, rotations: Complexes) -> tuple[Floats, fl
 
 
 def _weights(frequencies: Floats) -> Floats:
-    """Mean square of the load at each frequency, in a wind of intensity .2 from any side, (f,)."""
+    """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side, (f,)."""
     climate = WindClimate.steady(1.0, 0.2)
     density = climate.spectrum(frequencies) * np.trace(climate.covariance)
     steps = np.diff(frequencies)

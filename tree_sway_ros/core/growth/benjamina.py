@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 *Ficus benjamina*, the weeping fig, as a pot plant: the first of the paper's two plants (3.1).
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A broadleaf that stands alone: a short trunk that forks into limbs, and a rounded crown.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The trees that come with the package: the paper's two pot plants and a small broadleaf."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A conifer that stands alone: one straight stem, branches in whorls, a pointed crown.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 *Cupressus macrocarpa* 'Goldcrest' as a pot plant: the second of the paper's two plants (3.1).
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How thick each branch is: the pipe model, anchored at one measured diameter.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The modulus that gives a tree its measured frequency.
 
@@ -151,6 +153,7 @@ class _ScaledTree:
             tree,
             species.density,
             carries=True,
+            shear_ratio=species.shear_ratio,
             enriched=enriched_branches(tree, settings.enrich),
             speed_profile=settings.profile.over_anemometer(
                 0.5 * (tree.start[:, 2] + tree.end[:, 2])
@@ -175,7 +178,8 @@ class _ScaledTree:
         """Slowest mode at a scale."""
         scaled = replace(self.reduction, elastic=scale * self.reduction.elastic)
         modes = natural_modes(self.tree, scaled, 1)
-        energy = self.reduction.elastic * modes.shapes[:, 0] ** 2
+        shape = modes.shapes[:, 0]
+        energy = shape * (self.reduction.elastic @ shape)
         square = float(modes.circular[0]) ** 2
         return _Sway(scale, square, float(energy.sum()), int(np.argmax(energy)))
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 From a record of a swaying tree to its natural frequency and damping ratio.
 
@@ -74,7 +76,7 @@ def estimate_sway(
     time
         Time of each sample in [s], rising, (n,).
     motion
-        Displacement, tilt or acceleration, one column an axis, all of one unit, (n,) or (n, c).
+        Displacement, tilt or acceleration, one column per axis, all of one unit, (n,) or (n, c).
     kind
         ``release`` or ``ambient``; found from the record if None.
     band
@@ -212,7 +214,7 @@ def _refuse_coarse(gap: float, rough: float) -> None:
     if gap * rough > 0.25:
         raise FormatError(
             f"{gap:.3g} s between samples, for a sway of {rough:.3g} Hz",
-            cure="record at least four samples a cycle, without gaps",
+            cure="record at least four samples per cycle, without gaps",
         )
 
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Where a spectrum has peaks, seen with the same relative width at every frequency.
 

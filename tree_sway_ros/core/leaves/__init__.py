@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves: traits of a species, mass and area per branch, where they sit, how they flutter.
 

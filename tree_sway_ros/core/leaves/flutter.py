@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How leaves flutter: an angle about their stalk from the speed of the air that passes them.
 
@@ -128,7 +130,7 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     Returns
     -------
     dict
-        One list a field of `LeafClusters`, rounded to .1 mm and 1e-4, and ``flutter`` with the law
+        One list a field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
         and its two constants.
 
     """

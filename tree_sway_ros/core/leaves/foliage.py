@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 
@@ -15,7 +17,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.tree.leaf_traits import LeafTraits
@@ -166,8 +167,7 @@ def leaf_clusters(
     away /= np.linalg.norm(away, axis=1)[:, None]
     offset = 0.5 * size[:, None] * away
     offset[:, 0] += along
-    rest = tree.rest_frame[segment]
-    orientation = _facing_up(away, Rotation.from_quat(rest[:, [1, 2, 3, 0]]))
+    orientation = _facing_up(away, tree.rest_frame[segment])
     return LeafClusters(
         segment=segment.astype(np.int64),
         offset=offset,
@@ -207,12 +207,14 @@ def no_clusters() -> LeafClusters:
     )
 
 
-def _facing_up(away: Floats, rest: Rotation) -> Floats:
+def _facing_up(away: Floats, rest: Floats) -> Floats:
     """
     Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
 
     """
-    up = rest.inv().apply([0.0, 0.0, 1.0])
+    from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
+
+    up = Rotation.from_quat(rest[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0])
     z = up - np.einsum("ij,ij->i", up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)
     # A leaf that points straight up may look any way across.

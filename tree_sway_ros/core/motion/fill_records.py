@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The one place where records are filled: what stepping and placing know of a tree, laid out for them.
 
@@ -11,14 +13,14 @@ from __future__ import annotations
 
 import math
 from heapq import heappop, heappush
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.beam import SlopeShape, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
-from tree_sway_ros.core.branch.shapes import N_SHAPES
+from tree_sway_ros.core.branch.shapes import N_SHAPES, exposure
 from tree_sway_ros.core.motion.records import (
     LANES,
     branch_layout,
@@ -27,9 +29,11 @@ from tree_sway_ros.core.motion.records import (
     segment_layout,
 )
 from tree_sway_ros.core.reduction.matrices import Reduction
-from tree_sway_ros.core.reduction.pruning import Pruning
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.tree.tree import Tree
+
+if TYPE_CHECKING:
+    from tree_sway_ros.core.reduction.pruning import Pruning
 
 
 def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
@@ -172,7 +176,7 @@ def _fill_shapes(model: BranchModel, record: Any) -> None:
     record["n_coordinates"] = len(model.coordinates)
     record["n_pairs"] = sum(not one.is_twist for one in model.coordinates) // 2
     for i, one in enumerate(model.coordinates):
-        record["reach"][i] = one.shape.displacement(one.axis)[1][-1]
+        record["reach"][i] = one.field.nodes[-1]
     record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
     for column, shape in _distinct_shapes(model):
         record["steepest"][column] = np.square(shape.segment_slope).max()
@@ -181,6 +185,10 @@ def _fill_shapes(model: BranchModel, record: Any) -> None:
     length = model.beam.length
     record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
     record["tip_skew"] = _skew(tip_load, length)
+
+
+_STRAIGHT = 0.03
+"""Share of the wind along a branch below which this is not told apart from none."""
 
 
 def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
@@ -196,11 +204,16 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     along = np.einsum("sg,si,sj->ij", share, beam.tangent, beam.tangent)
     across = np.eye(3) - along
     record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    exposed = exposure(beam)
+    exposed /= float(share.sum(axis=1) @ exposed)
+    into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
     square = 0.0
     for i, one in enumerate(model.coordinates):
-        field = one.shape.displacement(one.axis)[0]
-        record["push"][i] = np.einsum("sg,sgk->k", share, field)
-        record["turn"][i] = float((share * one.shape.slope).sum()) * one.axis
+        field = one.field.points
+        own = np.einsum("s,sg,sgk->sk", exposed, share, field)
+        own -= np.einsum("sk,sk->s", own, beam.tangent)[:, None] * beam.tangent
+        record["push"][i] = into_push @ own.sum(axis=0)
+        record["turn"][i] = np.einsum("sg,sgk->k", share, one.field.slope)
         square += float((share[..., None] * field**2).sum()) if i < 2 else 0.0
     _fill_flow(record, square)
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Real spherical harmonics of odd degree: what a wind's load on a tree is a sum of.
 

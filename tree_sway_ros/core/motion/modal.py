@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Models 3 and 4 of the ladder: natural modes of the coupled tree on the same oscillators.
 
@@ -27,7 +29,8 @@ from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, WORK
 from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
-from tree_sway_ros.core.oscillators.step_rules import DEFAULT, fill_steps
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT
+from tree_sway_ros.core.oscillators.step_rules import fill_steps
 from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, true_force
 from tree_sway_ros.core.reduction.matrices import Reduction
 from tree_sway_ros.core.reduction.modes import Modes
@@ -72,10 +75,11 @@ class ModalBank:
         self.stiffness = modes.circular**2
         self.damping = 2.0 * damping_ratio * modes.circular
         diagonal = np.asarray(reduction.stiffness.diagonal())
-        self.flexibility = 1.0 / diagonal if m < n else np.zeros(n)
+        self.flexibility = reduction.flexibility if m < n else np.zeros(n)
         held = reduction.stiffness @ modes.shapes * self.flexibility[:, None] / self.stiffness
         self.held = np.ascontiguousarray(held.T)
         self.limit = LOAD_MAX * diagonal
+        self._momentum = (reduction.mass @ modes.shapes).T
         self._participation = _participation(branches, modes.shapes)
         self.work = np.zeros(len(branches), dtype=WORK)
         self._loads = load_records(branches)
@@ -164,6 +168,15 @@ class ModalBank:
         self._compiled_expand()
         rotations: Floats = self.state[3]
         return rotations
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        return self.rotations().copy(), self.shapes @ self.modal[1]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""

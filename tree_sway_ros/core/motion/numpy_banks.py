@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Banks of oscillators stepped in plain numpy, for machines without a compiler: some 100 times slower.
 

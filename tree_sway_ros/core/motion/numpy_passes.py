@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The load step on whole levels of a tree at a time, in plain numpy: `tree_passes` where nothing is
 compiled.
@@ -159,3 +161,42 @@ def into_lanes(rows: Floats, field: Floats) -> None:
     """Write rows of branches, (b, ...), into a field of records in lanes."""
     block, lane = np.divmod(np.arange(len(rows)), LANES)
     field[block, ..., lane] = rows
+
+
+def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
+    """
+    Moments of winds from all sides, as far as they are linear in the wind: those along x and y then
+    stand for any between.
+
+    Parameters
+    ----------
+    branches
+        Records of `BRANCH`, (b,).
+    n_coordinates
+        N.
+
+    Returns
+    -------
+    Floats
+        Per 1 m/s along x and y in winds of 1 m/s and 1 kg/m^3, in [N m], (N, 2).
+
+    """
+    xx, yy, _, xy, xz, yz = branches["projector"].T
+    level, slant = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
+    sides = np.cos((np.arange(8) + 0.5) * np.pi / 8.0)
+    across = np.sqrt(np.maximum(level[:, None] + slant[:, None] * sides, 0.0)).mean(axis=1)
+    force = np.stack([[xx, xy, xz], [xy, yy, yz]]).transpose(2, 1, 0)
+    force = force * (branches["area"] * branches["speed"] ** 2 * across)[:, None, None]
+    wrench = np.concatenate(
+        [force, np.cross(branches["centre"][:, :, None], force, axis=1)], axis=1
+    )
+    moments = np.zeros((n_coordinates, 2))
+    for b in range(len(branches) - 1, -1, -1):
+        i, k = int(branches["coordinate"][b]), int(branches["n_coordinates"][b])
+        moments[i : i + k] += branches["push"][b, :k] @ force[b]
+        below = int(branches["parent"][b])
+        if below >= 0:
+            wrench[below] += wrench[b]
+            i, k = int(branches["coordinate"][below]), int(branches["n_coordinates"][below])
+            moments[i : i + k] += branches["twist"][b, :k] @ wrench[b]
+    return moments

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Key rotations to poses in plain numpy: `placing` and `rigid_placing` where nothing is compiled.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Memory of the hot path: one record and one record of work per branch, one per sixteen segments.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 How far tips go in a wind that swings at one pace: linear response of every model, before a step is
 taken.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 One pass outward and one inward: how branches move on each other, and what they hand to each other.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Models 1 and 2 of the ladder: every branch an oscillator of its own, on two axes.
 
@@ -5,7 +7,7 @@ Model 1, `branch`, is the paper's: a branch feels its own wind and its own inert
 `subtree`, gives it the inertia of all it carries and the moment of all the wind on it, and lets it
 move with its parent; it still swings at a pace of its own.
 
-The load is found once a step, at the state half a step on (exponential midpoint rule), and held
+The load is found once per step, at the state half a step on (exponential midpoint rule), and held
 over the step; what depends on the branch's own angle is corrected once within the step
 (`two_axis.step_branch`).
 
@@ -26,7 +28,8 @@ from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, OSCILLATORS, WORK
 from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
-from tree_sway_ros.core.oscillators.step_rules import DEFAULT, fill_steps
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT
+from tree_sway_ros.core.oscillators.step_rules import fill_steps
 from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
 
 
@@ -129,6 +132,15 @@ class UncoupledBank:
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
         return self.x
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (2 b,)."""
+        return self.x.copy(), self.v.copy()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (2 b,)."""
+        self.reset()
+        self.x[:], self.v[:] = x, v
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Model `wind_basis`: a tree as a dozen oscillators, driven by a table of all even winds.
 
@@ -116,6 +118,18 @@ class WindBasisBank:
         wx, wy, wz = now["wind"].tolist()
         self.modal.advance(wx, wy, wz, float(now["pressure"]))
         return self.modal.forces()
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        m = self.modal.shapes.shape[1]
+        return self.rotations().copy(), self.modal.shapes @ self.instance[0]["rate"][:m]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal.take_over(x, v)
+        m = self.modal.shapes.shape[1]
+        self.instance["eta"][0, :m], self.instance["rate"][0, :m] = self.modal.modal[:2]
 
     def reset(self) -> None:
         """Go back to rest."""

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Divided differences of the exponential at 0, 0 and a pair of eigenvalues, without cancellation.
 

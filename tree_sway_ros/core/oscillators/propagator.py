@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The exact propagator of a bank of oscillators, the kernel that every model of the ladder stands on.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A branch on two axes: its force, its gyroscopic term and one guarded step of the exact propagator.
 
@@ -17,11 +19,11 @@ cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 
 **Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right to
 3e-9 up to the guard; no root, sine or cosine is taken.
-**Guard.** For these terms (x, y) is held within sinc >= .3 (2.36 rad): beyond it they are the
+**Guard.** For these terms (x, y) is held within sinc >= 0.3 (2.36 rad): beyond it they are the
 circle's. The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max
-k1, and the gyroscopic term is left out where w h >= .5, where a step sees no ellipse. A bounded
+k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no ellipse. A bounded
 moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w
-h)^2 between .8 and 10: up to there one corrector contracts, and a steady load bends the branch to
+h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the branch to
 the right side and angle; at 4 / (w h)^2 it no longer does.
 
 """
@@ -37,7 +39,7 @@ from tree_sway_ros.core.kernel import fused, inlined, like
 
 Floats = NDArray[np.float64]
 
-T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = .3
+T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = 0.3
 LOAD_MAX = 3.0  # load over stiffness that is followed at w h = 1, |W| / k1 [rad]
 LOAD_FINE, LOAD_COARSE = 10.0, 0.8  # bounds on it at fine and at coarse steps
 MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The inertia a branch feels when what it carries gives way: what model 2 knows of coupling.
 
@@ -29,7 +31,7 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     tree
         The tree.
     reduction
-        Its matrices, two coordinates a branch.
+        Its matrices, two coordinates per branch.
 
     Returns
     -------

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
@@ -42,21 +44,25 @@ class Reduction:
     ----------
     first
         First coordinate of each branch, and N at the end, (b + 1,).
+    partner
+        Coordinate of the same shape about the other axis, itself for a twist, (N,).
     twist
         Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
         (b, 9, 6).
     mass, gravity
         Symmetric sparse matrices (N, N) in [kg m^2] and [N m/rad].
     elastic
-        Diagonal of the bending stiffness in [N m/rad], (N,).
+        Of bending and twist, symmetric sparse (N, N) in [N m/rad]; couples the coordinates of one
+        branch.
 
     """
 
     first: Ints
+    partner: Ints
     twist: Floats
     mass: Any
     gravity: Any
-    elastic: Floats
+    elastic: Any
 
     @property
     def n_coordinates(self) -> int:
@@ -66,7 +72,18 @@ class Reduction:
     @property
     def stiffness(self) -> Any:
         """Elastic and geometric stiffness, sparse (N, N), in [N m/rad]."""
-        return (sparse.diags(self.elastic) + self.gravity).tocsc()
+        return (self.elastic + self.gravity).tocsc()
+
+    @property
+    def flexibility(self) -> Floats:
+        """
+        Of each coordinate alone in [rad/(N m)], (N,): both axes as one, so that it does not matter
+        how they are laid.
+
+        """
+        diagonal = np.asarray(self.stiffness.diagonal())
+        mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
+        return mean
 
 
 def reduce_tree(
@@ -102,14 +119,16 @@ def reduce_tree(
     """
     n_branches = tree.n_branches
     first = np.concatenate([[0], np.cumsum([len(m.coordinates) for m in models])]).astype(np.int64)
+    partner = np.arange(first[-1])
     momentum = np.zeros((first[-1], 6))
     twist = np.zeros((n_branches, MAX_COORDINATES, 6))
-    elastic = np.zeros(first[-1])
     body = np.zeros((n_branches, 6, 6))
-    mass, weight = _Blocks(), _Blocks()
+    mass, weight, elastic = _Blocks(), _Blocks(), _Blocks()
     for branch in range(n_branches - 1, -1, -1):
         model = models[branch]
         own = slice(int(first[branch]), int(first[branch + 1]))
+        paired = own.start + sum(not one.is_twist for one in model.coordinates)
+        partner[own.start : paired] = partner[own.start : paired].reshape(-1, 2)[:, ::-1].ravel()
         fields, twists = _motions(model)
         dm = model.mass * model.beam.weight
         moved = dm[..., None] * fields
@@ -133,11 +152,12 @@ def reduce_tree(
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
-        elastic[own] = [way.stiffness(modulus, shear_modulus) for way in model.coordinates]
+        elastic.add(own, own, _own_elastic(model, modulus, shear_modulus))
         if carries:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
-    return Reduction(first, twist, mass.symmetric(shape), weight.symmetric(shape), elastic)
+    matrices = (each.symmetric(shape) for each in (mass, weight, elastic))
+    return Reduction(first, partner, twist, *matrices)
 
 
 class _Blocks:
@@ -171,16 +191,23 @@ def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     Displacement at the points (k, m, 5, 3) and twist on the children (k, c, 6) of each coordinate.
 
     """
-    fields, twists = [], []
-    for way in model.coordinates:
-        points, _, children = way.shape.displacement(way.axis)
-        slope = way.shape.child_slope[:, None]
-        about = cross_matrix(way.axis).T
-        fields.append(points)
-        twists.append(
-            np.hstack([children - slope * (model.beam.child_point @ about), slope * way.axis])
+    fields = [one.field.points for one in model.coordinates]
+    twists = [
+        np.hstack(
+            [
+                one.field.children - np.cross(one.field.child_slope, model.beam.child_point),
+                one.field.child_slope,
+            ]
         )
+        for one in model.coordinates
+    ]
     return np.stack(fields), np.stack(twists)
+
+
+def _own_elastic(model: BranchModel, modulus: float, shear_modulus: float) -> Floats:
+    """Energy between the coordinates of a branch in [N m/rad]."""
+    fields = [one.field for one in model.coordinates]
+    return np.array([[a.stiffness(b, modulus, shear_modulus) for b in fields] for a in fields])
 
 
 def _spatial_inertia(model: BranchModel) -> Floats:
@@ -214,18 +241,18 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     masses = bodies[:, 0, 0]
     if len(masses):
         beyond = beyond + beam.child_lever[1] @ masses
-    slopes = [way.shape.slope for way in model.coordinates]
-    child_slopes = [way.shape.child_slope for way in model.coordinates]
-    axes = [way.axis for way in model.coordinates]
+    slopes = [one.field.slope for one in model.coordinates]
+    child_slopes = [one.field.child_slope for one in model.coordinates]
     lever = beam.weight[..., None] * beyond[..., None] * beam.tangent[:, None, :]
     moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
     hanging = moment - masses[:, None] * beam.child_point
-    n = len(axes)
+    arms = np.vstack([lever.reshape(-1, 3), hanging])
+    turns = [np.vstack([a.reshape(-1, 3), c]) for a, c in zip(slopes, child_slopes, strict=True)]
+    n = len(turns)
     lift = np.zeros((n, n))
     for i in range(n):
-        for j in range(n):
-            arm = np.einsum("sg,sgk->k", slopes[i] * slopes[j], lever)
-            arm = arm + (child_slopes[i] * child_slopes[j]) @ hanging
-            twice = axes[i] * (axes[j] @ arm) + axes[j] * (axes[i] @ arm)
-            lift[i, j] = 0.5 * twice[2] - (axes[i] @ axes[j]) * arm[2]
+        for j in range(i, n):
+            a, b = turns[i], turns[j]
+            twice = a[:, 2] * (b * arms).sum(axis=1) + b[:, 2] * (a * arms).sum(axis=1)
+            lift[i, j] = lift[j, i] = (0.5 * twice - (a * b).sum(axis=1) * arms[:, 2]).sum()
     return lift

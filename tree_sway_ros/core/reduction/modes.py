@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
 
@@ -149,9 +151,51 @@ def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
         The chosen ones, the slowest first.
 
     """
-    driven = (np.square(modes.shapes.T @ loads) / modes.circular[:, None] ** 3).max(axis=1)
+    driven = (np.square(modes.shapes.T @ loads) / modes.circular[:, None] ** 3).sum(axis=1)
     kept = np.sort(np.argsort(-driven, kind="stable")[:count])
     return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
+
+
+def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
+    """
+    Add to modes what they lack of the static answers to loads.
+
+    With the flexibility of each coordinate alone taken as static, the answer to these
+    loads then is exact (mode acceleration with Ritz vectors: Wilson, Yuan & Dickens, 1982).
+
+    Parameters
+    ----------
+    modes
+        Some of the natural modes.
+    reduction
+        The matrices.
+    loads
+        Moments on the key rotations, (N, l).
+
+    Returns
+    -------
+    Modes
+        The same and up to l more, orthogonal to them and to each other in mass and stiffness.
+
+    """
+    stiffness, mass = csc_matrix(reduction.stiffness), reduction.mass
+    rest = sparse_linalg.splu(stiffness).solve(np.ascontiguousarray(loads))
+    rest -= loads * reduction.flexibility[:, None]
+    size = np.sqrt(np.einsum("nl,nl->l", rest, stiffness @ rest))
+    for _ in range(2):
+        rest -= modes.shapes @ (modes.shapes.T @ (mass @ rest))
+    energy, inertia = rest.T @ (stiffness @ rest), rest.T @ (mass @ rest)
+    missing = np.sqrt(np.diag(energy)) > 1e-6 * size
+    rest, within = rest[:, missing], np.ix_(missing, missing)
+    if not missing.any():
+        return modes
+    inverse_squares, mixes = linalg.eigh(inertia[within], energy[within])
+    circular = 1.0 / np.sqrt(np.maximum(inverse_squares, 1e-12 * inverse_squares.max()))
+    order = np.argsort(circular)
+    circular = np.concatenate([modes.circular, circular[order]])
+    shapes = np.hstack([modes.shapes, (rest @ mixes)[:, order] * circular[len(modes.circular) :]])
+    slowest_first = np.argsort(circular, kind="stable")
+    return Modes(circular[slowest_first], np.ascontiguousarray(shapes[:, slowest_first]))
 
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
@@ -166,15 +210,25 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
 
     """
     n = reduction.n_coordinates
-    scale = 1.0 / np.sqrt(reduction.elastic)
-    softening = -(reduction.gravity.multiply(scale[:, None]).multiply(scale[None, :])).tocsc()
+    softening = -reduction.gravity
     if softening.nnz == 0 or abs(softening).max() == 0.0:
         return float("inf"), 0
     if n <= _DENSE_UP_TO:
-        values, vectors = linalg.eigh(softening.toarray(), subset_by_index=[n - 1, n - 1])
+        values, vectors = linalg.eigh(
+            softening.toarray(), reduction.elastic.toarray(), subset_by_index=[n - 1, n - 1]
+        )
     else:
-        values, vectors = sparse_linalg.eigsh(softening, k=1, which="LA", v0=np.ones(n))
-    worst = int(np.argmax(np.abs(vectors[:, 0] * scale)))
+        elastic = csc_matrix(reduction.elastic)
+        solve = sparse_linalg.splu(elastic)
+        values, vectors = sparse_linalg.eigsh(
+            softening,
+            k=1,
+            M=elastic,
+            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
+            which="LA",
+            v0=np.ones(n),
+        )
+    worst = int(np.argmax(np.abs(vectors[:, 0])))
     return (1.0 / float(values[0]) if values[0] > 0.0 else float("inf")), worst
 
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Linear algebra on one thread, so that a tree is the same bit for bit however many a machine has.
 

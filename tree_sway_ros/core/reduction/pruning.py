@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What is left of a tree's records when some subtrees move with what they sit on.
 
@@ -105,10 +107,11 @@ class Pruning:
         return replace(
             whole,
             first=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+            partner=np.searchsorted(keep, whole.partner[keep]),
             twist=whole.twist[moving],
             mass=whole.mass[keep][:, keep],
             gravity=whole.gravity[keep][:, keep],
-            elastic=whole.elastic[keep],
+            elastic=whole.elastic[keep][:, keep],
         )
 
     def carriers(self) -> Ints:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Rigid bodies and springs that stand for a tree: hinges inside the segments.
 
@@ -23,7 +25,7 @@ from tree_sway_ros.core.tree.tree import Tree
 
 class Bodies(NamedTuple):
     """
-    Arrays over the bodies, one a segment, in rest axes, which are the world's.
+    Arrays over the bodies, one per segment, in rest axes, which are the world's.
 
     Parameters
     ----------

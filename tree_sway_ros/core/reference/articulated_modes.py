@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Linear modes of the articulated tree: mass and stiffness of its joints at rest.
 

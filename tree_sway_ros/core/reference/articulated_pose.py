@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Nodes and poses of an articulated tree from the rotations of its joints."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree with every segment cut in equal pieces: the same wood, more joints or elements."""
 
 from __future__ import annotations

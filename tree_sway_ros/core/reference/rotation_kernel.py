@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is
 allocated.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Several trees in one wind: where they stand, when a gust reaches them, how exact each must be.
 

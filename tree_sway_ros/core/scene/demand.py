@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a scene asks of its trees: an error that nobody sees, a time that a frame may take.
 
@@ -6,17 +8,17 @@ What a scene asks of its trees: an error that nobody sees, a time that a frame m
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.fidelity.estimate import distance_to, tolerance_in_metres
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 
 
 def tell_demand(
-    simulators: Iterable[Any],
+    simulators: Iterable[TreeSimulator],
     *,
     tolerance: float,
     budget: float = 0.0,
@@ -41,7 +43,7 @@ def tell_demand(
         Largest error on its picture, and its focal length, both in [px].
 
     """
-    adaptive = _adaptive(simulators)
+    adaptive = adaptive_among(simulators)
     total = sum(each.tree.n_segments for each in adaptive)
     for each in adaptive:
         each.budget = budget * each.tree.n_segments / total
@@ -51,7 +53,7 @@ def tell_demand(
             each.tolerance = tolerance_in_metres(tolerance_pixels, distance, focal_length)
 
 
-def tell_pace(simulators: Iterable[Any], spent: float) -> None:
+def tell_pace(simulators: Iterable[TreeSimulator], spent: float) -> None:
     """
     Tell the trees that choose their model how fast this machine is.
 
@@ -63,11 +65,12 @@ def tell_pace(simulators: Iterable[Any], spent: float) -> None:
         What a frame of all of them takes here, with the models now in use, in [us].
 
     """
-    adaptive = _adaptive(simulators)
+    adaptive = adaptive_among(simulators)
     foreseen = sum(each.choice.cost for each in adaptive)
     for each in adaptive:
         each.pace = spent / foreseen
 
 
-def _adaptive(simulators: Iterable[Any]) -> list[AdaptiveSimulator]:
+def adaptive_among(simulators: Iterable[object]) -> list[AdaptiveSimulator]:
+    """Return those trees that choose their model."""
     return [each for each in simulators if isinstance(each, AdaptiveSimulator)]

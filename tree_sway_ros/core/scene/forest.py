@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Several trees in one wind, solved one after another and placed in one block.
 
@@ -19,8 +21,9 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
 from tree_sway_ros.core.tree.species import species_named
@@ -39,11 +42,8 @@ class Forest:
         The trees, each with a name of its own.
     settings
         How they are modelled, but for those with settings of their own.
-    fidelity
-        Model of trees without settings of their own, as of `make_simulator`; the model of the
-        settings if None.
     tolerance
-        Largest error of the tips in [m] that fidelity ``auto`` may allow itself, in each tree on
+        Largest error of the tips in [m] that the model ``auto`` may allow itself, in each tree on
         its own.
     anemometer
         Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind
@@ -77,7 +77,6 @@ class Forest:
         trees: Sequence[PlacedTree],
         settings: Settings | None = None,
         *,
-        fidelity: str | None = None,
         tolerance: float = 0.005,
         anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
@@ -95,7 +94,6 @@ class Forest:
             _simulator(
                 tree,
                 tree.settings_where_it_stands(self.settings),
-                None if tree.settings is not None else fidelity,
                 tolerance,
             )
             for tree in trees
@@ -237,9 +235,7 @@ class Forest:
         self._wind[:] = 0.0
 
 
-def _simulator(
-    tree: PlacedTree, settings: Settings, fidelity: str | None, tolerance: float
-) -> Simulator:
+def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSimulator:
     """Simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:
@@ -247,7 +243,6 @@ def _simulator(
             placed,
             tree.species if tree.species is not None else species_named(placed.species),
             settings,
-            fidelity=fidelity or settings.model,
             tolerance=tolerance,
         )
     except TreeSwayError as error:

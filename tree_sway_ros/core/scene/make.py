@@ -1,87 +1,40 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
-One way to every model of a tree: by the name of its fidelity.
+One way to every model of a tree, by its name.
 
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
-from numpy.typing import ArrayLike
-
-from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
 from tree_sway_ros.core.simulator.segments import SegmentsSimulator
-from tree_sway_ros.core.simulator.settings import MODELS, Settings
-from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator
-from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError
-
-FIDELITIES = ("auto", *MODELS, "segments")
-"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
-
-
-class Simulator(Protocol):
-    """A tree that sways, whatever the model; or a forest."""
-
-    tree: Tree
-    settings: Settings
-
-    @property
-    def model(self) -> str:
-        """Model in use."""
-
-    @property
-    def counts(self) -> Counts:
-        """What was refused or held."""
-
-    @property
-    def n_solved(self) -> int:
-        """Branches that are solved."""
-
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-
-    @property
-    def n_frozen(self) -> int:
-        """Branches that move with their parent as one body."""
-
-    @property
-    def tip_displacement(self) -> Floats:
-        """Way of the highest tip from rest in [m], (3,)."""
-
-    def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """Advance one step of dt [s] in a wind [m/s]."""
-
-    def place(self, out: Floats | None = None) -> Floats:
-        """Place every segment, (n, 7)."""
-
-    def reset(self) -> None:
-        """Go back to rest."""
 
 
 def make_simulator(
     tree: Tree,
-    species: Species,
+    species: Species | None = None,
     settings: Settings | None = None,
     *,
-    fidelity: str = "auto",
     tolerance: float = 0.005,
     budget: float = 0.0,
     **changes: Any,
-) -> Simulator:
+) -> TreeSimulator:
     """
     Make a simulator of a tree.
 
     Parameters
     ----------
     tree, species, settings
-        As for `SwaySimulator`.
-    fidelity
-        One of `FIDELITIES`.
+        As for `SwaySimulator`; the model is one of `FIDELITIES`.
     tolerance
         Largest error of the tips in [m] that ``auto`` may allow itself.
     budget
@@ -93,23 +46,20 @@ def make_simulator(
     Raises
     ------
     ParameterError
-        An unknown fidelity, or a setting out of its range.
+        An unknown model, or a setting out of its range.
     TreeError
         A tree that buckles under its own weight.
 
     """
-    if fidelity not in FIDELITIES:
-        raise ParameterError(
-            f"unknown fidelity '{fidelity}'", cure=f"use one of: {', '.join(FIDELITIES)}"
-        )
-    model = replace(settings or Settings(), **changes)
-    if fidelity == "auto":
-        return AdaptiveSimulator(tree, species, model, tolerance=tolerance, budget=budget)
-    if fidelity == "segments":
-        return SegmentsSimulator(tree, species, model)
-    return SwaySimulator(tree, species, replace(model, model=fidelity))
+    chosen = replace(settings or Settings(), **changes)
+    wood = species if species is not None else species_named(tree.species)
+    if chosen.model == "auto":
+        return AdaptiveSimulator(tree, wood, chosen, tolerance=tolerance, budget=budget)
+    if chosen.model == "segments":
+        return SegmentsSimulator(tree, wood, chosen)
+    return SwaySimulator(tree, wood, chosen)
 
 
-def simulators_of(simulator: Any) -> tuple[Any, ...]:
+def simulators_of(simulator: Simulator) -> tuple[TreeSimulator, ...]:
     """Return the simulator of each tree: of a `Forest` all of them, of a tree its own."""
-    return tuple(getattr(simulator, "simulators", (simulator,)))
+    return simulator.simulators

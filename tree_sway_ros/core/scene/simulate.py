@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
 
@@ -7,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Protocol, cast, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.sway_record import SwayRecord
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
@@ -33,13 +35,6 @@ class GrownTree(Protocol):
     @property
     def species(self) -> Species:
         """The wood."""
-
-
-class TreeSimulator(Simulator, Protocol):
-    """A simulator of one tree, whose key rotations are one array."""
-
-    def rotations(self) -> Floats:
-        """Key rotations in [rad], (N,)."""
 
 
 @runtime_checkable
@@ -62,7 +57,6 @@ def simulate(
     rate: float = 60.0,
     seconds: float | None = None,
     branches: Sequence[int] | None = None,
-    fidelity: str = "auto",
     settings: Settings | None = None,
     progress: Callable[[float], None] | None = None,
     **changes: Any,
@@ -83,7 +77,7 @@ def simulate(
         Length of what is simulated in [s]; all of the wind if None.
     branches
         Branches whose tips are told; the one that bears the highest tip if None.
-    fidelity, settings, **changes
+    settings, **changes
         The model, as for `make_simulator`.
     progress
         Called now and then with the part that is done, from 0 to 1.
@@ -107,8 +101,8 @@ def simulate(
     means = _step_means(wind, rate, seconds)
     chosen = _chosen(body, branches)
     model = replace(settings or Settings(), **changes)
-    simulator = cast(TreeSimulator, make_simulator(body, species, model, fidelity=fidelity))
-    base = BaseMoment(body, species, model, fidelity)
+    simulator = make_simulator(body, species, model)
+    base = BaseMoment(body, species, model)
     rest = tips_of_poses(body, simulator.place())[chosen]
     tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
     poses, every = np.empty((body.n_segments, 7)), max(len(means) // 100, 1)
@@ -139,15 +133,15 @@ class BaseMoment:
 
     Parameters
     ----------
-    tree, species, settings, fidelity
+    tree, species, settings
         As for the simulator that is asked.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: Settings, fidelity: str) -> None:
+    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Find the moment per unit of each coordinate of the stem."""
         layer = CalibratedTree(tree, species, settings).layer(
-            fidelity if fidelity in ("branch", "subtree") else "coupled"
+            settings.model if settings.model in ("branch", "subtree") else "coupled"
         )
         stem = layer.models[0]
         beam = stem.beam

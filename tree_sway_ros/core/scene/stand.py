@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A stand: thousands of trees of a few kinds in one wind.
 
@@ -25,8 +27,9 @@ from tree_sway_ros.core.motion.harmonics import COUNT
 from tree_sway_ros.core.motion.standing import STANDING, place_standing, step_standing
 from tree_sway_ros.core.motion.wind_basis import WindBasisBank, fill_pace, instance_layout
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
     LOAD_HELD,
@@ -66,7 +69,7 @@ class StandTree:
     yaw
         How far it is turned about the vertical, counterclockwise seen from above, in [rad].
     fidelity
-        ``wind_basis``, ``frozen`` (it stands still), or another of `make.FIDELITIES`: then it is
+        ``wind_basis``, ``frozen`` (it stands still), or another of `FIDELITIES`: then it is
         solved on its own.
 
     Raises
@@ -443,7 +446,7 @@ def _standing_tree(told: StandTree, kind: Tree) -> Tree:
     return PlacedTree(told.name, scaled, told.x, told.y, told.z, told.yaw).placed()
 
 
-def _own_simulator(told: StandTree, kind: StandKind, settings: Settings) -> Simulator:
+def _own_simulator(told: StandTree, kind: StandKind, settings: Settings) -> TreeSimulator:
     tree = _standing_tree(told, kind.tree)
     species = kind.species if kind.species is not None else species_named(kind.tree.species)
-    return make_simulator(tree, species, settings, fidelity=told.fidelity)
+    return make_simulator(tree, species, settings, model=told.fidelity)

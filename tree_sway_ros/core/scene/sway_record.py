@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a tree did in a wind, as arrays over time: tips, the moment and the strain at its base."""
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree that sways: settings, calibration, ``step`` and ``place``.
 
 One class per kind of simulator, all with the same protocol.
-No choice of model by itself: that is ``fidelity``.
+No choice of model by itself: that is the room ``fidelity``.
 
 """

@@ -1,5 +1,9 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 From a tree to the oscillators that move it, for every model of the ladder.
+
+What only one model needs is imported where that model is made.
 
 """
 
@@ -8,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,38 +20,48 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
+from tree_sway_ros.core.motion.drag import DragLaw, crown_drag
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
     head_records,
     segment_records,
 )
-from tree_sway_ros.core.motion.modal import ModalBank
-from tree_sway_ros.core.motion.numpy_banks import NumpyModalBank, NumpyUncoupledBank
-from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
-from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import WORK, branch_layout
-from tree_sway_ros.core.motion.response import Responding
-from tree_sway_ros.core.motion.rigid_placing import RigidParts
-from tree_sway_ros.core.motion.uncoupled import UncoupledBank
-from tree_sway_ros.core.motion.wind_basis import WindBasisBank
-from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
-from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
 from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
-from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, refuse_buckling
+from tree_sway_ros.core.reduction.modes import (
+    Modes,
+    most_driven,
+    natural_modes,
+    refuse_buckling,
+    with_static,
+)
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.similar_twigs import twig_sources
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway_ros.core.motion.modal import ModalBank
+    from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
+    from tree_sway_ros.core.motion.rigid_placing import RigidParts
+    from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+    from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
 
 
-class Oscillators(Responding, Protocol):
+class Oscillators(Protocol):
     """What every model gives: key rotations that a wind moves."""
 
+    carries: bool
+    is_tabled: bool
+    branches: Any
     work: Any
+
+    def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
+        """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
@@ -61,6 +75,12 @@ class Oscillators(Responding, Protocol):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,)."""
+
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
 
@@ -72,6 +92,9 @@ _COUPLED = ("wind_basis", "modes", "coupled")
 
 USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
+
+_FEW_MODES = 6
+"""Of more modes than this, two are what the others lack of the static sway along x and y."""
 
 
 class Frozen:
@@ -104,6 +127,13 @@ class Frozen:
     def rotations(self) -> Floats:
         """Zeros, (N,)."""
         return self._x
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Zeros, both (N,)."""
+        return self._x, self._x
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Stay at rest."""
 
     def forces(self) -> Floats:
         """None, (b, 3)."""
@@ -151,6 +181,8 @@ class Bank:
 
     @cached_property
     def _plain_placing(self) -> NumpyPlacing:
+        from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
+
         return NumpyPlacing(self.branches, self.segments, self.frozen)
 
     @cached_property
@@ -170,6 +202,24 @@ class Bank:
             self._plain_placing.place(rotations, origin, out)
             return
         self._compiled_placing(rotations, origin, out)
+        self._place_frozen(rotations, out)
+
+    def on_threads(self, threads: int) -> Callable[[Floats, Floats, Floats], None]:
+        """Return what `place` does on several threads; on one where nothing is compiled."""
+        if self.plain:
+            return self.place
+        from tree_sway_ros.core.motion.threaded_placing import ThreadedPlacing
+
+        work = self.oscillators.work
+        threaded = ThreadedPlacing(self.branches, self.segments, self.heads, work, threads)
+
+        def place_all(rotations: Floats, origin: Floats, out: Floats) -> None:
+            threaded.place(rotations, origin, out)
+            self._place_frozen(rotations, out)
+
+        return place_all
+
+    def _place_frozen(self, rotations: Floats, out: Floats) -> None:
         if self.frozen is not None:
             self.frozen.place(self.branches, self.oscillators.work, rotations, out)
 
@@ -224,6 +274,27 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping(bool(settings.in_leaf))
 
+    @cached_property
+    def _crown_drag(self) -> tuple[DragLaw, float]:
+        species, area = self.species, self.settings.leaf_area
+        if not self.settings.in_leaf or area is None:
+            return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), 1.0
+        tree = self.tree
+        wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
+        laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
+        return crown_drag(wood, float(area.sum()), *laws)
+
+    @property
+    def drag_law(self) -> DragLaw:
+        """Of the whole tree, wood and leaves."""
+        return self._crown_drag[0]
+
+    @property
+    def leaf_load_area(self) -> Floats | None:
+        """Area of bare wood that the leaves of each branch stand for in [m^2], (b,)."""
+        area = self.settings.leaf_area
+        return None if area is None else self._crown_drag[1] * area
+
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
@@ -242,28 +313,38 @@ class CalibratedTree:
         TreeError
             A tree that buckles under its own weight, or a branch without mass.
         ParameterError
-            More modes than there are.
+            More modes than there are, or a model that is none of `MODELS`.
 
         """
+        if model not in MODELS:
+            raise ParameterError(
+                f"'{model}' is no model of one set of oscillators",
+                where="model",
+                cure=f"use one of: {', '.join(MODELS)}; make_simulator knows the others",
+            )
         layer, settings = self.layer(model), self.settings
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if model == "frozen":
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
-            modal = (NumpyModalBank if self.plain else ModalBank)(
+            modal = self._modal_bank()(
                 branches, layer.reduction, modes, self.damping_ratio, settings.integrator
             )
             oscillators, frequencies = modal, modes.frequencies
             if model == "wind_basis":
+                from tree_sway_ros.core.motion.wind_basis import WindBasisBank
+                from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
+
                 need_compiler("the model 'wind_basis'")
                 n = len(modes.circular)
                 if n not in self._tables:
-                    law = self.species.drag_law(bool(settings.in_leaf))
-                    self._tables[n] = WindBasisTable(modal, law, settings.degree)
+                    self._tables[n] = WindBasisTable(modal, self.drag_law, settings.degree)
                 oscillators = WindBasisBank(modal, self._tables[n])
         else:
             refuse_buckling(self.tree, layer.reduction)
+            from tree_sway_ros.core.tree.similar_twigs import twig_sources
+
             copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
             bank = self._uncoupled(layer, branches, carries=model == "subtree")
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
@@ -315,10 +396,11 @@ class CalibratedTree:
             tree,
             species.density,
             carries=carries,
+            shear_ratio=species.shear_ratio,
             enriched=enriched,
             speed_profile=speed,
             leaf_mass=settings.leaf_mass,
-            leaf_area=settings.leaf_area,
+            leaf_area=self.leaf_load_area,
         )
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(
@@ -334,7 +416,10 @@ class CalibratedTree:
         )
 
     def _modes(self, model: str, count: int | None) -> Modes:
-        """All modes, or those of the slowest that the wind drives most."""
+        """
+        All modes, or those of the slowest that the wind drives most and the static sway they lack.
+
+        """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         n_modes = min(USUAL_MODES, n) if count is None else count
@@ -346,10 +431,28 @@ class CalibratedTree:
         modes = self._slowest.slowest(wanted)
         if not is_driven:
             return modes
-        return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+        from tree_sway_ros.core.motion.numpy_passes import even_wind_moments, mean_wind_moments
+
+        if not _FEW_MODES < n_modes < n - 1:
+            return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
+        loads = mean_wind_moments(self.coupled.branches, n)
+        driven = most_driven(modes, loads, n_modes - loads.shape[1])
+        return with_static(driven, reduction, loads)
+
+    def _modal_bank(self) -> type[ModalBank]:
+        if self.plain:
+            from tree_sway_ros.core.motion.numpy_banks import NumpyModalBank
+
+            return NumpyModalBank
+        from tree_sway_ros.core.motion.modal import ModalBank
+
+        return ModalBank
 
     def _uncoupled(self, layer: Layer, branches: Any, *, carries: bool) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
+        from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+        from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
+
         tree, settings = self.tree, self.settings
         inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)
         stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
@@ -361,5 +464,9 @@ class CalibratedTree:
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)
             stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-        kind = NumpyUncoupledBank if self.plain else UncoupledBank
+        kind: type[UncoupledBank] = UncoupledBank
+        if self.plain:
+            from tree_sway_ros.core.motion.numpy_banks import NumpyUncoupledBank
+
+            kind = NumpyUncoupledBank
         return kind(branches, inertia, damping, stiffness, carries, settings.integrator)

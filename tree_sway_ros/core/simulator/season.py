@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Whether a tree bears leaves, decided in one place, and what they weigh, catch and damp.
 

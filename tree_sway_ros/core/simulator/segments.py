@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
 reduced tree.
@@ -22,6 +24,7 @@ from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -43,7 +46,7 @@ LARGEST_TURN = 1.0
 """Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
 
 
-class SegmentsSimulator(KeepsState):
+class SegmentsSimulator(OneTree, KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 
@@ -76,20 +79,22 @@ class SegmentsSimulator(KeepsState):
         damping = settings.damping_ratio
         if damping is None:
             damping = species.damping(bool(settings.in_leaf))
-        coefficient, exponent = species.drag_law(bool(settings.in_leaf))
+        calibrated = CalibratedTree(tree, species, settings)
+        law = calibrated.drag_law
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
             tree,
             species.modulus,
             species.density,
             damping,
-            coefficient,
-            drag_exponent=exponent,
+            law.coefficient,
+            drag_exponent=law.exponent,
+            steady_drag=law.steady,
             gravity=settings.gravity,
             twist_ratio=2.0 * species.shear_ratio,
             wind_factor=settings.profile.over_anemometer(middle),
             leaf_mass=settings.leaf_mass,
-            leaf_area=settings.leaf_area,
+            leaf_area=calibrated.leaf_load_area,
         )
         self.wind = np.zeros(3)
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a simulator can be told, in one place.
 
@@ -10,13 +12,16 @@ from dataclasses import dataclass, field
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
-from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import ParameterError
 
 MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 """Models of the ladder of models, the least first."""
+
+FIDELITIES = ("auto", *MODELS, "segments")
+"""Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
 STIFFNESS_RULES = ("beam", "volume_rule")
 """Ways to set the stiffness of a branch."""
@@ -30,8 +35,9 @@ class Settings:
     Parameters
     ----------
     model
-        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes`` or
-        ``coupled``.
+        Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes``,
+        ``coupled`` or ``segments``; or ``auto``, which takes the least that will do, and takes some
+        seconds to judge them all.
     n_modes
         How many modes the models ``wind_basis`` and ``modes`` step; 12, or all if there are
         fewer, if None.
@@ -52,7 +58,7 @@ class Settings:
     profile
         Wind over height.
     integrator
-        Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be
+        Method that steps the oscillators, one of `rule_names.REAL_TIME`; one whose step would be
         unstable is refused at the first step. Later steps that are longer are cut.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
@@ -68,7 +74,7 @@ class Settings:
 
     """
 
-    model: str = "subtree"
+    model: str = "modes"
     n_modes: int | None = None
     mode_choice: str = "driven"
     degree: int = 5
@@ -88,7 +94,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
-        _one_of("model", self.model, MODELS)
+        _one_of("model", self.model, FIDELITIES)
         _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
         _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
         _one_of("integrator", self.integrator, REAL_TIME)

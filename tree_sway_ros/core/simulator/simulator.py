@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree in the wind: owns the order of work, and no clock.
 
@@ -13,10 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill, array_to_read
+from tree_sway_ros.core.checks import array_to_fill, array_to_read, within
 from tree_sway_ros.core.motion.drag import pressure
-from tree_sway_ros.core.oscillators.step_rules import CONDITIONALLY_STABLE
+from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
@@ -52,7 +55,7 @@ class Counts:
     restarted: int = 0
 
 
-class SwaySimulator(KeepsState):
+class SwaySimulator(OneTree, KeepsState):
     """
     A tree that sways.
 
@@ -63,9 +66,11 @@ class SwaySimulator(KeepsState):
     species
         Its wood, damping and drag; looked up by the tree's own species if None.
     settings
-        How it is modelled.
+        How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
+    threads
+        How many threads place, 1 to 64: more than one pays from some ten thousand segments on.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
@@ -94,6 +99,7 @@ class SwaySimulator(KeepsState):
         settings: Settings | None = None,
         *,
         calibrated: CalibratedTree | None = None,
+        threads: int = 1,
         **changes: Any,
     ) -> None:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
@@ -104,8 +110,10 @@ class SwaySimulator(KeepsState):
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
-        self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
+        self.drag_law = calibrated.drag_law
         self._advance = self.bank.oscillators.advance
+        within("threads", threads, 1, 64)
+        self._place = self.bank.place if threads == 1 else self.bank.on_threads(int(threads))
         self._max_wind = self.settings.max_wind
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
         self._wind = np.zeros(3)
@@ -251,7 +259,7 @@ class SwaySimulator(KeepsState):
     def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
         shape = self._poses.shape
         poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self.bank.place(rotations, self._origin, poses)
+        self._place(rotations, self._origin, poses)
         return poses
 
     @property
@@ -275,6 +283,14 @@ class SwaySimulator(KeepsState):
         centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
         moment: Floats = np.cross(centre, force).sum(axis=0)
         return moment
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
+        return self.bank.oscillators.motion()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), instead of from rest."""
+        self.bank.oscillators.take_over(x, v)
 
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""

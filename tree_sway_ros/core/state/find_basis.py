@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Finding the basis of a tree's shapes: singular values of what the tips do in seeded winds.
 

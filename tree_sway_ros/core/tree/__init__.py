@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree as arrays of segments in depth-first order, and what makes or recuts one.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Leaves of a species: how large, how many, how heavy, how quick to flutter.
 
@@ -32,6 +34,10 @@ class LeafTraits:
         Frequency at which a leaf turns on its stalk in [Hz].
     is_evergreen
         Whether it keeps them in winter.
+    are_needles
+        Whether they are drawn as needles, or as blades.
+    green
+        Their colour in pictures, red, green and blue from 0 to 1.
 
     """
 
@@ -40,10 +46,12 @@ class LeafTraits:
     fresh_mass: float
     flutter_frequency: float
     is_evergreen: bool = False
+    are_needles: bool = False
+    green: tuple[float, float, float] = (0.30, 0.50, 0.20)
 
 
 BROAD_LEAVES = LeafTraits(0.07, 2500.0, 0.20, 4.0)
 """Leaves of an average broadleaf."""
 
-NEEDLES = LeafTraits(0.08, 2200.0, 0.50, 6.0, is_evergreen=True)
+NEEDLES = LeafTraits(0.08, 2200.0, 0.50, 6.0, is_evergreen=True, are_needles=True)
 """Leaves of an average conifer."""

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Numbers that no tree has: what is nonsense is refused, what is only odd is told.
 

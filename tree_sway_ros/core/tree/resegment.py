@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree cut anew: its branches in more or fewer segments, its shape and its motion the same.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The frame of a segment: x along it, turned from the axes of the world as little as possible.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Twigs that copy: of many alike, the necessary few are solved and the others reuse their solution.
 

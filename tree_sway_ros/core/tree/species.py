@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a tree is made of: wood, damping, drag and leaves of each species, with the sources.
 
@@ -15,7 +17,7 @@ in `leaf_traits`.
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from tree_sway_ros.core.tree.leaf_traits import BROAD_LEAVES, NEEDLES, LeafTraits
@@ -42,7 +44,7 @@ class Species:
     drag_exponent
         N of the drag law in [-]: how much the crown streamlines.
     bare_drag_coefficient
-        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, .82 to
+        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.
     shear_ratio
         Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
@@ -68,7 +70,7 @@ class Species:
     drag_coefficient: float = 1.2
     drag_exponent: float = 0.0
     bare_drag_coefficient: float = 1.2
-    shear_ratio: float = 1.0 / 2.6
+    shear_ratio: float = 1.0 / 14.0
     leaves: LeafTraits = BROAD_LEAVES
     habit: str = "broadleaf"
     clear_bole: float = 0.1
@@ -85,9 +87,14 @@ class Species:
         return self.bare_drag_coefficient, 0.0
 
 
+def _needles(*green: float) -> LeafTraits:
+    """Average needles of a colour of their own."""
+    return replace(NEEDLES, green=green)  # type: ignore[arg-type]
+
+
 _GOLDCREST = "Cupressus macrocarpa 'Goldcrest'"
 _with_broadleaf_drag = partial(Species, drag_coefficient=2.345, drag_exponent=0.877)
-_conifer = partial(Species, habit="conifer", leaves=NEEDLES)
+_conifer = partial(Species, habit="conifer")
 _with_spruce_drag = partial(_conifer, drag_coefficient=2.35, drag_exponent=0.51)
 
 _TABLE = {
@@ -98,7 +105,7 @@ _TABLE = {
             "Ficus benjamina",
             8.3e9,
             950.0,
-            leaves=LeafTraits(0.05, 2500.0, 0.22, 5.0, is_evergreen=True),
+            leaves=LeafTraits(0.05, 2500.0, 0.22, 5.0, is_evergreen=True, green=(0.22, 0.45, 0.16)),
             habit="pot",
             is_estimate=True,
         ),
@@ -107,15 +114,17 @@ _TABLE = {
             _GOLDCREST,
             6.0e9,
             950.0,
-            leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, is_evergreen=True),
+            leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, True, True, green=(0.63, 0.70, 0.22)),
             habit="pot",
             is_estimate=True,
         ),
         _with_broadleaf_drag(
             "broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True
         ),
-        _with_spruce_drag("spruce", "Norway spruce", 6.3e9, 850.0),
-        _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0),
+        _with_spruce_drag(
+            "spruce", "Norway spruce", 6.3e9, 850.0, leaves=_needles(0.20, 0.36, 0.22)
+        ),
+        _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0, leaves=_needles(0.26, 0.40, 0.30)),
         _conifer(
             "pine",
             "Scots pine",
@@ -123,7 +132,7 @@ _TABLE = {
             850.0,
             drag_coefficient=3.07,
             drag_exponent=0.75,
-            leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, is_evergreen=True),
+            leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, True, True, green=(0.28, 0.42, 0.28)),
             clear_bole=0.45,
         ),
         _conifer(
@@ -133,6 +142,7 @@ _TABLE = {
             850.0,
             drag_coefficient=2.40,
             drag_exponent=0.70,
+            leaves=_needles(0.22, 0.38, 0.20),
             clear_bole=0.2,
         ),
         Species(

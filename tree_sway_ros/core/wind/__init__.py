@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The wind from a sensor to what the trees feel: convention, gate, mean over a step, profile, travel.
 

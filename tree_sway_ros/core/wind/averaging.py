@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 From samples of a sensor to what a solver needs: the mean of the wind over each of its steps.
 

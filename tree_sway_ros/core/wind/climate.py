@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The wind of the last while in a few numbers: what a choice of model needs to know of it.
 
@@ -32,6 +34,9 @@ class WindClimate:
         Mean speed in [m/s].
     integral_time
         How long a gust lasts in [s].
+    beat, beat_share
+        Frequency in [Hz] at which the load swings most, and the share of the variance that does so;
+        no share in turbulence.
 
     """
 
@@ -39,6 +44,8 @@ class WindClimate:
     covariance: Floats
     speed: float
     integral_time: float = 5.0
+    beat: float = 1.0
+    beat_share: float = 0.0
 
     @staticmethod
     def of_samples(velocity: Floats, rate: float) -> WindClimate:
@@ -50,7 +57,7 @@ class WindClimate:
         velocity
             Wind in [m/s], (n, 2) or (n, 3).
         rate
-            Samples a second in [Hz].
+            Samples per second in [Hz].
 
         """
         speed = np.linalg.norm(velocity, axis=1)
@@ -62,6 +69,7 @@ class WindClimate:
             around.T @ around / len(load),
             float(speed.mean()),
             _integral_time(around[:, largest], rate),
+            *_beat(around[:, largest], rate),
         )
 
     @staticmethod
@@ -76,7 +84,7 @@ class WindClimate:
         mean_speed
             In [m/s].
         intensity
-            Standard deviation over mean of the along-wind speed in [-]; across it .8 of that (IEC
+            Standard deviation over mean of the along-wind speed in [-]; across it 0.8 of that (IEC
             61400-1).
         bearing
             Angle of the mean from x towards y in [rad].
@@ -99,7 +107,13 @@ class WindClimate:
         [Hz].
 
         """
-        return von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
+        share = von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
+        if self.beat_share > 0.0:
+            width = _BEAT_WIDTH * self.beat
+            swing = np.exp(-0.5 * np.square((frequencies - self.beat) / width))
+            swing *= self.beat_share / (math.sqrt(2.0 * math.pi) * width)
+            share = (1.0 - self.beat_share) * share + swing
+        return share
 
 
 class ClimateTracker:
@@ -156,3 +170,23 @@ def _integral_time(signal: Floats, rate: float) -> float:
     below = np.flatnonzero(correlation <= 0.0)
     end = int(below[0]) if len(below) else len(correlation)
     return max(float(correlation[:end].sum()) / rate, 1.0 / rate)
+
+
+_BEAT_WIDTH = 0.04
+"""Width of a beat over its frequency in [-]."""
+
+_FEWEST_BEATS = 4
+"""Swings of a record below which its slowest gusts would pass for a beat."""
+
+
+def _beat(signal: Floats, rate: float) -> tuple[float, float]:
+    """Frequency that a signal swings at most in [Hz], and the share of its variance there [-]."""
+    n = len(signal)
+    power = np.abs(np.fft.rfft(signal * np.hanning(n))) ** 2
+    total = float(power.sum())
+    if len(power) <= _FEWEST_BEATS + 2 or not total > 0.0:
+        return 1.0, 0.0
+    peak = int(np.argmax(power))
+    if peak < _FEWEST_BEATS:
+        return 1.0, 0.0
+    return peak * rate / n, float(power[peak - 2 : peak + 3].sum()) / total

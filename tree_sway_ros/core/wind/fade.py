@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Going over from a steady wind into a curve: a mix of the two, and so never beyond them."""
 
 from __future__ import annotations

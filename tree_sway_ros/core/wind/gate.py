@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The gate that a wind sample passes: faults are refused and counted, true gusts and steps get in.
 
@@ -29,7 +31,7 @@ from tree_sway_ros.core.checks import three_numbers, within
 from tree_sway_ros.core.wind.limits import FASTEST_WIND, is_wind
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
-# 0x8000, which is 327.68 where the count is .01 m/s.
+# 0x8000, which is 327.68 where the count is 0.01 m/s.
 SENTINELS = (
     999.0,
     999.9,

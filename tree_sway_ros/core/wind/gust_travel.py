@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Gusts travel: a tree feels the wind of the anemometer as long ago as the wind takes from there to
 the tree.
@@ -101,7 +103,7 @@ class GustHistory:
 
     @property
     def n_ahead(self) -> int:
-        """Places that stand upwind of the anemometer, by more than .1 s of the wind's way."""
+        """Places that stand upwind of the anemometer, by more than 0.1 s of the wind's way."""
         return int((self._wanted < -0.1).sum())
 
     @property

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Wind over height: what an anemometer at one height says of the wind at another.
 
@@ -29,10 +31,10 @@ class WindProfile:
     anemometer_height
         Height of the anemometer over the ground in [m].
     exponent
-        p of the power law in [-]; .14 over open ground, .25 and more between trees (Davenport,
+        p of the power law in [-]; 0.14 over open ground, 0.25 and more between trees (Davenport,
         1960).
     roughness
-        z0 of the log law in [m]; .03 over grass, .5 and more between trees.
+        z0 of the log law in [m]; 0.03 over grass, 0.5 and more between trees.
     ground
         Height of the ground in the tree's frame in [m].
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How fast wind can be: the one limit of all doors that wind comes in by."""
 
 from __future__ import annotations

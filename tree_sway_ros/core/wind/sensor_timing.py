@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How often a sensor speaks and how late it is heard, estimated from its samples."""
 
 from __future__ import annotations

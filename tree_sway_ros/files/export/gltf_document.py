@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A glTF 2.0 document as it is put together: JSON, and the bytes that its accessors name."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree as glTF 2.0, ready to sway: one mesh, by a skin or by morph targets.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The mesh of a tree: a cone for each segment, a lozenge for each cluster of leaves."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A tree out to the YAML form, such that reading it back gives the same tree to the last bit.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A stand as a file gave it: its kinds, and where each tree stands; used like a `ForestFile`."""
 
 from __future__ import annotations

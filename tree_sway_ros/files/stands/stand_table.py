@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories have.
 
@@ -18,8 +20,8 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.scene.make import FIDELITIES
 from tree_sway_ros.core.scene.stand import LARGEST, SMALLEST, StandKind, StandTree
+from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import FormatError, ParameterError, TreeSwayError
 from tree_sway_ros.files.stands.stand_file import StandFile, stand_file

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The last step of every importer: segments to a `Tree`, with errors that name the file."""
 
 from __future__ import annotations

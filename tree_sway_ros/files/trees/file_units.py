@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the numbers of a tree's file mean, where its format does not say: units and the axis up."""
 
 from __future__ import annotations

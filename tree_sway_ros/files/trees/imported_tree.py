@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree as a file gave it: its shape, its wood, and what the importer had to do to it."""
 
 from __future__ import annotations
@@ -8,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
-from tree_sway_ros.core.scene.make import Simulator, make_simulator
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.plausibility import doubts, refuse_nonsense
@@ -75,16 +78,15 @@ class TreeFile:
         self,
         settings: Settings | None = None,
         *,
-        fidelity: str = "auto",
         tolerance: float = 0.005,
         **changes: Any,
-    ) -> Simulator:
+    ) -> TreeSimulator:
         """
         Make a simulator of the tree.
 
         Parameters
         ----------
-        settings, fidelity, tolerance, **changes
+        settings, tolerance, **changes
             As for `make_simulator`.
 
         Raises
@@ -94,9 +96,7 @@ class TreeFile:
 
         """
         model = replace(settings or Settings(), **changes)
-        return make_simulator(
-            self.tree, self.species, model, fidelity=fidelity, tolerance=tolerance
-        )
+        return make_simulator(self.tree, self.species, model, tolerance=tolerance)
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """

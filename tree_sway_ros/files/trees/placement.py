@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A scene moved as one: the frame of its file put somewhere in a larger frame."""
 
 from __future__ import annotations

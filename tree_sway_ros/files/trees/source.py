@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A tree or a forest by name or by path: what the command line and the nodes call TREE."""
 
 from __future__ import annotations

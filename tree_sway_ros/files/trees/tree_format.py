@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a format of tree files is to the registry: a name, a sniffer and a reader."""
 
 from __future__ import annotations

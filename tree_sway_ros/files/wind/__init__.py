@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Wind records: TOA5, NMEA 0183, tables, bags; records of sway for calibration.
 

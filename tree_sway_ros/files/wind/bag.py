@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Wind in a ROS 2 bag, sqlite3 or mcap, read without ROS through rosbags.
 

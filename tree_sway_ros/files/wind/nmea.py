@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 NMEA 0183: the wind sentences of an instrument on a mast or a boat.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the reader of a wind record is told in words: ``rate=20 sentence=MWV columns=u,v,w``."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A line that an anemometer says: the wind in it, or why it is refused; checksums and log files."""
 
 from __future__ import annotations

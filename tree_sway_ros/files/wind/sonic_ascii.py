@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Lines of ASCII that sonic anemometers send: Gill's and TriSonica's.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The motion of a tree in a table with a header.
 
@@ -58,7 +60,7 @@ class SwayRecord:
     time
         Of each sample in [s], as in the file, (n,).
     motion
-        One column an axis, (n, c), in [m], [rad], [rad/s] or [m/s^2].
+        One column per axis, (n, c), in [m], [rad], [rad/s] or [m/s^2].
     quantity
         ``displacement``, ``tilt``, ``rate`` or ``acceleration``.
     columns

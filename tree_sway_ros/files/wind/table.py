@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Wind in a table: CSV with a header, and the TOA5 of Campbell Scientific's loggers.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Units and conventions that wind files come in, to m/s, blowing to, east, north, up."""
 
 from __future__ import annotations

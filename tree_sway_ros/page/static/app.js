@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /** The page: what comes over the line onto the screen, what hands do back onto the line. */
 
 import { Connection } from "./connection.js";

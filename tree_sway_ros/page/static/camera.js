@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /** A camera that turns about a point: mouse, touch and keys, and the matrix it makes. z is up. */
 
 const FIELD = (32 * Math.PI) / 180;

@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /**
  * Shapes of a scene as vertex arrays, made once: every vertex hangs on a segment, whose pose the
  * graphics unit looks up. A branch is one tube: the ring between two segments belongs to both.

@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /** Controls as the server describes them: sliders, choices, buttons; a refusal puts them back. */
 
 const SEND_EVERY = 80;

@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /**
  * From the state to poses: state -> key rotations -> curves of branches -> segments, joined from
  * the root. The law is the solver's own (doc/streaming.md, "From a frame to poses").

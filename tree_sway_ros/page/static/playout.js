@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /**
  * From frames that arrive when they will to a smooth motion: shown a little late, on a curve
  * through the states (Catmull-Rom), never extrapolated.

@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /** Draws a described tree from its poses: bark, leaves, pot, ground, shadow and the wind. */
 
 import { Camera } from "./camera.js";

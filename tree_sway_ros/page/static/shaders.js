@@ -1,3 +1,5 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
 /** Programs of the graphics unit. Poses lie in a texture, two texels per segment. */
 
 export const TEXTURE_WIDTH = 1024;

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A table of parameters on a node: declared with descriptors, checked by our own rules, changed while
 it runs.
@@ -107,6 +109,10 @@ class ParameterValues:
     def __getitem__(self, name: str) -> Value:
         """Value of a parameter, of its own kind: a float is a float even if ROS was given 40."""
         return self._values[name]
+
+    def get(self, name: str, default: Value = None) -> Value:
+        """Value of a parameter that not every node has."""
+        return self._values.get(name, default)
 
     def __call__(self, *names: str) -> dict[str, Value]:
         """Values of some parameters, as keyword arguments."""

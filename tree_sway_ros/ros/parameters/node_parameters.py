@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The parameters of each node, one table per node.
 
@@ -7,16 +9,17 @@ Defaults stand here and nowhere else: the files in ``config/`` hold overrides on
 
 from __future__ import annotations
 
-from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
-from tree_sway_ros.core.scene.make import FIDELITIES
+from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
 from tree_sway_ros.core.simulator.season import LEAVES
-from tree_sway_ros.core.simulator.settings import STIFFNESS_RULES, Settings
+from tree_sway_ros.core.simulator.settings import FIDELITIES, STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS
 from tree_sway_ros.core.wind.height_profile import PROFILES
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS
 from tree_sway_ros.core.wind.simulated.sensor_faults import FAULTS
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
+from tree_sway_ros.files.wind.nmea import SENTENCES
+from tree_sway_ros.files.wind.sonic_ascii import KINDS as SONIC_KINDS
 from tree_sway_ros.ros.parameters.parameter import Parameter, Table
 
 _MODEL = Settings()
@@ -40,7 +43,14 @@ _FRAME = Parameter(
     "frame_id", "map", "The frame of everything that this node publishes.", source="REP-105"
 )
 
+_LIFECYCLE = Parameter(
+    "lifecycle",
+    False,
+    "The node waits for a manager to configure and activate it, as a managed node of ROS does.",
+)
+
 ANEMOMETER: Table = (
+    _LIFECYCLE,
     Parameter(
         "rate",
         20.0,
@@ -143,6 +153,7 @@ ANEMOMETER: Table = (
 )
 
 WIND: Table = (
+    _LIFECYCLE,
     Parameter(
         "input_type",
         WIND_TYPE_NAMES[0],
@@ -203,6 +214,7 @@ WIND: Table = (
 )
 
 SOLVER: Table = (
+    _LIFECYCLE,
     Parameter("tree", "benjamina", "The tree: a built-in name, or the file of a tree or a forest."),
     Parameter(
         "species",
@@ -215,7 +227,7 @@ SOLVER: Table = (
     ),
     Parameter(
         "fidelity",
-        "modes",
+        _MODEL.model,
         "The model of the sway, from the least to the most; `auto` takes the least that keeps "
         "within tolerance and budget.",
         choices=FIDELITIES,
@@ -392,6 +404,7 @@ SOLVER: Table = (
 )
 
 PLAYER: Table = (
+    _LIFECYCLE,
     Parameter("file", "", "The wind record to play: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
     Parameter(
         "output_type",
@@ -449,10 +462,48 @@ VIEWER: Table = (
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )
 
+SENSOR: Table = (
+    _LIFECYCLE,
+    Parameter(
+        "address",
+        "udp://:10110",
+        "The instrument is heard at `tcp://host:port`, `udp://:port` or `serial:/dev/x:4800`.",
+    ),
+    Parameter(
+        "sentence",
+        "auto",
+        "The node reads sentences of this kind; with `auto` the kind of the first good one.",
+        choices=("auto", *SENTENCES, *SONIC_KINDS),
+    ),
+    Parameter(
+        "heading",
+        0.0,
+        "The bow or the north marker points there, clockwise from true north.",
+        "rad",
+        -6.3,
+        6.3,
+        live=True,
+    ),
+    Parameter(
+        "declination", 0.0, "Magnetic declination, east positive.", "rad", -3.2, 3.2, live=True
+    ),
+    Parameter("need_checksum", False, "Sentences without a checksum are refused.", live=True),
+    Parameter("silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0),
+    Parameter(
+        "output_type",
+        WIND_TYPE_NAMES[0],
+        "The node publishes messages of this type.",
+        choices=WIND_TYPE_NAMES,
+    ),
+    _convention("Writes"),
+    _FRAME,
+)
+
 NODE_PARAMETERS: dict[str, Table] = {
     "anemometer": ANEMOMETER,
     "wind": WIND,
     "solver": SOLVER,
     "player": PLAYER,
+    "sensor": SENSOR,
     "viewer": VIEWER,
 }

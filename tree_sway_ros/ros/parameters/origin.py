@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 For whom a parameter was meant: told to this node by its name, or to every node of a launch.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a node can be told: each parameter is defined once, here in form and in `node_parameters` in
 fact.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Several nodes in one process, over real DDS: for the demo, for tests, for programs of one's own.
 
@@ -24,6 +26,7 @@ NODE_CLASSES = {
     "wind": ("tree_sway_ros.nodes.wind", "WindNode"),
     "solver": ("tree_sway_ros.nodes.solver", "SolverNode"),
     "player": ("tree_sway_ros.nodes.player", "PlayerNode"),
+    "sensor": ("tree_sway_ros.nodes.sensor", "SensorNode"),
     "viewer": ("tree_sway_ros.nodes.viewer", "ViewerNode"),
 }
 

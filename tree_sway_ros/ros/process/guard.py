@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The one guard around every callback of a node: what is raised in it is counted and told, not passed
 on.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the four nodes have in common: parameters, topics from the table, reports, failures."""
 
 from __future__ import annotations
@@ -7,16 +9,26 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from tree_sway_ros.core.wind.gate import LARGEST_LEAD
+from tree_sway_ros.errors import TreeSwayError
 from tree_sway_ros.ros.parameters.declaration import ParameterValues
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.origin import own_names
 from tree_sway_ros.ros.process.guard import CallbackGuard
 from tree_sway_ros.ros.process.topics import Topic, message_class, qos_profile
 from tree_sway_ros.ros.reports.diagnostics import WARN, Reporter, Status
+
+_ENTITIES = {
+    "publishers": "destroy_publisher",
+    "subscriptions": "destroy_subscription",
+    "services": "destroy_service",
+    "timers": "destroy_timer",
+}
+"""What a node holds, and what destroys one of it."""
 
 
 class _Never(CallbackGroup):  # type: ignore[misc]
@@ -30,9 +42,12 @@ def _nobody(_message: Any) -> None:
     """Stand where rclpy wants a callback."""
 
 
-class TreeSwayNode(Node):  # type: ignore[misc]
+class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
     A node with a table of parameters.
+
+    It is made in two stages, `configure` and `activate`: at once, or one by one by a manager where
+    the parameter `lifecycle` says so.
 
     Parameters
     ----------
@@ -49,7 +64,7 @@ class TreeSwayNode(Node):  # type: ignore[misc]
         told = {each.name for each in options.get("parameter_overrides") or ()}
         if options.get("use_global_arguments", True):
             told |= own_names([*sys.argv, *(options.get("cli_args") or ())], name)
-        super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
+        Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)
         self.failure: Exception | None = None
         self.is_done = False
         self._alone: dict[str, set[str]] = {}
@@ -62,9 +77,71 @@ class TreeSwayNode(Node):  # type: ignore[misc]
                 self.check_values,
                 lambda parameter: parameter in told,
             )
-        except Exception:
-            self.destroy_node()
+            self.is_active = False
+            if self.values.get("lifecycle"):
+                self._be_managed()
+            else:
+                self.configure()
+                self._start()
+        except BaseException:
+            self.close()
             raise
+
+    def configure(self) -> None:
+        """Open files, compile, create publishers and subscriptions; nothing moves yet."""
+
+    def activate(self) -> None:
+        """Start what moves by itself; `on_close` takes what stops it."""
+
+    def on_configure(self, _state: Any) -> TransitionCallbackReturn:
+        """Configure for a manager; what cannot be is told, and the node stays unconfigured."""
+        self._kept = {each for kind in _ENTITIES for each in getattr(self, kind)}
+        try:
+            self.configure()
+        except TreeSwayError as error:
+            self.get_logger().error(str(error))
+        except Exception as error:
+            self.guard.note(error)
+        else:
+            return TransitionCallbackReturn.SUCCESS
+        self.on_cleanup(_state)
+        return TransitionCallbackReturn.FAILURE
+
+    def on_activate(self, _state: Any) -> TransitionCallbackReturn:
+        """Start for a manager."""
+        self._start()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, _state: Any) -> TransitionCallbackReturn:
+        """Stop for a manager; topics and files stay open."""
+        self.stop()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, _state: Any) -> TransitionCallbackReturn:
+        """Let go of all that `configure` made."""
+        self.stop()
+        for kind, destroy in _ENTITIES.items():
+            for each in [each for each in getattr(self, kind) if each not in self._kept]:
+                getattr(self, destroy)(each)
+        self._alone.clear()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, _state: Any) -> TransitionCallbackReturn:
+        """Stop for good; the process ends."""
+        self.stop()
+        self.is_done = True
+        return TransitionCallbackReturn.SUCCESS
+
+    def _start(self) -> None:
+        self.is_active = True
+        self.activate()
+
+    def _be_managed(self) -> None:
+        n_services = len(self._services)
+        LifecycleNodeMixin.__init__(self)
+        for service in self._services[n_services:]:
+            service.callback = self.guard.wrapped(service.callback)
+        self.get_logger().info("waits for a lifecycle manager to configure and activate it")
 
     def create_subscription(
         self, kind: Any, topic: str, callback: Any, *more: Any, **named: Any
@@ -195,6 +272,7 @@ class TreeSwayNode(Node):  # type: ignore[misc]
 
     def stop(self) -> None:
         """Stop the node's threads; may be called twice."""
+        self.is_active = False
         while self._closers:
             self._closers.pop()()
 

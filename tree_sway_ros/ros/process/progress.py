@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a start is doing, said as it begins and again while it goes on."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The state of a node for people and for `/diagnostics`: a level, a sentence and some values."""
 
 from __future__ import annotations
@@ -62,7 +64,7 @@ def status_array(statuses: list[Status], *, prefix: str, hardware: str, stamp: A
 
 class Reporter:
     """
-    Publishes what `collect` returns once a second.
+    Publishes what `collect` returns once per second.
 
     Parameters
     ----------

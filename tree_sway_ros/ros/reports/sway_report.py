@@ -1,12 +1,16 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Does the stream keep up, and with which model? What the solver says on `/diagnostics`."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import asdict
-from typing import Any
 
+from tree_sway_ros.core.scene.demand import adaptive_among
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.wind.gust_travel import GustHistory
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
 from tree_sway_ros.ros.timing.pacer import Pace, Pacer
 from tree_sway_ros.ros.timing.stepping import Stepper
@@ -45,7 +49,7 @@ class SwayReport:
         """
         output = self._output(pacer.pace(), 1e9 / pacer.period, frames, pacer.is_simulated)
         statuses = [_wind(stepper.wind_state), output, _model(stepper.simulator)]
-        gusts = getattr(stepper.simulator, "gusts", None)
+        gusts = stepper.simulator.gusts
         return statuses if gusts is None else [*statuses, _gusts(gusts)]
 
     def _output(self, pace: Pace, rate: float, frames: int, is_simulated: bool) -> Status:
@@ -79,7 +83,7 @@ def _wind(state: str) -> Status:
     return Status("wind", level, sentence, {"state": state})
 
 
-def _model(simulator: Any) -> Status:
+def _model(simulator: Simulator) -> Status:
     values = {
         "fidelity": simulator.model,
         "branches solved": simulator.n_solved,
@@ -90,7 +94,7 @@ def _model(simulator: Any) -> Status:
     trees = simulators_of(simulator)
     if trees != (simulator,):
         values |= {f"fidelity of {each.tree.name}": each.model for each in trees}
-    adaptive = [each for each in trees if hasattr(each, "choice")]
+    adaptive = adaptive_among(trees)
     if adaptive:
         worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
         values["chosen"] = ", ".join(dict.fromkeys(each.choice.name for each in adaptive))
@@ -114,7 +118,7 @@ def _model(simulator: Any) -> Status:
     return Status("model", OK, simulator.model, values)
 
 
-def _gusts(history: Any) -> Status:
+def _gusts(history: GustHistory) -> Status:
     """How late the trees of a forest feel the wind."""
     values = {
         "longest delay [s]": float(history.delay.max()),

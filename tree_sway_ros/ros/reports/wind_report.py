@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Is the wind there? Rate and age of the samples, and what to call their state."""
 
 from __future__ import annotations
@@ -40,7 +42,7 @@ class WindReport:
 
     @property
     def rate(self) -> float:
-        """Samples a second over the last five seconds in [Hz]."""
+        """Samples per second over the last five seconds in [Hz]."""
         now = time.monotonic()
         recent = [arrival for arrival in list(self._arrivals) if now - arrival <= _WINDOW]
         if len(recent) < 2 or now - recent[-1] > 1.0 + 2.0 * (recent[-1] - recent[-2]):

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A thread that works at a fixed rate, on a grid of absolute times of a ROS clock.
 

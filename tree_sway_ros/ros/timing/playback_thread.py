@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A thread that publishes the events of a `Playback` when they are due."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 From ticks to steps: each period of the grid is solved with the mean wind over that very period.
 
@@ -18,6 +20,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+from tree_sway_ros.core.simulator.protocol import Simulator
+
 _BLOCK = 10_000_000_000_000
 """
 Times are counted in seconds from a whole multiple of this [ns]: short numbers, the same in every
@@ -37,7 +41,7 @@ class Stepper:
     Parameters
     ----------
     simulator
-        A `SwaySimulator`.
+        Of a tree or a forest.
     make_wind
         Makes an empty `WindAverage`; called again whenever the clock was set back.
     period
@@ -45,7 +49,7 @@ class Stepper:
 
     """
 
-    def __init__(self, simulator: Any, make_wind: Callable[[], Any], period: int) -> None:
+    def __init__(self, simulator: Simulator, make_wind: Callable[[], Any], period: int) -> None:
         self.simulator = simulator
         self.is_paused = False
         self._make_wind = make_wind

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree for RViz: one LINE_LIST a radius class, with fixed ids, as bytes.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tree on the wire: its description, and frame by frame its poses, markers and transforms."""
 
 from __future__ import annotations

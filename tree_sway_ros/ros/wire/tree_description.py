@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree as JSON: what the poses do not say, once, for whoever draws them.
 
@@ -40,7 +42,7 @@ SCHEMA: dict[str, Any] = {
         "frame_id": {"type": "string"},
         "segments": {
             "type": "object",
-            "description": "one item a segment; SI units",
+            "description": "one item per segment; SI units",
             "required": ["names", "parents", "lengths", "base_radii", "tip_radii", "branches"],
             "properties": {
                 "names": _NAMES,
@@ -53,7 +55,7 @@ SCHEMA: dict[str, Any] = {
         },
         "branches": {
             "type": "object",
-            "description": "one item a branch, depth first",
+            "description": "one item per branch, depth first",
             "required": ["names", "parents", "first_segments"],
             "properties": {"names": _NAMES, "parents": _INDICES, "first_segments": _INDICES},
         },

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The state of a tree as `sensor_msgs/JointState`: a name per coordinate, the wind first.
 

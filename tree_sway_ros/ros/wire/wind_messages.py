@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The wind in a message: the four types of common_interfaces that drivers use, to and from numbers.
 

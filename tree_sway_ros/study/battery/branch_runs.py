@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Runs of the two-axis kernel that the cases share: one branch, many frames."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway battery``: the cases where methods of integration fail, and what ours does there."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Runs the battery and tells what held: a table in the terminal, a JSON file, an exit code."""
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ def run_battery(
     full: bool = False, json: str | Path | None = None, only: Iterable[str] | None = None
 ) -> int:
     """
-    Run the cases, print a line a row, write JSON if asked to.
+    Run the cases, print a line per row, write JSON if asked to.
 
     Parameters
     ----------

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 SUNDIALS IDA on the paper's multiplier form: the method of a solver library beside ours, where it is
 installed.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Error against cost of every method, in smooth, gusty and turning wind, one segment and a chain of
 six.
@@ -27,10 +29,10 @@ from tree_sway_ros.tools.progress import bar
 Array = NDArray[Any]
 Wind = Callable[[Array], Array]
 SECONDS = 8.0
-REFERENCE_RATE = {1: 960, 6: 240}  # steps a second of the reference, by number of segments
+REFERENCE_RATE = {1: 960, 6: 240}  # steps per second of the reference, by number of segments
 RATES = (30, 60, 120)
 MEAN_POINTS = 64
-GUSTS = 3.7  # gusts a second, which no step meets
+GUSTS = 3.7  # gusts per second, which no step meets
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Point:
         Root mean square of the angles' error in [rad]; NaN where the method blew up or lost the
         motion.
     flops
-        Operations a step, weighted, at 60 steps a second.
+        Operations a step, weighted, at 60 steps per second.
     wall_ratio
         Time a step over that of semi-implicit Euler on the minimal form, same run.
 
@@ -73,7 +75,7 @@ def winds(n: int) -> dict[str, Wind]:
         return np.stack([3 * np.sin(1.9 * t), 14 + 8 * np.sin(1.45 * t) + 6 * np.sin(4.4 * t)], -1)
 
     def gusty(t: Array) -> Array:
-        # a turbulence intensity of .2 is one of .4 of the load
+        # a turbulence intensity of 0.2 is one of 0.4 of the load
         return np.asarray([0.0, 12.0] + np.array([2.0, 4.8]) * knots[(t * GUSTS).astype(int)])
 
     def turning(t: Array) -> Array:

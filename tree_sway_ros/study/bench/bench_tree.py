@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree that the benchmarks run on: 121 branches of 6 segments, four orders, made by rule.
 

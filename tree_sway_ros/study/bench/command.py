@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway bench``: what a step costs, against a stated baseline in the same run."""
 
 from __future__ import annotations
@@ -5,30 +7,53 @@ from __future__ import annotations
 import argparse
 import json
 import platform
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.stands.stand_file import StandFile
+from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.study.bench.cut import cut_table
+from tree_sway_ros.study.bench.engines import race_engines
 from tree_sway_ros.study.bench.forest import forest_table
+from tree_sway_ros.study.bench.latency import time_latency
+from tree_sway_ros.study.bench.measured import Measured, as_json, draw, read_baseline, table
 from tree_sway_ros.study.bench.setup_time import setup_table
+from tree_sway_ros.study.bench.sizes import time_sizes
+from tree_sway_ros.study.bench.stand import time_stand
 from tree_sway_ros.study.bench.step import StepTiming, time_steps
+from tree_sway_ros.study.bench.stream import time_stream
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "what",
-        choices=("step", "cut", "forest", "setup"),
+        choices=("step", "cut", "forest", "setup", *_FIGURES),
         help="step: solve and place one step of a tree of 121 branches; cut: solve it cut in 3 "
-        "to 24 segments a "
-        "branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees of 121 and 1,021 "
-        "branches up",
+        "to 24 segments per branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees "
+        "of 121 and 1,021 branches up; sizes: the model wind_basis on trees of 121 to 10,105 "
+        "branches; stand: 1,000 trees of 1,000 segments; stream: 10,000 poses at 60 Hz to another "
+        "process; latency: from a wind's stamp to its pose; engines: beside MuJoCo",
     )
     parser.add_argument("--rounds", type=int, default=20, help="of 200 steps each (%(default)s)")
     parser.add_argument("--segments", type=int, default=6, help="a branch, for step (%(default)s)")
-    parser.add_argument("--json", action="store_true", help="for programs, in seconds; for step")
+    parser.add_argument("--json", action="store_true", help="for programs; not for cut to setup")
+    parser.add_argument(
+        "--tree",
+        metavar="TREE",
+        help="instead of the benchmark's own: a tree for sizes, latency and engines, a stand for "
+        "stand",
+    )
+    parser.add_argument("--size", type=int, metavar="N", help="trees of stand, poses of stream")
+    parser.add_argument(
+        "--seconds", type=float, metavar="S", help="how long stream, latency and engines run"
+    )
+    parser.add_argument("--baseline", metavar="FILE", help="what --json wrote before: tell ratios")
+    parser.add_argument("--chart", metavar="FILE", help="draw the figures as PNG, SVG or PDF")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -37,6 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
         if not low <= getattr(arguments, name) <= high:
             value = getattr(arguments, name)
             raise ParameterError(f"{value}", where=f"--{name}", cure=f"give {low} to {high}")
+    if arguments.what in _FIGURES:
+        return _measure(arguments)
     if arguments.what != "step":
         print(f"one thread on {core_name()}")
         if arguments.what == "cut":
@@ -64,6 +91,66 @@ def run(arguments: argparse.Namespace) -> int:
     for timing in timings:
         print(_row(timing))
     return 0
+
+
+def _measure(arguments: argparse.Namespace) -> int:
+    """Run a benchmark that gives figures, and tell them in the ways that are asked for."""
+    if arguments.size is not None and not 1 <= arguments.size <= 200_000:
+        raise ParameterError(f"{arguments.size}", where="--size", cure="give 1 to 200000")
+    if arguments.seconds is not None and not 0.5 <= arguments.seconds <= 3600.0:
+        raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0.5 to 3600")
+    baseline = None if arguments.baseline is None else read_baseline(arguments.baseline)
+    rows = _FIGURES[arguments.what](arguments)
+    title = f"{arguments.what}, one core of {core_name()}"
+    if arguments.json:
+        print(as_json(rows, what=arguments.what, core=core_name()), end="")
+    else:
+        print(f"{title}\n{table(rows, baseline)}")
+    if arguments.chart is not None:
+        draw(rows, arguments.chart, title)
+    return 0
+
+
+def _given(**options: Any) -> dict[str, Any]:
+    """Options that are given."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def _sizes(arguments: argparse.Namespace) -> list[Measured]:
+    return time_sizes([open_tree(arguments.tree).tree] if arguments.tree else ())
+
+
+def _stand(arguments: argparse.Namespace) -> list[Measured]:
+    if arguments.tree is None:
+        return time_stand(**_given(n_trees=arguments.size))
+    scene = open_scene(arguments.tree)
+    if not isinstance(scene, StandFile):
+        raise ParameterError(
+            f"'{arguments.tree}' is no stand", where="--tree", cure="give config/stand.yaml"
+        )
+    return time_stand(scene.simulator)
+
+
+def _stream(arguments: argparse.Namespace) -> list[Measured]:
+    return time_stream(**_given(n_poses=arguments.size, seconds=arguments.seconds))
+
+
+def _latency(arguments: argparse.Namespace) -> list[Measured]:
+    return time_latency(**_given(tree=arguments.tree, seconds=arguments.seconds))
+
+
+def _engines(arguments: argparse.Namespace) -> list[Measured]:
+    tree = open_tree(arguments.tree).tree if arguments.tree else None
+    return race_engines(tree, **_given(seconds=arguments.seconds))
+
+
+_FIGURES: dict[str, Callable[[argparse.Namespace], list[Measured]]] = {
+    "sizes": _sizes,
+    "stand": _stand,
+    "stream": _stream,
+    "latency": _latency,
+    "engines": _engines,
+}
 
 
 def core_name() -> str:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Solving timed by how finely branches are cut: key segments alone are solved, so it should not
 matter.

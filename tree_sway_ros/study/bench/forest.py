@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A forest timed: what share of a core it takes to solve and place it sixty times a second.
 
@@ -83,7 +85,7 @@ def bench_forest(n_trees: int, model: str, segments_a_branch: int = SEGMENTS_A_B
 
 
 def time_forest(forest: Forest, frames: int = 600) -> ForestTiming:
-    """Take a forest through gusts at 60 frames a second and time every frame."""
+    """Take a forest through gusts at 60 frames per second and time every frame."""
     winds = gusts(200)
     block = np.zeros((forest.tree.n_segments, 7))
     dt = 1.0 / RATE

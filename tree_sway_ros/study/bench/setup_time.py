@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Setting a tree up, timed: from its segments to a simulator that is ready to step.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 One step of a tree, timed: the compiled kernels against the same formulas in plain numpy.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Many trees in many winds with many settings, offline: ``tree-sway study STUDY.yaml``.
 

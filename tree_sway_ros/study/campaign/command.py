@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway study``: many trees in many winds with many settings, over all cores."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One case from plain data to plain numbers, in whatever process it is asked."""
 
 from __future__ import annotations
@@ -46,9 +48,9 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     """
     tree = _tree(tuple(sorted(case.tree.items())))
     settings = dict(case.settings)
-    fidelity = settings.pop("fidelity", "auto")
+    model = settings.pop("fidelity", "auto")
     record = simulate(
-        tree, _wind(case), rate=case.rate, seconds=case.seconds, fidelity=fidelity, **settings
+        tree, _wind(case), rate=case.rate, seconds=case.seconds, model=model, **settings
     )
     layer = CalibratedTree(tree.tree, tree.species, Settings(**settings))
     row: Plain = {**_told("tree", case.tree), **_told("wind", case.wind), **case.settings}

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 From a study file to its cases: every tree in every wind with every combination of settings.
 
@@ -18,12 +20,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import jsonschema
-import yaml
-
 from tree_sway_ros import kernel_cache
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.text_file import path_of, read_bytes, read_text
+from tree_sway_ros.files.yaml_document import read_yaml
 
 Plain = dict[str, Any]
 
@@ -90,21 +91,16 @@ def read_study(path: str | Path) -> list[Case]:
         A setting that there is not.
 
     """
-    path = Path(path).expanduser()
-    try:
-        study = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FormatError(f"cannot be read ({error.strerror})", where=str(path)) from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise FormatError("is no YAML: " + " ".join(str(error).split()), where=str(path)) from None
+    path = path_of(path)
     schema = json.loads(
         files("tree_sway_ros.study.campaign").joinpath("study_schema.json").read_text("utf-8")
     )
-    wrong = jsonschema.Draft202012Validator(schema).iter_errors(study)
-    first = jsonschema.exceptions.best_match(wrong)
-    if first is not None:
-        place = "".join(f"[{part}]" for part in first.absolute_path) or "the whole"
-        raise FormatError(f"{place}: {first.message}", where=str(path))
+    document = read_yaml(read_text(path), str(path), schema)
+    study = document.values
+    for number, wind in enumerate(study["winds"]):
+        if ("file" in wind) == ("speed" in wind):
+            where = document.where("winds", number)
+            raise FormatError("a wind is a file or a speed", where=where, cure="give one of them")
     varied = _settings(study.get("settings", {}), path)
     common = {key: study[key] for key in ("seconds", "rate", "series") if key in study}
     code = kernel_cache.source_digest(kernel_cache.ROOT / "core" / "scene" / "simulate.py")
@@ -115,7 +111,7 @@ def read_study(path: str | Path) -> list[Case]:
         read = [Path(part["file"]) for part in (tree, wind) if "file" in part]
         digest = hashlib.blake2b(code.encode(), digest_size=10)
         for each in read:
-            digest.update(_content(each))
+            digest.update(read_bytes(each))
         cases.append(Case(tree, wind, settings, **common, digest=digest.hexdigest()))
     return cases
 
@@ -170,10 +166,3 @@ def _products(varied: Plain) -> Iterator[Plain]:
 
 def _listed(value: Any) -> list[Any]:
     return value if isinstance(value, list) else [value]
-
-
-def _content(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise FormatError(f"cannot be read ({error.strerror})", where=str(path)) from None

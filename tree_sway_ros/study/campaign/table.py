@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Rows of a study as one table: CSV, or Parquet where pyarrow is there."""
 
 from __future__ import annotations

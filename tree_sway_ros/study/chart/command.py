@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway chart``: speed against accuracy, as pictures and tables."""
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from typing import Any
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.progress import waiting
 
-_CHARTS = ("methods", "fidelity", "cost", "portraits")
+_CHARTS = ("methods", "fidelity", "cost", "portraits", "film")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,7 +21,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "what",
         choices=(*_CHARTS, "all"),
         help="methods: of integration; fidelity: models of a tree; cost: against its size; "
-        "portraits: trees at rest and in wind; all: every picture of the documentation",
+        "portraits: trees at rest and in wind; film: a pot plant in gusts; all: every picture of "
+        "the documentation",
     )
     parser.add_argument(
         "-o", "--output", default=".", metavar="FOLDER", help="for PNG and CSV (%(default)s)"

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What a frame costs, by how finely branches are cut and by how many there are.
 
@@ -66,7 +68,7 @@ def chart_cost(
     cuts
         Segments a branch, of a tree of 40 branches.
     generations
-        Of branches, each three times as many as the one before, six segments a branch.
+        Of branches, each three times as many as the one before, six segments per branch.
     frames
         How many are timed.
 
@@ -77,7 +79,7 @@ def chart_cost(
         for point in _costs(forked_tree(*RATIOS[1], segments=cut), cut, frames)
     ]
     for generation in bar(generations, "generations of branches"):
-        # The fourth generation's tree with six segments a branch has been measured above.
+        # The fourth generation's tree with six segments per branch has been measured above.
         if not (generation == 4 and 6 in cuts):
             points += _costs(forked_tree(*RATIOS[1], generations=generation), 6, frames)
     folder = Path(out_dir)

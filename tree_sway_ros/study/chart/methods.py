@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The work-precision chart: error against work of every method, as PNG and CSV."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Trees at rest and in a steady westerly, as the pages show them."""
 
 from __future__ import annotations

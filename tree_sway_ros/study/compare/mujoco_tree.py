@@ -1,10 +1,12 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree in MuJoCo: the same bodies, springs and drag in an engine that nobody here wrote.
 
 The bodies are those of the articulated reference: each segment bends at one place, on two hinges of
 stiffness ``1 / integral(ds / EI)`` across it. Joints so far apart are a little stiff (1 to 2 % at
-six segments a branch), so all springs are scaled by one factor, the one that gives the beam's
-static sway of the stem's tip in a steady wind; the first frequency then is within .5 % of the
+six segments per branch), so all springs are scaled by one factor, the one that gives the beam's
+static sway of the stem's tip in a steady wind; the first frequency then is within 0.5 % of the
 beam's (`agreement` measures both). Needs ``pip install mujoco``.
 
 """

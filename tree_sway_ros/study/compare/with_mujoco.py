@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Our simulator against MuJoCo, on the same tree and in the same wind, in one run: error and cost.
 
@@ -28,7 +30,7 @@ from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 from tree_sway_ros.tools.progress import bar, waiting
 
 FRAME = 1.0 / 60.0
-AUTO = 0.05
+AUTO = 0.1
 """
 Error over motion that a model may say it has, where the cheapest is asked for; both root mean
 square.
@@ -169,7 +171,7 @@ def compare_with_mujoco(
 
 
 def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
-    """Tips at each frame in [m], (t, b, 3), with so many steps a frame."""
+    """Tips at each frame in [m], (t, b, 3), with so many steps per frame."""
     model.reset()
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     for frame, blowing in enumerate(bar(wind, f"MuJoCo, {steps} steps per frame")):

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The tree as an Euler-Bernoulli frame in 3D: a truth for frequencies, mode shapes and static sway.
 
@@ -38,7 +40,7 @@ class FrameModel:
     base_node, base_offset
         Node each segment is fixed to, (n,), and its start from there in [m], (n, 3).
     stiffness, mass
-        Of the free coordinates, six a node without the root's.
+        Of the free coordinates, six per node without the root's.
     load
         Maps forces spread over the segments, 3 n, to the free coordinates.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Internal force and moment of a tree of tapered elements that stands still under its own weight.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The truth for a branch on two axes: a rod on a ball joint, as a unit vector in space.
 
@@ -57,7 +59,7 @@ def swing(
         Rotation vector [rad], (2,), and the chord's velocity across b at the start [1/s], (2,); the
         latter is the vector's own rate only at rest position.
     substeps
-        Runge-Kutta steps a frame.
+        Runge-Kutta steps per frame.
 
     Returns
     -------

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Many two-axis branches in blocks of sixteen, so that one instruction steps several of them.
 

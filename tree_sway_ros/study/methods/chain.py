@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The mechanism that the methods are set side by side on: a planar chain of pinned, sprung segments.
 

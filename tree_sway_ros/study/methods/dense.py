@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Small dense linear algebra for the integrators: plain loops, so that any number type can run them.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The chain in its own angles: the paper's equation with the multipliers eliminated.
 

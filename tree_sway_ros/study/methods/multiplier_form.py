@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The chain as the paper writes it: coordinates X, Y, theta of each centre of mass, held by
 multipliers.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A number type that counts what is done with it, and the uncompiled form of a kernel that it can run.
 

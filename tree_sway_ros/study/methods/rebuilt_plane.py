@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The paper's rotation plane taken literally: rebuilt from branch and wind at each step.
 

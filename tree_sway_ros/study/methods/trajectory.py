@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Running a method over a wind: loads at its nodes, angles after each step."""
 
 from __future__ import annotations

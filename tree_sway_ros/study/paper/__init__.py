@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The experiment of Kanda & Ohya (J-11) as it is written, and what this package does in its place.
 

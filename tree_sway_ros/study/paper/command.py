@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway paper``: the experiment of Kanda & Ohya as written, and what ours does instead."""
 
 from __future__ import annotations

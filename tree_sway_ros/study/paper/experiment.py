@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The experiment: a whole plant in a wind from the right, its key segments solved in both forms.
 
@@ -205,7 +207,7 @@ def _instants(frames: int, substeps: int, nodes: tuple[float, ...]) -> Floats:
 
 def _ours(tree: Tree, species: Species, speed: Floats) -> Floats:
     """Displacement of the highest tip in [m], (frames + 1, 3), in the model ``modes``."""
-    simulator = make_simulator(tree, species, fidelity="modes")
+    simulator = make_simulator(tree, species, model="modes")
     tips = np.zeros((len(speed), 3))
     for frame in range(1, len(speed)):
         mean = 0.5 * (speed[frame - 1] + speed[frame])

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Planar followers: the other segments of a branch by geometry, joined from the root (2.2.2, fig. 2).
 

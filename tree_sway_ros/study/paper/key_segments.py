@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Key segments of a whole plant as the paper sets them: one pinned, sprung rod per branch, in a plane.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Pictures like the paper's figures 1 to 4, drawn from the experiment."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Listens to a swaying tree as any other program would: poses as bytes, over DDS.
 
@@ -71,12 +73,12 @@ class StreamRecord:
 
     @property
     def pose_rate(self) -> float:
-        """Pose arrays a second in [Hz]; 0 if there are fewer than two."""
+        """Pose arrays per second in [Hz]; 0 if there are fewer than two."""
         return rate_of(self.arrival)
 
     @property
     def wind_rate(self) -> float:
-        """Wind samples a second in [Hz]; 0 if there are fewer than two."""
+        """Wind samples per second in [Hz]; 0 if there are fewer than two."""
         return rate_of(self.wind_arrival)
 
     def latency(self, share: float) -> float:

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One demo per ROS domain and machine: two would blow and sway on the same topics."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A stream in words: one line about now, several about all of it."""
 
 from __future__ import annotations

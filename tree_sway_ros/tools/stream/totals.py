@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a whole stream was like, in memory that does not grow with its length."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import math
 
 import numpy as np
@@ -97,7 +99,7 @@ def test_direction_change_starts_and_ends_level_and_a_turn_is_steady():
 
 
 def test_magnitudes_of_the_standard():
-    # Class A at 10 m/s and 50 m, no width: s = .16 (7.5 + 5.6), Lambda1 = 35.
+    # Class A at 10 m/s and 50 m, no width: s = 0.16 (7.5 + 5.6), Lambda1 = 35.
     deviation = 0.16 * 13.1
     assert gusts.extreme_gust_speed(deviation, 35.0) == pytest.approx(3.3 * deviation)
     assert gusts.extreme_gust_speed(deviation, 35.0, 70.0) == pytest.approx(3.3 * deviation / 1.2)

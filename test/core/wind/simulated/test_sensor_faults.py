@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ RATE = 10
 
 
 def stream(kind, seconds=5.0):
-    """A wind that counts its samples, 10 a second; a fault of half a second every second."""
+    """A wind that counts its samples, 10 per second; a fault of half a second every second."""
     faults = SensorFaults(kind, 1.0, 0.5)
     sent = []
     for k in range(round(seconds * RATE)):

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Every model of turbulence: its variance, its scale, its fall."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A new format is one module in the folder of formats: tried by adding one."""
 
 import subprocess

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The same small tree in every format; the files list the side branch before the stem's own end."""
 
 from pathlib import Path

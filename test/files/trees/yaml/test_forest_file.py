@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,7 +33,7 @@ def test_it_is_drawn_and_described_as_one_record():
 
 def test_it_sways_as_a_forest():
     file = replace(forest_of(None, True), anemometer=(-9.0, 0.0, 0.0), convection_ratio=2.0)
-    forest = file.simulator(fidelity="subtree", damping_ratio=0.2)
+    forest = file.simulator(model="subtree", damping_ratio=0.2)
     assert isinstance(forest, Forest)
     assert forest.model == "subtree"
     assert [each.settings.in_leaf for each in forest.simulators] == [False, True]
@@ -61,7 +63,7 @@ def test_leaves_stand_on_their_own_trees():
 
 
 def test_a_tree_file_makes_its_simulator_too():
-    sim = FILE.simulator(fidelity="coupled", in_leaf=True)
+    sim = FILE.simulator(model="coupled", in_leaf=True)
     assert sim.model == "coupled"
     assert sim.settings.leaf_area == pytest.approx(foliage_of(FILE.tree).drag_area)
     assert FILE.leaves(False, 40) is None

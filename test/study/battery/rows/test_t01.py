@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T1: energy of free motion never grows; the classic methods die."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T5: where Newton's iteration starts."""
 
 from __future__ import annotations

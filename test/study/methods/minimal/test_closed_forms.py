@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What each method on the angles keeps, kills or gets exactly right, by its own theory."""
 
 from __future__ import annotations
@@ -6,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.oscillators.propagator import propagator
-from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
+from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
 from tree_sway_ros.study.methods.chain import (
     DAMPING,
     LEVER,

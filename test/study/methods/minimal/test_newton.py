@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The implicit stage: its solution satisfies it, or it says so."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How each method on the paper's coordinates holds the joints together, or fails to."""
 
 from __future__ import annotations

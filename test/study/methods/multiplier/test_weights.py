@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Coefficients of the implicit methods against the conditions of their order and damping."""
 
 from __future__ import annotations
@@ -64,14 +66,14 @@ def test_hht_without_alpha_is_newmark():
     ("rho", "least", "most"), [(1.0, 0.995, 1.001), (0.8, 0.9, 0.999), (0.0, 0.0, 0.6)]
 )
 def test_the_smaller_the_radius_the_faster_a_coarse_swing_dies(rho, least, most):
-    """A hundred steps of w h = .63: Newmark's rule keeps the swing, full damping eats it."""
+    """A hundred steps of w h = 0.63: Newmark's rule keeps the swing, full damping eats it."""
     chain, method = single_segment(1.0, 0.0), GeneralizedAlpha(rho=rho)
     theta = integrate(method, chain, np.zeros((100, 1, 1, 2)), 0.1, theta=[0.01]).theta[:, 0]
     assert least < np.abs(theta[-12:]).max() / 0.01 < most
 
 
 def test_linearly_implicit_euler_damps_as_declared():
-    """At .02 and 2 Hz, 60 steps a second, the decay is that of about .12."""
+    """At 0.02 and 2 Hz, 60 steps per second, the decay is that of about 0.12."""
     chain, method = single_segment(2.0, 0.02), method_named("linearly_implicit_euler")
     theta = integrate(method, chain, np.zeros((120, 1, 1, 2)), 1 / 60, theta=[1e-3]).theta[:, 0]
     peaks = np.abs(theta)[1:-1][

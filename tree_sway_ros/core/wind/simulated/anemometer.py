@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A simulated anemometer: mean wind, turbulence and events, sampled tick by tick without end."""
 
 from __future__ import annotations
@@ -32,7 +34,7 @@ class AnemometerModel:
     height, intensity, reference_intensity
         As in `Turbulence`.
     rate
-        Samples a second in [Hz], 1 to 100.
+        Samples per second in [Hz], 1 to 100.
     events
         Gusts, steps and turns, timed from tick 0.
     seed
@@ -78,7 +80,7 @@ class AnemometerModel:
 
     @property
     def rate(self) -> float:
-        """Samples a second in [Hz]."""
+        """Samples per second in [Hz]."""
         return self._rate
 
     def sample(self, tick: int) -> Floats:

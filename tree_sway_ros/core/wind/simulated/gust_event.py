@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A gust, step or turn as data: what happens to the wind, when, and how often."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Gusts, steps and turns of the wind: pure functions of time that add onto any base wind.
 
@@ -91,7 +93,7 @@ def extreme_operating_gust(
 
 def extreme_gust_speed(deviation: float, scale: float, width: float = 0.0) -> float:
     """
-    Return the magnitude of the IEC extreme operating gust, 3.3 s/(1 + .1 D/Lambda1).
+    Return the magnitude of the IEC extreme operating gust, 3.3 s/(1 + 0.1 D/Lambda1).
 
     Parameters
     ----------
@@ -185,7 +187,7 @@ def extreme_direction_angle(
     mean_speed: float, deviation: float, scale: float, width: float = 0.0
 ) -> float:
     """
-    Return the angle of the IEC extreme direction change, 4 atan(s/(U (1 + .1 D/Lambda1))).
+    Return the angle of the IEC extreme direction change, 4 atan(s/(U (1 + 0.1 D/Lambda1))).
 
     Parameters
     ----------

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 What anemometers do when they fail, as a change of what they send: for rehearsals.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Spectra of turbulence: how the variance of the wind at a point is shared by frequencies.
 

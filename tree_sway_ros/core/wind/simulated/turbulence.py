@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Turbulent wind at one point: records drawn from a spectrum of `SPECTRA`.
 
@@ -54,7 +56,7 @@ class Turbulence:
     intensity
         Turbulence intensity s_u/U in [-]; None takes the deviation from `reference_intensity`.
     reference_intensity
-        I_ref of IEC 61400-1 in [-]: .16, .14, .12 for its classes A, B, C.
+        I_ref of IEC 61400-1 in [-]: 0.16, 0.14, 0.12 for its classes A, B, C.
 
     Raises
     ------
@@ -123,7 +125,7 @@ class Turbulence:
         n_samples
             Number of samples in the period, at least 4.
         rate
-            Samples a second in [Hz].
+            Samples per second in [Hz].
         rng
             Source of the phases.
 
@@ -192,7 +194,7 @@ def simulate_turbulence(
     mean_speed, model, height, intensity, reference_intensity
         As in `Turbulence`.
     rate
-        Samples a second in [Hz], up to 1000.
+        Samples per second in [Hz], up to 1000.
     duration
         Length of the record in [s]; one shorter than `SHORTEST_PERIOD` is cut from a period of that
         length, so that it holds the slow part of the spectrum too.

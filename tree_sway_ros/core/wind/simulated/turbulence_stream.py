@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Turbulence without end: any tick of a stream that never repeats and has no seams.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Cylinders or cones of a scanned or digitised tree, as the reader of a format gives them."""
 
 from __future__ import annotations

@@ -1,5 +1,7 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
-Diameters that a scan got wrong: a robust taper a branch, and twigs as thin as they are.
+Diameters that a scan got wrong: a robust taper per branch, and twigs as thin as they are.
 
 A laser sees a twig as thick as its own spot; cylinders thinner than some 5 cm come out too thick
 (Demol et al. 2022, Methods in Ecology and Evolution, review such errors), and single ones are far

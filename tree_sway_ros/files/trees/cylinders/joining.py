@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Who grows on whom among cylinders: order, loose branches, and which chain is a branch."""
 
 from __future__ import annotations

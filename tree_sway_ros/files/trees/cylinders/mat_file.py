@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Variables of a MATLAB file, read by scipy (versions 4 to 7) or h5py (7.3) within known bounds.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Merge cylinders that are too short to have a direction into their neighbours of the same branch.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 aRchi's table of cylinders (Martin-Ducup et al. 2021): numbered from 1, the root's parent 0.
 

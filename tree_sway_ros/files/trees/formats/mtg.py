@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Digitised trees in MTG files (FORM-A), with the position and diameter of each vertex.
 

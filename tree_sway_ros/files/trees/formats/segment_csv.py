@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A plain table of segments: one row each, with nodes, diameters, parent and branch.
 

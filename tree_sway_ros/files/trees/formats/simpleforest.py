@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 SimpleForest's table of cylinders (Hackenberg et al. 2021): numbered from 0, the root's parent -1.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 RayCloudTools' tree file (Lowe & Stepanas 2021): a tree in each line, its nodes one after the other.
 

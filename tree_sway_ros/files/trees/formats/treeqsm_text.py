@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 TreeQSM's text of a cylinder model: without a header, or with one as 2.4 and PyTLidar have it.
 

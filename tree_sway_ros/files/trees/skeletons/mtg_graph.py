@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The multiscale tree graph of an MTG file in the code FORM-A (Godin & Caraglio 1998).
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Nodes with a radius and a parent, as skeleton formats have them, to the segments between them."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Branches of a YAML tree, named by hand, to segments: who grows on whom, and where."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Trees that stand together, as a file gave them; used like a `TreeFile`."""
 
 from __future__ import annotations
@@ -91,7 +93,6 @@ class ForestFile:
         self,
         settings: Settings | None = None,
         *,
-        fidelity: str = "auto",
         tolerance: float = 0.005,
         **changes: Any,
     ) -> Forest:
@@ -100,7 +101,7 @@ class ForestFile:
 
         Parameters
         ----------
-        settings, fidelity, tolerance, **changes
+        settings, tolerance, **changes
             As for `make_simulator`, for every tree.
 
         Raises
@@ -112,7 +113,6 @@ class ForestFile:
         return Forest(
             self.trees,
             settings,
-            fidelity=fidelity,
             tolerance=tolerance,
             anemometer=self.anemometer,
             convection_ratio=self.convection_ratio,

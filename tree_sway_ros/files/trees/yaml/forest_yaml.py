@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The YAML form of a forest: which trees, and where each stands.
 
@@ -7,7 +9,7 @@ Keys, kinds and ranges are those of ``forest_schema.json`` beside this file::
     name: glade
     trees:
       - {name: fig, tree: benjamina, x: 0, y: 0, leaf_on: true}
-      - {name: cypress, tree: goldcrest, x: 1.5, y: .4, yaw: 2.1, seed: 7}
+      - {name: cypress, tree: goldcrest, x: 1.5, y: 0.4, yaw: 2.1, seed: 7}
       - {name: old oak, tree: ../scans/oak.mat, species: oak, x: 9, y: 3}
 
 """

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 A species by its key, or a file of one's own beside the table.
 
@@ -6,7 +8,7 @@ keys of a tree's YAML; leaves are those of that entry::
 
     name: elm of the park
     species: ash
-    wood: {modulus: 7.2e9, density: 980, damping_bare: .03}
+    wood: {modulus: 7.2e9, density: 980, damping_bare: 0.03}
 
 """
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The YAML form of a tree, which a person can write by hand.
 
@@ -9,11 +11,11 @@ by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` besid
     species: oak
     branches:
       - name: stem
-        nodes: [[0, 0, 0, .02], [0, 0, .4, .015], [0, 0, .8, .005]]
+        nodes: [[0, 0, 0, 0.02], [0, 0, 0.4, 0.015], [0, 0, 0.8, 0.005]]
       - name: twig
         parent: stem
         at: .5                                  # half way up the stem; nodes are offsets from there
-        nodes: [[0, 0, 0, .006], [.2, 0, .1, .002]]
+        nodes: [[0, 0, 0, 0.006], [0.2, 0, 0.1, 0.002]]
 
 """
 

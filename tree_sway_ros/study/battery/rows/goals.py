@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the default integrator is meant to reach, in figures."""
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ RATE, FINE = 60, 960
 
 
 def planar_error(wind_name: str) -> float:
-    """Error of exact_foh in [rad] rms, one segment, 60 steps a second, against the reference."""
+    """Error of exact_foh in [rad] rms, one segment, 60 steps per second, against the reference."""
     chain, wind = uniform_chain(1, 2.0, 0.05), winds(1)[wind_name]
     first = wind(np.zeros(1))[0]
     reference, method = method_named("radau_ggl"), method_named("exact_foh")
@@ -53,7 +55,7 @@ def precession(a: float, b: float) -> float:
     branch = Branch(2.0, 0.0, 1 / 240)
     states = branch.run(np.zeros((24000, 3)), np.array([a, 0.0, 0.0, b * branch.w]))
     x, y = states[:, 0], states[:, 1]
-    far = np.flatnonzero(np.diff(np.sign(np.diff(x**2 + y**2))) < 0) + 1  # two a cycle
+    far = np.flatnonzero(np.diff(np.sign(np.diff(x**2 + y**2))) < 0) + 1  # two per cycle
     angle = np.unwrap(2 * np.arctan2(y[far], x[far])) / 2
     return float(2 * np.polyfit(np.arange(len(far)), angle, 1)[0] / (2 * np.pi / 3 * a * b))
 
@@ -76,9 +78,9 @@ def milliseconds_a_frame(n: int = 100_000, frames: int = 40) -> float:
 
 
 def run(full: bool = False) -> list[Row]:
-    """Measure each goal; the time a frame only in full, as it asks for a quiet machine."""
+    """Measure each goal; the time per frame only in full, as it asks for a quiet machine."""
     cost = flops_a_step(method_named("exact_foh"), uniform_chain(1), winds(1)["smooth"], RATE)
-    rows = [holds("operations a step, one segment", "<= 130 flops", f"{cost}", cost <= 130)]
+    rows = [holds("operations per step, one segment", "<= 130 flops", f"{cost}", cost <= 130)]
     for name, bound in (("smooth", 1.5e-4), ("gusty", 7e-4)):
         error = planar_error(name)
         rows.append(

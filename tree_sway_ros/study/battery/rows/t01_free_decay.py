@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T1: free decay at every ratio of step to period, with and without damping."""
 
 from __future__ import annotations

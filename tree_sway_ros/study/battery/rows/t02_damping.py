@@ -1,4 +1,6 @@
-"""T2: numerical damping and frequency at 60 steps a second, true damping ratio .02."""
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""T2: numerical damping and frequency at 60 steps per second, true damping ratio 0.02."""
 
 from __future__ import annotations
 

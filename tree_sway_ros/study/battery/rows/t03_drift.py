@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T3: drift of the constraint over 1e5 steps (1e7 in full)."""
 
 from __future__ import annotations

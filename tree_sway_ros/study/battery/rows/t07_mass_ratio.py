@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T7: mass ratios from 1e-6 to 1e6 in a chain of two."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T8: twelve bodies with something missing."""
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from tree_sway_ros.study.methods.chain import PlanarChain, single_segment
 
 TITLE = "degenerate bodies"
 DT = 1 / 60
-# I [kg m^2], k2 [N m s], k1 [N m] and how each must end under a steady side load of .8 N m
+# I [kg m^2], k2 [N m s], k1 [N m] and how each must end under a steady side load of 0.8 N m
 BODIES = (
     ("ordinary", 1.0, 5.0, 160.0, "static"),
     ("no inertia", 0.0, 0.5, 2.0, "static"),

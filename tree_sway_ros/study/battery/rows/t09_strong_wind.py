@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T9: wind from the side, up to ten thousand times the stiffness."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T10: wind head-on, towards the root: the branch buckles where the load passes the stiffness."""
 
 from __future__ import annotations

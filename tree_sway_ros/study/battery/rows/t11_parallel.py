@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T11: wind along the branch, where the plane of branch and wind does not exist."""
 
 from __future__ import annotations

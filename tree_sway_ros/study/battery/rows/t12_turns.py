@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T12: the wind reverses through zero, and turns by 90 and 180 degrees at once."""
 
 from __future__ import annotations

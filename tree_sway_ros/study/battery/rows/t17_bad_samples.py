@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """T17: one sample that cannot be: NaN, infinity, 1e300, 1e6 m/s."""
 
 from __future__ import annotations

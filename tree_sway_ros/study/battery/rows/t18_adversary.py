@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 T18: adversarial runs: loads that switch with the motion, at random frequency, damping and angle.
 

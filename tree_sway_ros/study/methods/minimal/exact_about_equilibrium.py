@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The exact propagator about the equilibrium of the step's mean load."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The exact propagator with a first-order hold: the default."""
 
 from __future__ import annotations

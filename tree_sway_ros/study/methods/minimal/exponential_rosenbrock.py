@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The exponential Rosenbrock-Euler method: exact about where it stands."""
 
 from __future__ import annotations

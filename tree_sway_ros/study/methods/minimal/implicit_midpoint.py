@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The implicit midpoint rule on the angles."""
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 
 
 class ImplicitMidpoint(MinimalMethod):
-    """No numerical damping; slow frequencies: 5 % at 8 Hz and 60 steps a second."""
+    """No numerical damping; slow frequencies: 5 % at 8 Hz and 60 steps per second."""
 
     name: ClassVar[str] = "implicit_midpoint"
     order: ClassVar[int] = 2

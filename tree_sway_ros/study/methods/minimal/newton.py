@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The one implicit equation that the implicit methods on the angles share."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """TR-BDF2 on the angles: a trapezoidal stage and a backward difference, one step."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Methods on the paper's coordinates with Lagrange multipliers: one step per file.
 

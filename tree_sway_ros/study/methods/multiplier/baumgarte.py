@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Baumgarte's stabilisation of the index-1 form."""
 
 from __future__ import annotations

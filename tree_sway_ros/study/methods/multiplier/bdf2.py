@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The two-step backward difference formula on index 3."""
 
 from __future__ import annotations

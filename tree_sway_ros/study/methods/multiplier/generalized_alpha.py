@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Generalised-alpha on index 3."""
 
 from __future__ import annotations
@@ -55,7 +57,7 @@ class GeneralizedAlpha(MultiplierMethod):
     Parameters
     ----------
     rho
-        Spectral radius at infinite frequency [-], 0 to 1: .8 keeps slow motion nearly undamped.
+        Spectral radius at infinite frequency [-], 0 to 1: 0.8 keeps slow motion nearly undamped.
     from_old_acceleration
         Start Newton's iteration from the old acceleration: kept to show why not.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The HHT method on index 3: generalised-alpha with one weight."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The implicit midpoint rule on the multiplier form, velocities projected."""
 
 from __future__ import annotations

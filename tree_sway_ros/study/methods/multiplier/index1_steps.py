@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The explicit steps that the index-1 methods share."""
 
 from __future__ import annotations

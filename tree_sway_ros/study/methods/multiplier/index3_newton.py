@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The one nonlinear system that the implicit index-3 methods share."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Linearly implicit Euler: one solve a step, the constraint linearised at its end."""
 
 from __future__ import annotations

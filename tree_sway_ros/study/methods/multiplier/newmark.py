@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Newmark's method on index 3: generalised-alpha without its damping."""
 
 from __future__ import annotations

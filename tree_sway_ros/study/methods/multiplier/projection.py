@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Projection of position and velocity onto the constraint after each step."""
 
 from __future__ import annotations

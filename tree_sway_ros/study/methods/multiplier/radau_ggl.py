@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Radau IIA(5) on the GGL form: the reference that the others are measured against."""
 
 from __future__ import annotations

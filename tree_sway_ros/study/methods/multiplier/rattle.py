@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """SHAKE for the positions and RATTLE for the velocities."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Semi-implicit Euler on the index-1 form."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway listen``: count what a solver in another process streams, by a raw subscription.
 
@@ -26,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--rate",
         type=float,
         default=60.0,
-        help="poses a second that should come [Hz] (%(default)s)",
+        help="poses per second that should come [Hz] (%(default)s)",
     )
 
 

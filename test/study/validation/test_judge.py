@@ -1,0 +1,59 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Models against every segment solved on random crooked trees, with weight and twist."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.study.validation.crooked_trees import HABITS, crooked_tree
+from tree_sway_ros.study.validation.judge import Judge
+from tree_sway_ros.study.validation.winds import FRAME, from_record, hard_cases, turbulent
+
+
+@pytest.mark.parametrize("seed", range(1, 7))
+def test_trees_are_crooked_unlike_and_of_the_size_promised(seed):
+    tree = crooked_tree(seed)
+    assert 40 <= tree.n_branches <= 120
+    assert tree.name.startswith(tuple(HABITS)[seed % 3])
+    np.testing.assert_array_equal(tree.end, crooked_tree(seed).end)
+    bent = [
+        np.linalg.norm(tree.end[here][-1] - tree.start[here][0]) / tree.length[here].sum()
+        for here in map(tree.segments_of, range(tree.n_branches))
+    ]
+    assert min(bent) < 0.97
+    assert len(set(np.round(tree.branch_length, 6))) == tree.n_branches
+
+
+def test_winds_are_as_their_names_say():
+    cases = hard_cases(10.0, 0.8)
+    assert set(cases) == {"gust", "step", "sine", "turn"}
+    assert all(wind.shape == (600, 3) for wind in cases.values())
+    speed = np.linalg.norm(cases["step"], axis=1)
+    assert speed.min() == 0.0
+    assert speed.max() == pytest.approx(10.0)
+    first, last = cases["turn"][0, :2], cases["turn"][-1, :2]
+    assert first @ last == pytest.approx(0.0, abs=1e-9)
+    assert np.linalg.norm(turbulent(9.0, 20.0, 1), axis=1).mean() == pytest.approx(9.0, rel=0.15)
+    time = np.arange(0.0, 30.0, 0.05)
+    calm_then_windy = np.where(time[:, None] > 20.0, 5.0, 1.0) * np.array([1.0, 0.0, 0.0])
+    assert from_record(time, calm_then_windy, 5.0, 2.0)[:, 0] == pytest.approx(10.0)
+
+
+@pytest.fixture(scope="module")
+def judge():
+    return Judge(crooked_tree(9), pieces=2, substeps=4)
+
+
+def test_models_stay_within_their_errors_and_estimates(judge):
+    winds = {"simulated": turbulent(9.0, 4.0, 9)}
+    winds["sine"] = hard_cases(4.0, judge.first_frequency)["sine"]
+    verdicts = judge.verdicts(winds)
+    by_name = {(one.wind, one.model): one.error for one in verdicts}
+    assert by_name["simulated", "coupled"] <= 0.03
+    assert by_name["simulated", "modes 12"] <= 0.05
+    over = [one.over_estimate for one in verdicts if np.isfinite(one.over_estimate)]
+    assert max(over) <= 1.0
+    assert np.median(over) >= 0.3
+    assert len(winds["sine"]) * FRAME == pytest.approx(4.0)

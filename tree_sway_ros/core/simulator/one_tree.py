@@ -1,0 +1,19 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What the simulator of one tree shares with that of a forest, so that both are used alike."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class OneTree:
+    """A simulator of one tree; its face is `TreeSimulator`."""
+
+    gusts: Any = None
+    """No gusts travel within a tree."""
+
+    @property
+    def simulators(self) -> tuple[Any, ...]:
+        """The simulator of each tree: this one."""
+        return (self,)

@@ -1,0 +1,104 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What every simulator is used by, whatever its model, and whether of one tree or of a forest.
+
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.simulator import Counts
+from tree_sway_ros.core.state.tree_state import TreeState
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.gust_travel import GustHistory
+
+
+class Simulator(Protocol):
+    """A tree that sways, whatever the model; or a forest."""
+
+    tree: Tree
+    settings: Settings
+
+    @property
+    def model(self) -> str:
+        """Model in use."""
+
+    @property
+    def counts(self) -> Counts:
+        """What was refused or held since the start."""
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that are solved."""
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another."""
+
+    @property
+    def n_frozen(self) -> int:
+        """Branches that move with their parent as one body."""
+
+    @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Displacement of the highest tip from rest in [m], (3,)."""
+
+    @property
+    def simulators(self) -> tuple[TreeSimulator, ...]:
+        """The simulator of each tree."""
+
+    @property
+    def gusts(self) -> GustHistory | None:
+        """How gusts reach the trees of a forest; None for a tree."""
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """Advance one step of dt [s] in a wind [m/s]."""
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """Place every segment, (n, 7); a new array if out is None."""
+
+    def reset(self) -> None:
+        """Go back to rest."""
+
+
+class TreeSimulator(Simulator, Protocol):
+    """A simulator of one tree: its state can be read, kept and set."""
+
+    species: Species
+
+    @property
+    def bank(self) -> Any:
+        """Records of the tree and the oscillators, as `Bank`."""
+
+    @property
+    def joints(self) -> Any:
+        """Records of `BRANCH` in the order of the rotations, (b,)."""
+
+    def digest(self) -> str:
+        """Return a name of all that a state must agree with."""
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7)."""
+
+    def state(self) -> TreeState:
+        """Return all that is carried from one step to the next."""
+
+    def set_state(self, state: TreeState) -> None:
+        """Go on from a state."""
+
+    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
+        """Place every segment as in a state, (n, 7)."""

@@ -1,0 +1,44 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Bytes as they come, cut into lines; what is no line of a sensor is dropped and counted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+LONGEST = 1024
+"""Longer lines are no sensor's [bytes]."""
+
+
+class Lines:
+    """Holds what has come of a line that is not complete; never more than `LONGEST` bytes."""
+
+    def __init__(self) -> None:
+        self.dropped = 0
+        self._begun = b""
+        self._is_too_long = False
+
+    def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[str]:
+        """
+        Take bytes and return the lines they complete.
+
+        Parameters
+        ----------
+        data
+            Of any length.
+        is_whole
+            Whether they end a line, as a datagram does.
+
+        """
+        *whole, begun = (self._begun + data).replace(b"\r", b"\n").split(b"\n")
+        if is_whole:
+            whole, begun = [*whole, begun], b""
+        for line in whole:
+            if self._is_too_long or len(line) > LONGEST:
+                self.dropped += 1
+                self._is_too_long = False
+            elif line:
+                yield line.decode("ascii", "replace")
+        if len(begun) > LONGEST:
+            begun, self._is_too_long = b"", True
+        self._begun = begun

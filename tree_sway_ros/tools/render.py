@@ -1,0 +1,125 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+``tree-sway render``: a tree in wind as a moving picture, without a screen.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
+from tree_sway_ros.tools.progress import bar
+from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
+from tree_sway_ros.tools.tree_output import add_output_arguments, output_path
+
+_STEPS_PER_SECOND = 120.0
+_RUN_IN = 20.0
+_LEAVES = 700
+"""Clusters, half as many as in a still picture: a frame must take less time than it shows."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_tree_arguments(parser, forests=True, default="benjamina")
+    parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=6.0,
+        metavar="U",
+        help="mean of the simulated wind [m/s] (%(default)s)",
+    )
+    parser.add_argument(
+        "--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)"
+    )
+    parser.add_argument("--start", type=float, default=0.0, help="of the wind [s] (%(default)s)")
+    parser.add_argument(
+        "--rate", type=float, default=20.0, help="pictures per second [Hz] (%(default)s)"
+    )
+    parser.add_argument(
+        "--pixels", type=int, default=480, help="height of the picture (%(default)s)"
+    )
+    fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
+    parser.add_argument(
+        "--fidelity",
+        choices=fidelity.choices,
+        default=fidelity.default,
+        help="model of the sway (%(default)s)",
+    )
+    add_leaves_argument(parser)
+    add_output_arguments(parser, "file to write: .gif, .png, .mp4, or a folder for its frames")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Sway the tree, paint it, and say how long that took."""
+    for name, low, high in (("seconds", 0.1, 3600.0), ("rate", 1.0, 120.0), ("pixels", 64, 4320)):
+        value = getattr(arguments, name)
+        if not low <= value <= high:
+            raise ParameterError(f"{value:g}", where=f"--{name}", cure=f"give {low:g} .. {high:g}")
+    from tree_sway_ros.view.animation import animate_poses
+
+    target = output_path(arguments)
+    scene = opened_scene(arguments)
+    wind: WindSource
+    if arguments.wind is None:
+        speed = next(p for p in NODE_PARAMETERS["anemometer"] if p.name == "mean_speed")
+        wind = SimulatedWind(speed.checked(arguments.speed))
+    else:
+        record = read_wind(arguments.wind)
+        wind = RecordedWind(record.time, record.velocity)
+    simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.fidelity)
+    began = time.monotonic()
+    frames, winds = _swayed(simulator, wind, arguments)
+    animate_poses(
+        scene.tree,
+        frames,
+        winds,
+        target,
+        rate=arguments.rate,
+        leaves=scene.leaves(told_leaves(arguments), _LEAVES),
+        pixels=arguments.pixels,
+        watched=_watched,
+    )
+    spent = time.monotonic() - began
+    print(
+        f"{target}: {scene.tree.name}, {len(frames)} pictures, {arguments.seconds:g} s of wind "
+        f"in {spent:.1f} s"
+    )
+    return 0
+
+
+def _swayed(
+    simulator: Any, wind: WindSource, arguments: argparse.Namespace
+) -> tuple[list[Any], Any]:
+    """Poses and wind of every picture, once the start from rest is forgotten."""
+    steps = max(1, round(_STEPS_PER_SECOND / arguments.rate))
+    dt = 1.0 / (arguments.rate * steps)
+    now = max(0.0, arguments.start - _RUN_IN)
+    while now < arguments.start:
+        simulator.step(wind.mean(now, now + dt), dt)
+        now += dt
+    frames, winds = [], []
+    for _ in range(max(1, round(arguments.seconds * arguments.rate))):
+        for _ in range(steps):
+            blowing = wind.mean(now, now + dt)
+            simulator.step(blowing, dt)
+            now += dt
+        frames.append(simulator.place().copy())
+        winds.append(blowing)
+    return frames, np.array(winds)
+
+
+def _watched(images: Iterator[Any], count: int) -> Iterator[Any]:
+    for _ in bar(range(count), "painting"):
+        yield next(images)
