@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``tree-sway render``: a tree in wind as a moving picture."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway render``: a tree in wind as a moving picture, without a screen.
 
@@ -76,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         record = read_wind(arguments.wind)
         wind = RecordedWind(record.time, record.velocity)
-    simulator = scene.simulator(in_leaf=told_leaves(arguments), fidelity=arguments.fidelity)
+    simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.fidelity)
     began = time.monotonic()
     frames, winds = _swayed(simulator, wind, arguments)
     animate_poses(

@@ -7,11 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.oscillators.step_rules import (
-    CONDITIONALLY_STABLE,
-    REAL_TIME,
-    stability_limit,
-)
+from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE, REAL_TIME
+from tree_sway_ros.core.oscillators.step_rules import STEP_RULES, stability_limit
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import ParameterError
@@ -64,6 +61,10 @@ def test_a_late_step_is_cut_where_the_method_would_explode(integrator):
     assert late.tip_displacement == pytest.approx(even.tip_displacement, rel=1e-9)
     late.step(wind, 1.0 / 240.0)
     assert np.isfinite(late.place()).all()
+
+
+def test_every_name_has_its_rule():
+    assert set(STEP_RULES) == set(REAL_TIME)
 
 
 @pytest.mark.parametrize("name", REAL_TIME)

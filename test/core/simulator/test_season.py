@@ -17,6 +17,7 @@ import pytest
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.leaves.foliage import foliage_of
+from tree_sway_ros.core.motion.drag import STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
@@ -26,10 +27,10 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.trees.source import open_tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
 
 OAK = species_named("oak")
-SPEEDS = np.geomspace(2.0, 20.0, 7)
+SPEEDS = np.geomspace(STREAMLINING_FROM, STREAMLINING_TO, 7)
 GROWN = {"oak": 12.0, "birch": 9.0, "spruce": 12.0, "pine": 14.0}
 _long = pytest.mark.long
 
@@ -99,24 +100,22 @@ def test_needles_stay(key):
     assert wood.leaves.is_evergreen == (wood.habit != "broadleaf")
 
 
+SPRUCE = species_named("spruce")
 DOORS = {
-    "SwaySimulator": lambda **how: SwaySimulator(builtin_tree("goldcrest"), model="modes", **how),
-    "make_simulator": lambda **how: make_simulator(
-        builtin_tree("goldcrest"), species_named("goldcrest"), model="modes", **how
-    ),
-    "open_tree": lambda **how: open_tree("goldcrest").simulator(model="modes", **how),
-    "auto": lambda **how: open_tree("goldcrest").simulator(model="auto", **how),
-    "segments": lambda **how: open_tree("goldcrest").simulator(model="segments", **how),
-    "Forest": lambda **how: Forest(
-        [PlacedTree("tree", builtin_tree("goldcrest"))], model="modes", **how
-    ).simulators[0],
+    "SwaySimulator": lambda tree, **how: SwaySimulator(tree, **how),
+    "make_simulator": lambda tree, **how: make_simulator(tree, **how),
+    "auto": lambda tree, **how: make_simulator(tree, model="auto", **how),
+    "segments": lambda tree, **how: make_simulator(tree, model="segments", **how),
+    "file": lambda tree, **how: TreeFile(tree, SPRUCE, "a file").simulator(**how),
+    "Forest": lambda tree, **how: Forest([PlacedTree("tree", tree)], **how).simulators[0],
 }
 
 
 @pytest.mark.parametrize("door", DOORS)
-def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door):
-    assert DOORS[door]().settings.in_leaf is True
-    assert DOORS[door](in_leaf=False).settings.in_leaf is False
+def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door, fork):
+    tree = replace(fork(), species="spruce")
+    assert DOORS[door](tree).settings.in_leaf is True
+    assert DOORS[door](tree, in_leaf=False).settings.in_leaf is False
 
 
 def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():
@@ -174,7 +173,7 @@ def test_leaves_damp():
 
 
 def growth_of_load(tree, settings):
-    """Exponent p of the moment at the base, U^p, in steady wind of 2 to 20 m/s."""
+    """Exponent p of the moment at the base, U^p, in winds that crowns were measured in."""
     sim = SwaySimulator(tree, settings=replace(settings, damping_ratio=0.7))
     moment = []
     for speed in SPEEDS:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import resource
 import tracemalloc
 
 import numpy as np
@@ -222,3 +223,21 @@ def plastic(tree):
     return tree_from_segments(
         tree.start, tree.end, tree.base_diameter, parent=tree.segment_parent, species="plastic"
     )
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("model", ["subtree", "modes"])
+def test_memory_stays_flat_over_many_steps(fork, model):
+    """What compiled code takes, no tracer of Python's sees: the process's own size tells."""
+    sim = swaying(fork(), model)
+    wind, out = np.array([5.0, 1.0, 0.0]), np.zeros((sim.tree.n_segments, 7))
+
+    def sway(steps):
+        for _ in range(steps):
+            sim.step(wind, DT)
+            sim.place(out)
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    warm = sway(5_000)
+    # A leak of one array's header (a hundred bytes) per step would be 4 MiB.
+    assert sway(40_000) - warm < 1024

@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.oscillators.step_rules import REAL_TIME, stability_limit
+from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
+from tree_sway_ros.core.oscillators.step_rules import stability_limit
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.methods.chain import DAMPING, STIFFNESS, single_segment
 from tree_sway_ros.study.methods.registry import method_named

@@ -63,9 +63,31 @@ def place(
         Pose block to write, (n, 7).
 
     """
-    scratch = heads[len(heads) - 1]
+    last = len(heads) - 1
+    place_blocks(branches, segments, heads, work, heads, x, origin, out, last, 0, last)
+
+
+@fused
+def place_blocks(
+    branches: Any, segments: Any, heads: Any, work: Any, scratches: Any, x: Floats, origin: Floats,
+    out: Floats, mine: int, first: int, end: int,
+) -> None:  # fmt: skip
+    """
+    Place the segments of some blocks, whose parents stand.
+
+    Parameters
+    ----------
+    branches, segments, heads, work, x, origin, out
+        As for `place`.
+    scratches, mine
+        Records of `head_layout`, and which of them to work in.
+    first, end
+        First block and one past the last.
+
+    """
+    scratch = scratches[mine]
     at, pose = scratch.at, scratch.pose
-    for block in range(len(heads) - 1):
+    for block in range(first, end):
         head = heads[block]
         _read_parents(branches, head, scratch, work, x, origin, out)
         _turn_bases(head, scratch)

@@ -28,7 +28,8 @@ from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, OSCILLATORS, WORK
 from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
-from tree_sway_ros.core.oscillators.step_rules import DEFAULT, fill_steps
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT
+from tree_sway_ros.core.oscillators.step_rules import fill_steps
 from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
 
 

@@ -20,12 +20,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.core.oscillators.propagator import fill_propagator, propagator
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT, REAL_TIME
 from tree_sway_ros.errors import ParameterError
 
 Array = NDArray[Any]
-
-DEFAULT = "exact_foh"
-"""The exact propagator with a first-order hold."""
 
 
 class Oscillator(NamedTuple):
@@ -128,13 +126,7 @@ STEP_RULES: MappingProxyType[str, StepRule] = MappingProxyType(
         "exact_foh": exact_foh,
     }
 )
-"""Step rules by the name that the setting ``integrator`` takes."""
-
-REAL_TIME = tuple(STEP_RULES)
-"""Their names."""
-
-CONDITIONALLY_STABLE = ("semi_implicit_euler", "verlet", "rk4")
-"""Those of them that have a `stability_limit`: a step can be too long for them."""
+"""Step rules by the name that the setting ``integrator`` takes, one of `REAL_TIME`."""
 
 
 def rule_named(name: str) -> StepRule:

@@ -69,7 +69,7 @@ class StandTree:
     yaw
         How far it is turned about the vertical, counterclockwise seen from above, in [rad].
     fidelity
-        ``wind_basis``, ``frozen`` (it stands still), or another of `make.FIDELITIES`: then it is
+        ``wind_basis``, ``frozen`` (it stands still), or another of `FIDELITIES`: then it is
         solved on its own.
 
     Raises

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
-from tree_sway_ros.core.oscillators.step_rules import DEFAULT, REAL_TIME
+from tree_sway_ros.core.oscillators.rule_names import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
 from tree_sway_ros.errors import ParameterError
@@ -58,7 +58,7 @@ class Settings:
     profile
         Wind over height.
     integrator
-        Method that steps the oscillators, one of `step_rules.REAL_TIME`; one whose step would be
+        Method that steps the oscillators, one of `rule_names.REAL_TIME`; one whose step would be
         unstable is refused at the first step. Later steps that are longer are cut.
     twig_tolerance
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.

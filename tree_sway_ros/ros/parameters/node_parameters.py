@@ -9,7 +9,7 @@ Defaults stand here and nowhere else: the files in ``config/`` hold overrides on
 
 from __future__ import annotations
 
-from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
+from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import FIDELITIES, STIFFNESS_RULES, Settings
 from tree_sway_ros.core.wind.averaging import INTERPOLATIONS

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Ours against engines of rigid bodies: same tree, same wind, same rate; error against a converged
 truth.

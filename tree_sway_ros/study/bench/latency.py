@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From the stamp of a wind to the arrival of the first pose of a later stamp."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The other process of `stream` and `latency`: hears poses as bytes, tells when each arrived."""
 
 from __future__ import annotations

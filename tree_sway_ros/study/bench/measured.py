@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a benchmark measured: as a table, as JSON, as a chart, against what was kept before."""
 
 from __future__ import annotations

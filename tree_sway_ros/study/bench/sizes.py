@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 The model `wind_basis` timed by the size of the tree: the step alone, as the kernel runs it, and
 step and placing as a program calls them.

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A stand timed: solved and placed as one, and what memory and set-up it takes."""
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.oscillators.propagator import propagator
-from tree_sway_ros.core.oscillators.step_rules import REAL_TIME
+from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
 from tree_sway_ros.study.methods.chain import (
     DAMPING,
     LEVER,
