@@ -47,7 +47,6 @@ def test_expanding_a_state_leaves_the_simulator_as_it_is(tree_on):
     early = sim.state()
     for wind in winds(30):
         sim.step(wind, DT)
-    sim.rotations()
     before = sim.state()
     rest = sim.expand(early)
     assert sim.state().values.tobytes() == before.values.tobytes()

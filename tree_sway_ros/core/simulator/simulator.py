@@ -117,6 +117,7 @@ class SwaySimulator(OneTree, KeepsState):
         self._max_wind = self.settings.max_wind
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
         self._wind = np.zeros(3)
+        self._expected = self.bank.oscillators.rotations().shape
         self._poses = np.zeros((tree.n_segments, 7))
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
@@ -178,8 +179,7 @@ class SwaySimulator(OneTree, KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
-        expected = self.bank.oscillators.rotations().shape
-        return self._placed(array_to_read("rotations", rotations, expected), out)
+        return self._placed(array_to_read("rotations", rotations, self._expected), out)
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
