@@ -41,6 +41,10 @@ COMMANDS: dict[str, Command] = {
         "a tree sways in wind, all nodes in one process over real DDS",
         "demo goldcrest --speed 8 --seconds 10",
     ),
+    "soak": Command(
+        "run the chain through every fault of a sensor, and tell what it costs",
+        "soak --hours 0.002 --every 1",
+    ),
     "listen": Command(
         "count the poses that a solver in another process streams", "listen --seconds 10"
     ),
@@ -84,6 +88,9 @@ _STUDIES = {
     **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
     "study": "campaign",
 }
+
+#: Commands that watch a stream.
+_STREAMS = ("listen", "soak")
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -188,6 +195,8 @@ def _shortened(name: str) -> str:
 def _module(command: str) -> Any:
     room = _STUDIES.get(command)
     where = f"study.{room}.command" if room else f"tools.{command}"
+    if command in _STREAMS:
+        where = f"tools.stream.{command}"
     return importlib.import_module(f"tree_sway_ros.{where}")
 
 

@@ -29,6 +29,28 @@ def test_a_process_deep_in_native_code_ends_in_time_and_well(number):
     assert time.monotonic() - begin < 2.0
 
 
+# What the middleware does while it leaves: a native call that keeps the interpreter's lock.
+HOLDING = """
+import ctypes
+from tree_sway_ros.ros.process.ending import Ending
+with Ending() as ending:
+    ending.look()
+    print("ready", flush=True)
+    while not ending.is_asked:
+        pass
+    ctypes.PyDLL(None).sleep(20)
+"""
+
+
+def test_a_process_that_holds_the_interpreter_ends_in_time():
+    process = subprocess.Popen([sys.executable, "-c", HOLDING], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    begin = time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    process.wait(30.0)
+    assert time.monotonic() - begin < 2.5
+
+
 def test_it_breaks_in_until_there_is_a_loop_that_looks():
     before = signal.getsignal(signal.SIGTERM)
     hook = sys.unraisablehook

@@ -89,7 +89,7 @@ class FidelityLadder:
         """Find the response of every model."""
         self.tree, self.species = tree, species
         whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
-        self._coefficient = species.drag_law(bool(whole.settings.in_leaf))
+        self._drag_law = whole.drag_law
         best, best_modes = _best(tree)
         bank = whole.bank(best, best_modes)
         rotations = key_response(bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES)
@@ -142,7 +142,7 @@ class FidelityLadder:
             From the cheapest to the dearest.
 
         """
-        load = pressure(climate.speed, *self._coefficient)
+        load = pressure(climate.speed, *self._drag_law)
         means, swings = _mean_squares(self._grams, climate)
         swing, offset = load * math.sqrt(swings[0]), load * math.sqrt(means[0] + swings[0])
         errors = MARGIN * load * np.sqrt(means[1:] + swings[1:])

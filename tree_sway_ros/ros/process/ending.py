@@ -12,6 +12,7 @@ over.
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import signal
 import sys
@@ -22,6 +23,8 @@ LONGEST = 1.5
 """From the signal to the end of a process that runs [s], if it does not end by itself before."""
 SHORTEST = 0.3
 """The same of a process that only starts: nothing is open that would have to be closed."""
+_GRACE = 0.2
+"""So much later [s] a process ends that even its threads cannot end."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -71,6 +74,7 @@ class Ending:
         for number, before in zip(_SIGNALS, self._before, strict=True):
             # What was told to end stays deaf: a second Ctrl-C amid the last lines is no error.
             signal.signal(number, signal.SIG_IGN if self.is_asked else before)  # type: ignore[arg-type]
+        faulthandler.cancel_dump_traceback_later()
         if self._pipe is not None:
             signal.set_wakeup_fd(-1)
             os.close(self._pipe[1])
@@ -78,9 +82,16 @@ class Ending:
 
     def _hear(self, _number: int, _frame: FrameType | None) -> None:
         is_first, self.is_asked = not self.is_asked, True
+        if is_first:
+            self._end_by_all_means()
         if is_first and self._breaks_in:
             sys.unraisablehook = lambda _args: None  # nor does what cannot raise complain
             raise KeyboardInterrupt
+
+    def _end_by_all_means(self) -> None:
+        """Leaving the graph, the middleware may hold the interpreter: then C ends the process."""
+        self._nowhere = open(os.devnull, "w")
+        faulthandler.dump_traceback_later(self.limit + _GRACE, exit=True, file=self._nowhere)
 
     def _watch(self) -> None:
         assert self._pipe is not None

@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The soak, short: the chain through all faults, and the figures at its end."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tree_sway_ros.tools.stream.soak import Health, growth, health
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def test_growth_is_the_slope_after_the_warm_up() -> None:
+    steady = [Health(float(k), 100.0 + (k < 10) * 50.0, 9, 9) for k in range(60)]
+    assert growth(steady) == pytest.approx(0.0, abs=1e-6)
+    leaking = [Health(36.0 * k, 100.0 + 0.02 * k, 9, 9) for k in range(101)]
+    assert growth(leaking) == pytest.approx(2.0)
+    assert math.isnan(growth([]))
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_a_process_looks_at_itself() -> None:
+    now = health(3.0)
+    assert now.time == 3.0
+    assert now.memory > 10.0
+    assert now.handles > 2
+    assert now.threads >= 1
+
+
+@pytest.mark.ros
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_the_chain_goes_through_all_faults() -> None:
+    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+    command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "soak", "--hours", "0.003"]
+    environment = os.environ | {
+        "ROS_DOMAIN_ID": str(81 + os.getpid() % 21),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    ended = subprocess.run(
+        [*command, "--every", "0.5", "--slope", "1e9"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        timeout=240.0,
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert re.search(r"^poses +\d+ at", ended.stdout, re.MULTILINE)
+    assert "0 callbacks failed" in ended.stdout

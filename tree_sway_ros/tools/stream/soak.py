@@ -1,0 +1,122 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+``tree-sway soak``: the whole chain through every fault of a sensor, for hours; what it costs.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway_ros.errors import ParameterError, TransportError
+from tree_sway_ros.files.trees.source import open_scene
+from tree_sway_ros.ros.process.composition import Composition
+from tree_sway_ros.ros.process.ending import LONGEST, Ending
+from tree_sway_ros.tools.stream.monitor import StreamMonitor
+from tree_sway_ros.tools.stream.only_demo import only_demo
+from tree_sway_ros.tools.stream.text import summary
+
+_WARM = 0.2
+"""Share of the time, at its beginning, whose growth is start and not leak."""
+_HOUR = 3600.0
+_LINES = 60
+
+
+class Health(NamedTuple):
+    """Of this process: time since the start [s], memory [MB], open handles, threads."""
+
+    time: float
+    memory: float
+    handles: int
+    threads: int
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("--hours", type=float, default=1.0, help="how long (%(default)s)")
+    parser.add_argument("--tree", default="goldcrest", help="what sways (%(default)s)")
+    parser.add_argument(
+        "--every", type=float, default=20.0, help="seconds from fault to fault (%(default)s)"
+    )
+    parser.add_argument(
+        "--slope",
+        type=float,
+        default=1.0,
+        metavar="MB",
+        help="largest growth of memory per hour [MB/h] (%(default)s)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the chain, then tell what it took; 1 if memory grew, or a callback failed."""
+    if not arguments.hours > 0.0:
+        raise ParameterError(f"{arguments.hours:g} h is no time to run", where="--hours")
+    tree = open_scene(arguments.tree).tree
+    seconds = _HOUR * arguments.hours
+    anemometer = {
+        "fault": "all",
+        "fault_every": arguments.every,
+        "fault_duration": 0.25 * arguments.every,
+    }
+    seen: list[Health] = []
+    failed = 0
+    with Ending() as ending, only_demo(), Composition({}) as nodes:
+        monitor = StreamMonitor(nodes.context, tree)
+        try:
+            monitor.expect_silence()
+            nodes.add("anemometer", anemometer)
+            nodes.add("wind", {})
+            nodes.add("solver", {"tree": arguments.tree})
+            ending.look()
+            ending.limit = LONGEST
+            monitor.wait(1.0)
+            monitor.count_anew()
+            begin = time.monotonic()
+            period = min(60.0, max(0.5, seconds / _LINES))
+            while (since := time.monotonic() - begin) < seconds and not ending.is_asked:
+                nodes.check()
+                seen.append(health(since))
+                print(_line(seen[-1], monitor.record.pose_rate), flush=True)
+                monitor.wait(min(period, seconds - since))
+            failed = sum(node.guard.count for node in nodes.nodes)
+            print(summary(monitor.totals, 60.0), flush=True)
+            if not monitor.totals.arrivals.count:
+                raise TransportError("no poses came")
+        finally:
+            monitor.close()
+    slope = growth(seen)
+    told = f"{slope:+.2f} MB/h" if np.isfinite(slope) else "too short to tell"
+    print(f"memory   {told} after the first fifth; {failed} callbacks failed")
+    return int(failed > 0 or slope > arguments.slope)
+
+
+def health(since: float) -> Health:
+    """Look at this process, a time after the start [s]."""
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    words = dict(line.split(":", 1) for line in status.splitlines())
+    handles = len(os.listdir("/proc/self/fd"))
+    return Health(since, int(words["VmRSS"].split()[0]) / 1024.0, handles, int(words["Threads"]))
+
+
+def growth(seen: list[Health]) -> float:
+    """Slope of the memory after the warm-up in [MB/h]; NaN from fewer than ten looks."""
+    table = np.array([(each.time, each.memory) for each in seen])
+    if len(table):
+        table = table[table[:, 0] >= _WARM * table[-1, 0]]
+    if len(table) < 10:
+        return float("nan")
+    return float(np.polyfit(table[:, 0] / _HOUR, table[:, 1], 1)[0])
+
+
+def _line(now: Health, rate: float) -> str:
+    return (
+        f"{now.time:8.1f} s | memory {now.memory:7.1f} MB | handles {now.handles:4d} | "
+        f"threads {now.threads:3d} | poses {rate:5.1f} Hz"
+    )
