@@ -65,7 +65,7 @@ _REST_LEVEL = 1
 _SWING = 0.3
 _DIFFERENCE = 1e-3
 _SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.17, 0.1)
-_MOST_WRONG = 0.02
+_MOST_WRONG = 0.004
 
 
 class WindBasisTable:
