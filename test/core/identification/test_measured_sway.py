@@ -221,3 +221,12 @@ def test_a_pull_too_short_for_its_tree_says_why(noise, seed):
         FormatError, match=r"cycles of 0\.[12]\d+ Hz after .*; record 3 cycles after"
     ):
         estimate_sway(time, motion)
+
+
+@pytest.mark.parametrize("seed", [3, 4, 6])
+def test_a_pull_lost_in_the_wind_says_why(seed):
+    """In leaf, a tenth of the pull in other motion: no other mode is taken for the sway."""
+    time, motion = release(0.5, 0.1, duration=20.0, held=3.0, noise=0.005, seed=seed)
+    _, wind = ambient(0.5, 0.1, duration=60.0, seed=seed)
+    with pytest.raises(FormatError, match=r"beside the swing; pull farther or on a calmer day"):
+        estimate_sway(time, motion + 0.1 * wind[: len(motion)])

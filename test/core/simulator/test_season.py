@@ -17,6 +17,7 @@ import pytest
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.leaves.foliage import foliage_of
+from tree_sway_ros.core.motion.drag import STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
@@ -29,7 +30,7 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
 OAK = species_named("oak")
-SPEEDS = np.geomspace(2.0, 20.0, 7)
+SPEEDS = np.geomspace(STREAMLINING_FROM, STREAMLINING_TO, 7)
 GROWN = {"oak": 12.0, "birch": 9.0, "spruce": 12.0, "pine": 14.0}
 _long = pytest.mark.long
 
@@ -172,7 +173,7 @@ def test_leaves_damp():
 
 
 def growth_of_load(tree, settings):
-    """Exponent p of the moment at the base, U^p, in steady wind of 2 to 20 m/s."""
+    """Exponent p of the moment at the base, U^p, in winds that crowns were measured in."""
     sim = SwaySimulator(tree, settings=replace(settings, damping_ratio=0.7))
     moment = []
     for speed in SPEEDS:

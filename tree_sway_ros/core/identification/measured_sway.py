@@ -28,6 +28,8 @@ KINDS = ("release", "ambient")
 
 _MIN_SAMPLES = 16
 _LARGEST = 1e100
+_UNSURE = (0.03, 0.25)
+_LEAST_CLEAR = 4.0
 _EXPLAINED, _QUIET = 0.6, 0.5
 _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
@@ -105,12 +107,14 @@ def estimate_sway(
     refusal = FormatError("the motion does not die away from one swing")
     try:
         decay = _release(even, dt, gap, band)
-        if kind == "release" or _is_release(decay):
-            return _estimate(decay, "release")
     except FormatError as error:
         if kind == "release":
             raise
         refusal = error
+    else:
+        if kind == "release" or _is_release(decay):
+            _refuse_lost(decay)
+            return _estimate(decay, "release")
     try:
         return _estimate(_ambient(even, dt, gap, band), "ambient")
     except FormatError as error:
@@ -137,6 +141,26 @@ def _is_release(decay: FreeDecay) -> bool:
 
     """
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
+
+
+def _refuse_lost(decay: FreeDecay) -> None:
+    """
+    Refuse a swing that the wind's own motion soon drowns: its damping could be anything.
+
+    """
+    f, z = decay.frequency, decay.damping_ratio
+    clear = np.log(1.0 / max(decay.quiet, 1e-9)) / (2.0 * np.pi * z)
+    if decay.frequency_error > _UNSURE[0] * f or decay.damping_error > _UNSURE[1] * z:
+        what = f"{f:.3g} +- {decay.frequency_error:.2g} Hz"
+        what = f"{what}, damping {z:.2g} +- {decay.damping_error:.2g}"
+    elif clear < _LEAST_CLEAR:
+        what = f"the swing drowns in other motion after {clear:.1f} cycles, at damping {z:.2g}"
+    else:
+        return
+    raise FormatError(
+        f"{what}: too much moves beside the swing",
+        cure="pull farther or on a calmer day, or give frequency and damping yourself",
+    )
 
 
 def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:

@@ -7,9 +7,9 @@ finely it is cut.
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
 piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement
 of the loaded pieces; the branch damps itself at the displacement that gives the same damping as the
-sum. Crowns in leaf streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4 and 20
-m/s, constant outside. Those are the speeds at which crowns were measured in wind tunnels (Rudnicki
-et al. 2004; Vollsinger et al. 2005).
+sum. Wood keeps the drag of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et
+al. 2005) between 4 and 20 m/s, constant outside. Those are the speeds at which crowns were measured
+in wind tunnels (Rudnicki et al. 2004; Vollsinger et al. 2005).
 
 **Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step,
 where an explicit drag would shake it to pieces. With u the velocity the branch would have half a
@@ -22,6 +22,7 @@ order in the step.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from tree_sway_ros.core.kernel import inlined
 
@@ -32,22 +33,74 @@ STREAMLINING_FROM, STREAMLINING_TO = 4.0, 20.0
 """Wind speeds in [m/s] between which the drag law is measured."""
 
 
-def pressure(speed: float, coefficient: float, exponent: float) -> float:
+SHARED_AT = 8.0
+"""Wind in [m/s] in which wood and leaves of each branch share the load as they should."""
+
+
+class DragLaw(NamedTuple):
     """
-    Drag per area and speed squared, ``1/2 rho C U^-N``, in [kg/m^3].
+    Drag coefficient of a tree, ``Cd = C U^-N + C0``.
+
+    Parameters
+    ----------
+    coefficient, exponent
+        C and N of what streamlines.
+    steady
+        C0 of what does not.
+
+    """
+
+    coefficient: float
+    exponent: float
+    steady: float = 0.0
+
+
+def crown_drag(
+    wood_area: float, leaf_area: float, wood: float, leaves: tuple[float, float]
+) -> tuple[DragLaw, float]:
+    """
+    Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.
+
+    All branches share one law; each has the area that gives it its own share of wood and leaves at
+    `SHARED_AT`. Leaves shelter each other as they do in the crowns that their law was measured on.
+
+    Parameters
+    ----------
+    wood_area, leaf_area
+        Of the whole tree in [m^2].
+    wood
+        Drag coefficient of bare wood in [-].
+    leaves
+        C and N of ``Cd = C U^-N`` of the leafy area.
+
+    Returns
+    -------
+    law, weight
+        The law, per area of wood plus weighted leaves, and the weight of a leaf's area.
+
+    """
+    coefficient, exponent = leaves
+    weight = coefficient * math.pow(SHARED_AT, -exponent) / wood
+    whole = wood_area + weight * leaf_area
+    return DragLaw(coefficient * leaf_area / whole, exponent, wood * wood_area / whole), weight
+
+
+def pressure(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:
+    """
+    Drag per area and speed squared, ``1/2 rho (C U^-N + C0)``, in [kg/m^3].
 
     Parameters
     ----------
     speed
         U of the wind in [m/s].
-    coefficient, exponent
-        C and N of the species.
+    coefficient, exponent, steady
+        C, N and C0 of a `DragLaw`.
 
     """
     if exponent == 0.0:
-        return 0.5 * AIR_DENSITY * coefficient
+        return 0.5 * AIR_DENSITY * (coefficient + steady)
     streamlined = min(max(speed, STREAMLINING_FROM), STREAMLINING_TO)
-    return 0.5 * AIR_DENSITY * coefficient * math.pow(streamlined, -exponent)
+    return 0.5 * AIR_DENSITY * (coefficient * math.pow(streamlined, -exponent) + steady)
 
 
 @inlined

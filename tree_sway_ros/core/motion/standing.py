@@ -87,7 +87,8 @@ def step_standing(
             z = STEEPEST * speed if z > 0.0 else -STEEPEST * speed
             if level == 0.0:
                 x = _LEVEL * speed
-        load = _pressure(speed, drag_laws[here.kind, 0], drag_laws[here.kind, 1])
+        law = drag_laws[here.kind]
+        load = _pressure(speed, law[0], law[1], law[2])
         if load * speed * speed > table.most_pressure:
             is_held = True
             share = math.sqrt(table.most_pressure / load) / speed

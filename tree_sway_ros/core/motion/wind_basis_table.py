@@ -30,7 +30,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.drag import pressure
+from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway_ros.core.motion.modal import ModalBank, wind_moments
@@ -65,7 +65,7 @@ _REST_LEVEL = 1
 _SWING = 0.3
 _DIFFERENCE = 1e-3
 _SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.17, 0.1)
-_MOST_WRONG = 0.02
+_MOST_WRONG = 0.004
 
 
 class WindBasisTable:
@@ -92,7 +92,7 @@ class WindBasisTable:
 
     """
 
-    def __init__(self, bank: ModalBank, drag_law: tuple[float, float], degree: int) -> None:
+    def __init__(self, bank: ModalBank, drag_law: DragLaw, degree: int) -> None:
         """Ask the tree for its loads in all winds."""
         self._bank, self._shapes = bank, bank.shapes
         n, m = bank.shapes.shape
@@ -154,7 +154,7 @@ class WindBasisTable:
         table["harmonics"][:, : table["n_modes"]] = fitted @ self._shapes
         return self._rest_of(fitted)
 
-    def _set_levels(self, table: Any, drag_law: tuple[float, float], share: float) -> None:
+    def _set_levels(self, table: Any, drag_law: DragLaw, share: float) -> None:
         """Set the levels for a share of the usual winds, and how far the table goes on."""
         table["levels"] = [pressure(u, *drag_law) * u**2 for u in share * SPEEDS]
         table["most_pressure"] = BEYOND * table["levels"][-1]

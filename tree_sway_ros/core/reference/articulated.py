@@ -57,8 +57,8 @@ class ArticulatedTree:
     damping_ratio
         Of each of the lowest `damped_modes` in [-]; above them the ratio grows with the frequency,
         as by dampers in proportion to the springs. Not used where `rayleigh` is given.
-    drag_coefficient, drag_exponent
-        C and N of Cd = C U^-N.
+    drag_coefficient, drag_exponent, steady_drag
+        C, N and C0 of Cd = C U^-N + C0.
     gravity
         In [m/s^2]; the springs hold the rest shape against it.
     subdivisions
@@ -86,6 +86,7 @@ class ArticulatedTree:
         drag_coefficient: float = 1.2,
         *,
         drag_exponent: float = 0.0,
+        steady_drag: float = 0.0,
         air_density: float = AIR_DENSITY,
         gravity: float = 0.0,
         subdivisions: int = 1,
@@ -128,6 +129,7 @@ class ArticulatedTree:
             drag_exponent,
             STREAMLINING_FROM,
             STREAMLINING_TO,
+            0.5 * air_density * steady_drag,
         )
         self.reset()
 

@@ -66,6 +66,8 @@ class Laws(NamedTuple):
         N in [-].
     slowest, fastest
         Wind speeds between which the drag coefficient follows U^-N, in [m/s].
+    steady_drag
+        Half the density of air times a drag coefficient that adds to it, in [kg/m^3].
 
     """
 
@@ -78,6 +80,7 @@ class Laws(NamedTuple):
     drag_exponent: float
     slowest: float
     fastest: float
+    steady_drag: float = 0.0
 
 
 class State(NamedTuple):
@@ -130,10 +133,11 @@ def drag(laws: Laws, axis: Vector, wind: Vector, velocity: Vector) -> Vector:
     """Drag on a segment with this axis and velocity in this wind, by its area, in [N/m^2]."""
     air = plus(wind, velocity, -1.0)
     across = plus(air, axis, -dot(air, axis))
-    factor = laws.drag * math.sqrt(dot(across, across))
+    factor = laws.drag
     if laws.drag_exponent != 0.0:
         speed = min(max(math.sqrt(dot(wind, wind)), laws.slowest), laws.fastest)
         factor *= math.pow(speed, -laws.drag_exponent)
+    factor = (factor + laws.steady_drag) * math.sqrt(dot(across, across))
     return factor * across[0], factor * across[1], factor * across[2]
 
 

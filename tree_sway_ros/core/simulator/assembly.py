@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
+from tree_sway_ros.core.motion.drag import DragLaw, crown_drag
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -273,6 +274,27 @@ class CalibratedTree:
             return settings.damping_ratio
         return species.damping(bool(settings.in_leaf))
 
+    @cached_property
+    def _crown_drag(self) -> tuple[DragLaw, float]:
+        species, area = self.species, self.settings.leaf_area
+        if not self.settings.in_leaf or area is None:
+            return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), 1.0
+        tree = self.tree
+        wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
+        laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
+        return crown_drag(wood, float(area.sum()), *laws)
+
+    @property
+    def drag_law(self) -> DragLaw:
+        """Of the whole tree, wood and leaves."""
+        return self._crown_drag[0]
+
+    @property
+    def leaf_load_area(self) -> Floats | None:
+        """Area of bare wood that the leaves of each branch stand for in [m^2], (b,)."""
+        area = self.settings.leaf_area
+        return None if area is None else self._crown_drag[1] * area
+
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
@@ -317,8 +339,7 @@ class CalibratedTree:
                 need_compiler("the model 'wind_basis'")
                 n = len(modes.circular)
                 if n not in self._tables:
-                    law = self.species.drag_law(bool(settings.in_leaf))
-                    self._tables[n] = WindBasisTable(modal, law, settings.degree)
+                    self._tables[n] = WindBasisTable(modal, self.drag_law, settings.degree)
                 oscillators = WindBasisBank(modal, self._tables[n])
         else:
             refuse_buckling(self.tree, layer.reduction)
@@ -379,7 +400,7 @@ class CalibratedTree:
             enriched=enriched,
             speed_profile=speed,
             leaf_mass=settings.leaf_mass,
-            leaf_area=settings.leaf_area,
+            leaf_area=self.leaf_load_area,
         )
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cached_property
 
+from tree_sway_ros.core.motion.drag import DragLaw
 from tree_sway_ros.core.motion.fill_records import lanes, moving_records, segment_records
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
 from tree_sway_ros.core.reduction.pruning import Bools, Pruning
@@ -45,6 +46,11 @@ class PartlyFrozenTree(CalibratedTree):
             frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),
             n_frozen=int(self.pruning.frozen.sum()),
         )
+
+    @property
+    def drag_law(self) -> DragLaw:
+        """Of the whole tree, wood and leaves."""
+        return self._whole.drag_law
 
     @cached_property
     def alone(self) -> Layer:

@@ -79,20 +79,22 @@ class SegmentsSimulator(OneTree, KeepsState):
         damping = settings.damping_ratio
         if damping is None:
             damping = species.damping(bool(settings.in_leaf))
-        coefficient, exponent = species.drag_law(bool(settings.in_leaf))
+        calibrated = CalibratedTree(tree, species, settings)
+        law = calibrated.drag_law
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
             tree,
             species.modulus,
             species.density,
             damping,
-            coefficient,
-            drag_exponent=exponent,
+            law.coefficient,
+            drag_exponent=law.exponent,
+            steady_drag=law.steady,
             gravity=settings.gravity,
             twist_ratio=2.0 * species.shear_ratio,
             wind_factor=settings.profile.over_anemometer(middle),
             leaf_mass=settings.leaf_mass,
-            leaf_area=settings.leaf_area,
+            leaf_area=calibrated.leaf_load_area,
         )
         self.wind = np.zeros(3)
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0

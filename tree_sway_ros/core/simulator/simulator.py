@@ -110,7 +110,7 @@ class SwaySimulator(OneTree, KeepsState):
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
-        self.drag_law = self.species.drag_law(bool(self.settings.in_leaf))
+        self.drag_law = calibrated.drag_law
         self._advance = self.bank.oscillators.advance
         within("threads", threads, 1, 64)
         self._place = self.bank.place if threads == 1 else self.bank.on_threads(int(threads))
