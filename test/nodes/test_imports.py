@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that run no kernel start without the compiler: numba alone takes half a second to load."""
 
 from __future__ import annotations

@@ -104,7 +104,8 @@ def test_who_is_missing_is_told_and_nothing_begins(compose, observer, wind_file)
     observer.until(lambda: len(ticks) > 10, "a clock that stands")
     assert len({stamp_to_ns(tick.clock) for tick in ticks}) == 1
     assert said == []
-    assert nodes["player"]._audience._said == "waiting for subscribers of camera (0 of 2)"
+    told = "waiting for subscribers of camera (0 of 2)"  # once the listener to the wind is seen
+    observer.until(lambda: nodes["player"]._audience._said == told, "who is missing")
 
 
 def test_a_bag_of_the_graph_itself_plays_back(compose, observer, tmp_path, monkeypatch):

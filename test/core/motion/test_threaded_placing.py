@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Placing on several threads: the same poses, each block after its parents."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
 """
 Placing a large tree on several threads: blocks whose parents stand are placed side by side.
 

@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "what",
-        choices=(*_CHARTS, "all"),
+        choices=(*_CHARTS, "validation", "all"),
         help="methods: of integration; fidelity: models of a tree; cost: against its size; "
         "portraits: trees at rest and in wind; film: a pot plant in gusts; all: every picture of "
         "the documentation",
@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     for what in _CHARTS if arguments.what == "all" else (arguments.what,):
         module = importlib.import_module(f"tree_sway_ros.study.chart.{what}")
         options: dict[str, Any] = {}
-        if arguments.wind is not None and what == "fidelity":
+        if arguments.wind is not None and what in ("fidelity", "validation"):
             record = read_wind(arguments.wind)
             options["wind"] = (record.time, record.velocity)
             options["source"] = Path(record.source).name

@@ -1,0 +1,72 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway chart validation``: models on random crooked trees, by their worst cases."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.study.validation.crooked_trees import crooked_tree
+from tree_sway_ros.study.validation.judge import Judge, Verdict
+from tree_sway_ros.study.validation.winds import from_record, hard_cases, turbulent
+
+SEEDS = (1, 4, 8, 9, 11)
+
+
+def chart_validation(
+    out_dir: str | Path,
+    *,
+    wind: tuple[Floats, Floats] | None = None,
+    seeds: Iterable[int] = SEEDS,
+    seconds: float = 8.0,
+) -> list[Verdict]:
+    """
+    Judge all models on crooked trees and write ``validation.md``.
+
+    Parameters
+    ----------
+    out_dir
+        Folder to write into; made if it is not there.
+    wind
+        Times in [s], (m,), and velocities in [m/s], (m, 3), of a record, taken once and thrice as
+        strong; simulated winds alone if None.
+    seeds
+        Of the trees.
+    seconds
+        Length of each run in [s].
+
+    """
+    verdicts: list[Verdict] = []
+    for seed in seeds:
+        judge = Judge(crooked_tree(seed))
+        winds = {f"{mean:g} m/s": turbulent(mean, seconds, seed) for mean in (3.0, 9.0)}
+        if wind is not None:
+            winds |= {f"record x{k:g}": from_record(*wind, seconds, k) for k in (1.0, 3.0)}
+        verdicts += judge.verdicts(winds | hard_cases(seconds, judge.first_frequency))
+    folder = Path(out_dir)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "validation.md").write_text(_table(verdicts), encoding="utf-8")
+    return verdicts
+
+
+def _table(verdicts: list[Verdict]) -> str:
+    """Largest tip error over tip motion of each full model in each wind, over all trees."""
+    winds = list(dict.fromkeys(one.wind for one in verdicts))
+    models = list(dict.fromkeys(one.model for one in verdicts if "frozen" not in one.model))
+    lines = ["| model | " + " | ".join(winds) + " |", "|---" * (1 + len(winds)) + "|"]
+    for model in models:
+        worst = [
+            max((v.error for v in verdicts if (v.model, v.wind) == (model, wind)), default=np.nan)
+            for wind in winds
+        ]
+        lines.append(f"| `{model}` | " + " | ".join(f"{each:.3f}" for each in worst) + " |")
+    over = [one.over_estimate for one in verdicts if np.isfinite(one.over_estimate)]
+    trees = ", ".join(dict.fromkeys(one.tree for one in verdicts))
+    lines += ["", f"Largest tip error over tip motion on the trees {trees}.", ""]
+    most, median = max(over), np.median(over)
+    lines.append(f"True error over estimate: {most:.2f} at most, {median:.2f} in the median.")
+    return "\n".join(lines) + "\n"
