@@ -38,7 +38,7 @@ MOST_CREDIT = 64
 """Most frames that may be on their way to one client."""
 
 IDLE_TIME = 60.0
-"""A client that says nothing for so long is closed [s]; a page speaks several times a second."""
+"""A client that says nothing for so long is closed [s]; a page speaks several times per second."""
 
 STATUS_PERIOD = 0.5
 _START_TIMEOUT = 10.0

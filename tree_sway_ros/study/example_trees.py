@@ -44,7 +44,7 @@ def forked_tree(
     length_ratio, diameter_ratio
         Of a child to its parent.
     segments
-        Segments a branch, a multiple of 6.
+        Segments per branch, a multiple of 6.
     generations
         How many there are, the stem's being the first.
 
@@ -69,7 +69,7 @@ def broom_tree(*, segments: int = 6) -> Tree:
     Parameters
     ----------
     segments
-        Segments a branch, a multiple of 6.
+        Segments per branch, a multiple of 6.
 
     """
     on_stem = (2, 2, 3, 3, 3, 4, 4, 5, 5, 5, 6, 6)

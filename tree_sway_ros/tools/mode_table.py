@@ -69,7 +69,7 @@ def mode_table(tree: Tree, bank: Bank, count: int) -> list[ModeRow]:
         The tree.
     bank
         The tree as one model of the ladder models it. Where branches swing on their own, each has a
-        mode a branch and axis.
+        mode per branch and axis.
     count
         How many modes at most.
 

@@ -54,7 +54,7 @@ def animate_poses(
         File to write: ``.gif``, ``.png``, ``.apng`` or ``.mp4`` (by ffmpeg); without a suffix, a
         folder of frames.
     rate
-        Frames a second in [Hz].
+        Frames per second in [Hz].
     leaves
         Its leaves; none are drawn if None.
     camera

@@ -130,7 +130,7 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     Returns
     -------
     dict
-        One list a field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
+        One list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
         and its two constants.
 
     """

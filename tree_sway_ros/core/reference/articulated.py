@@ -62,7 +62,7 @@ class ArticulatedTree:
     gravity
         In [m/s^2]; the springs hold the rest shape against it.
     subdivisions
-        Rigid pieces a segment.
+        Rigid pieces per segment.
     twist_ratio
         Stiffness of the joints in twist over that in bending, GJ/EI; by default they hardly twist.
     damped_modes

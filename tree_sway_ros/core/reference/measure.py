@@ -57,7 +57,7 @@ def record_tips(
     dt
         Length of a frame in [s].
     substeps
-        Steps a frame, all in the same wind.
+        Steps per frame, all in the same wind.
 
     """
     poses = np.empty((tree.n_segments, 7))

@@ -49,7 +49,7 @@ class Tree:
     source_index
         Position of each segment in the input it was built from, (n,).
     branch_names
-        One name a branch.
+        One name per branch.
     name, species
         What the tree is called, and the key of its wood in the species table.
 

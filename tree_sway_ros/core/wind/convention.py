@@ -64,7 +64,7 @@ class WindConvention:
     direction_convention
         ``to``: vectors point where the wind blows to; ``from``: where it comes from.
     speed_scale
-        Metres a second in one unit of the source: 1, 0.514444 for knots, 0.277778 for km/h.
+        Metres per second in one unit of the source: 1, 0.514444 for knots, 0.277778 for km/h.
     yaw_offset
         Angle from east to the source's x axis, counter-clockwise seen from above, in [rad]: a mast
         that is not aligned, or magnetic declination.

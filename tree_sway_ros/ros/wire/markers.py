@@ -3,7 +3,7 @@
 """
 The tree for RViz: one LINE_LIST a radius class, with fixed ids, as bytes.
 
-A marker a segment brings RViz to its knees, and DELETEALL makes it flicker. A handful of line lists
+A marker per segment brings RViz to its knees, and DELETEALL makes it flicker. A handful of line lists
 whose points are overwritten in place costs less than the poses do.
 
 """

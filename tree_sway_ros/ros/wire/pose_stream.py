@@ -104,7 +104,7 @@ class PoseStream:
 
 
 class _Transforms:
-    """A frame a segment on /tf, for tools that know nothing else; RViz bears some 100 of them."""
+    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100 of them."""
 
     def __init__(self, node: Any, tree: Tree, frame_id: str) -> None:
         try:

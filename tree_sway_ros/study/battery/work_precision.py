@@ -45,14 +45,14 @@ class Point:
     method, form, system, wind
         Names; system is "1 segment" or "6 segments".
     rate
-        Steps a second [1/s].
+        Steps per second [1/s].
     error
         Root mean square of the angles' error in [rad]; NaN where the method blew up or lost the
         motion.
     flops
-        Operations a step, weighted, at 60 steps per second.
+        Operations per step, weighted, at 60 steps per second.
     wall_ratio
-        Time a step over that of semi-implicit Euler on the minimal form, same run.
+        Time per step over that of semi-implicit Euler on the minimal form, same run.
 
     """
 

@@ -36,7 +36,7 @@ def time_cuts(model: str, rounds: int, cuts: Sequence[int] = CUTS) -> dict[int, 
         Of twenty steps of each; all cuts take turns, so that they meet the same load of the
         machine.
     cuts
-        Segments a branch.
+        Segments per branch.
 
     Returns
     -------

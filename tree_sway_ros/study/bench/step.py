@@ -62,7 +62,7 @@ class StepTiming:
 
 def time_steps(tree: Tree, model: str, rounds: int) -> StepTiming:
     """
-    Time a step of a tree.
+    Time per step of a tree.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ def chart_cost(
     out_dir
         Folder to write into; made if it is not there.
     cuts
-        Segments a branch, of a tree of 40 branches.
+        Segments per branch, of a tree of 40 branches.
     generations
         Of branches, each three times as many as the one before, six segments per branch.
     frames

@@ -162,7 +162,7 @@ def frame_model(
     subdivisions
         Elements a segment.
     shear_ratio
-        Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic solid of Poisson ratio .3,
+        Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic solid of Poisson ratio 0.3,
         about 1/14 for wood along the grain (Wood Handbook FPL-GTR-282, table 5-1).
 
     """

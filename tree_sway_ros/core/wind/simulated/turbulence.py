@@ -10,7 +10,7 @@ and its variance exactly, and tends to a Gaussian process. The three components 
 
 A sampled record cannot hold what lies above half its rate, nor below one over its period. That
 variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz, 10
-m and 7 m/s this lifts u, v, w by .1, .2, .4 dB; at 1 Hz it lifts w by 3 dB, so do not read spectra
+m and 7 m/s this lifts u, v, w by 0.1, 0.2, 0.4 dB; at 1 Hz it lifts w by 3 dB, so do not read spectra
 from a slow record.
 
 Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard

@@ -22,7 +22,7 @@ def fit(samples: NDArray[np.float64], dt: float) -> tuple[float, float]:
     """
     Frequency in [Hz] and damping ratio of a free decay, from its two-term recurrence.
 
-    Two real samples a period cannot tell a sign: the frequency must stay below half the sample
+    Two real samples per period cannot tell a sign: the frequency must stay below half the sample
     rate.
 
     """
