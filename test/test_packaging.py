@@ -145,7 +145,11 @@ def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> N
     assert "share/ament_index/resource_index/packages/tree_sway_ros" in infos
     assert "tree_sway_ros/py.typed" in infos
     package = ROOT / "tree_sway_ros"
-    data = {p for p in package.rglob("*.*") if p.suffix not in {".py", ".pyc"} and p.is_file()}
+    data = {
+        path
+        for path in package.rglob("*.*")
+        if path.suffix != ".py" and path.is_file() and "__pycache__" not in path.parts
+    }
     assert not [path for path in data if str(path.relative_to(ROOT)) not in infos]
 
 

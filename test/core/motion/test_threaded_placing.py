@@ -20,9 +20,7 @@ def tree():
 
 @pytest.mark.parametrize("threads", [2, 3])
 def test_the_poses_are_those_of_one_thread(tree, threads):
-    one, many = (
-        SwaySimulator(tree, model="subtree", gravity=0.0, threads=n) for n in (1, threads)
-    )
+    one, many = (SwaySimulator(tree, model="subtree", gravity=0.0, threads=n) for n in (1, threads))
     for k in range(5):
         for sim in (one, many):
             sim.step((7.0, np.sin(k), 0.0), 1 / 60)

@@ -53,5 +53,5 @@ def test_it_agrees_with_our_reference():
 
 def test_without_it_the_extra_is_named(monkeypatch):
     monkeypatch.setattr(sundials_ida, "is_installed", lambda: False)
-    with pytest.raises(MissingDependencyError, match=r"tree_sway_ros\[sundials\]"):
+    with pytest.raises(MissingDependencyError, match="pip install scikit-sundae"):
         sundials_ida.run_ida(CHAIN, np.zeros((1, 3, 2, 2)), 1 / 60, np.zeros((2, 2)))

@@ -62,4 +62,4 @@ def test_the_command_prints_what_a_program_can_read(capsys: pytest.CaptureFixtur
     found = json.loads(capsys.readouterr().out)
     assert found["segments"] == 726
     assert [row["model"] for row in found["timings"]] == ["branch", "subtree", "modes"]
-    assert found["timings"][2]["ratio"] is None
+    assert all(row["ratio"] > 1.0 for row in found["timings"])

@@ -183,7 +183,7 @@ def ways_to_move(
                 break
     if n_twists > 0:
         twists = _twists(beam, carried, curvatures[:2], n_twists, n_by_wind)
-    if len(shapes) > 1 or twists or fields is None or len(carried.area):
+    if len(shapes) > 1 or twists or fields is None or len(beam.child_place):
         fields = [RotationField.about(first, e2), RotationField.about(first, -e1)]
     ways = [Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)]
     for shape in shapes[1:]:

@@ -22,6 +22,7 @@ from tree_sway_ros.core.branch.model import branch_models, enriched_branches
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
@@ -159,7 +160,7 @@ class _ScaledTree:
                 0.5 * (tree.start[:, 2] + tree.end[:, 2])
             ),
             leaf_mass=settings.leaf_mass,
-            leaf_area=settings.leaf_area,
+            leaf_area=CalibratedTree(tree, species, settings).leaf_load_area,
         )
         shear = species.shear_ratio * species.modulus
         self.tree = tree

@@ -130,8 +130,8 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     Returns
     -------
     dict
-        One list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
-        and its two constants.
+        One list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with
+        the law and its two constants.
 
     """
     columns = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
+from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
 from tree_sway_ros.core.motion.drag import DragLaw, crown_drag
 from tree_sway_ros.core.motion.fill_records import (
@@ -276,10 +277,11 @@ class CalibratedTree:
 
     @cached_property
     def _crown_drag(self) -> tuple[DragLaw, float]:
-        species, area = self.species, self.settings.leaf_area
-        if not self.settings.in_leaf or area is None:
+        species, given = self.species, self.settings.leaf_area
+        if not self.settings.in_leaf or given is None:
             return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), 1.0
         tree = self.tree
+        area = one_of_each("leaf_area", given, tree.n_branches, "branch")
         wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
         laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
         return crown_drag(wood, float(area.sum()), *laws)
@@ -293,7 +295,7 @@ class CalibratedTree:
     def leaf_load_area(self) -> Floats | None:
         """Area of bare wood that the leaves of each branch stand for in [m^2], (b,)."""
         area = self.settings.leaf_area
-        return None if area is None else self._crown_drag[1] * area
+        return None if area is None else self._crown_drag[1] * np.asarray(area, dtype=np.float64)
 
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:

@@ -129,7 +129,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         """Advance by a time [s], finer where joints turn too fast; tell whether they still do."""
         turn, rate = self._model.state
         before = turn.copy(), rate.copy()
-        for pieces in (1, 4, 16, 64):
+        for pieces in (1, 4, 16, 64, 256):
             for _ in range(pieces):
                 self._model.step(self.wind, dt / pieces)
                 largest = float(np.abs(rate).max()) * dt / pieces

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The tree for RViz: one LINE_LIST a radius class, with fixed ids, as bytes.
+The tree for RViz: one LINE_LIST per radius class, with fixed ids, as bytes.
 
-A marker per segment brings RViz to its knees, and DELETEALL makes it flicker. A handful of line lists
-whose points are overwritten in place costs less than the poses do.
+One marker per segment brings RViz to its knees, and DELETEALL makes it flicker. A handful of line
+lists whose points are overwritten in place costs less than the poses do.
 
 """
 

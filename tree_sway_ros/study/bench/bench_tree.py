@@ -3,8 +3,8 @@
 """
 The tree that the benchmarks run on: 121 branches of 6 segments, four orders, made by rule.
 
-A stem of 6 m carries twelve branches of 2.2 m, each of those three of 0.9 m, each of those two of 0.4
-m; diameters go from 120 mm at the ground to 8 mm at the last tips. Azimuths follow the golden
+A stem of 6 m carries twelve branches of 2.2 m, each of those three of 0.9 m, each of those two of
+0.4 m; diameters go from 120 mm at the ground to 8 mm at the last tips. Azimuths follow the golden
 angle, so that no two branches are alike.
 
 """

@@ -160,9 +160,9 @@ def frame_model(
     gravity
         In [m/s^2], downwards; 0 leaves the self-weight out.
     subdivisions
-        Elements a segment.
+        Elements per segment.
     shear_ratio
-        Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic solid of Poisson ratio 0.3,
+        Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic rod of Poisson ratio 0.3,
         about 1/14 for wood along the grain (Wood Handbook FPL-GTR-282, table 5-1).
 
     """

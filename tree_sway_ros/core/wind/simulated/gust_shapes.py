@@ -60,8 +60,8 @@ def extreme_operating_gust(
     """
     Return the speed of the IEC extreme operating gust, the "Mexican hat".
 
-    It is -0.37 A sin(3 pi t/T) (1 - cos(2 pi t/T)): a dip, a peak of 0.74 A, a dip. IEC 61400-1:2005,
-    6.3.2.2; `extreme_gust_speed` gives its A.
+    It is -0.37 A sin(3 pi t/T) (1 - cos(2 pi t/T)): a dip, a peak of 0.74 A, a dip. IEC
+    61400-1:2005, 6.3.2.2; `extreme_gust_speed` gives its A.
 
     Parameters
     ----------

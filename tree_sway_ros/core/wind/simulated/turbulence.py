@@ -10,8 +10,8 @@ and its variance exactly, and tends to a Gaussian process. The three components 
 
 A sampled record cannot hold what lies above half its rate, nor below one over its period. That
 variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz, 10
-m and 7 m/s this lifts u, v, w by 0.1, 0.2, 0.4 dB; at 1 Hz it lifts w by 3 dB, so do not read spectra
-from a slow record.
+m and 7 m/s this lifts u, v, w by 0.1, 0.2, 0.4 dB; at 1 Hz it lifts w by 3 dB, so do not read
+spectra from a slow record.
 
 Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard
 deviation [m/s], Lambda1 turbulence scale of IEC 61400-1 [m]. Axes of a record: u along the mean

@@ -14,7 +14,7 @@ by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` besid
         nodes: [[0, 0, 0, 0.02], [0, 0, 0.4, 0.015], [0, 0, 0.8, 0.005]]
       - name: twig
         parent: stem
-        at: 0.5                                  # half way up the stem; nodes are offsets from there
+        at: 0.5                               # half way up the stem; nodes are offsets from there
         nodes: [[0, 0, 0, 0.006], [0.2, 0, 0.1, 0.002]]
 
 """

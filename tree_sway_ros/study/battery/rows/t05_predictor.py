@@ -15,7 +15,7 @@ DT, STEPS = 1 / 30, 150
 
 
 def iterations(from_old_acceleration: bool) -> np.ndarray:
-    """Newton iterations of each step, -1 where it fails, of a chain bent in a zigzag of 0.02 rad."""
+    """Newton iterations of each step, -1 where it fails, of a chain in a zigzag of 0.02 rad."""
     chain, method = uniform_chain(6, 2.0, 0.05), GeneralizedAlpha(0.8, from_old_acceleration)
     theta = 0.02 * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
     load = np.zeros((1, 6, 2))

@@ -56,7 +56,7 @@ def run(full: bool = False) -> list[Row]:
 
 
 def _gated(bad: float | None, kind: type) -> NDArray[np.float64]:
-    """States under a smooth wind of 60 samples per second, the last good one held at refused ones."""
+    """States under a smooth wind of 60 samples per second, the last good one held at bad ones."""
     gate, branch = WindGate(), Branch()
     held, loads = np.zeros(3), np.zeros((STEPS, 3))
     for n in range(STEPS):

@@ -26,7 +26,7 @@ Array = NDArray[Any]
 
 def adversaries(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
     """
-    w h from 0.1 to 100, z from 0.001 to 1, a share of the largest load, random angle in space, (n,).
+    w h from 0.1 to 100, z from 0.001 to 1, a share of the largest load, any angle in space, (n,).
 
     """
     ratio = 10 ** rng.uniform(-1, 2, n)
