@@ -42,7 +42,7 @@ from tree_sway_ros.errors import ParameterError
 LONGEST_STEP = 1.0 / 60.0
 """Longest step of the implicit springs in [s]; longer ones are cut."""
 
-LARGEST_TURN = 1.0
+LARGEST_TURN = 0.3
 """Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
 
 
