@@ -49,9 +49,9 @@ def test_a_wait_that_is_not_counted_is_told(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    before = set(progress.threading.enumerate())
     with progress.waiting("calibrating") as nothing:
-        for thread in progress.threading.enumerate():
-            if isinstance(thread, progress.threading.Timer):
-                thread.join()
+        for thread in set(progress.threading.enumerate()) - before:
+            thread.join()
     assert nothing is None
     assert capsys.readouterr().err == "calibrating ...\n"
