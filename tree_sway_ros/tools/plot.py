@@ -25,7 +25,7 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
 from tree_sway_ros.tools.progress import bar
-from tree_sway_ros.tools.ride import Samples, recorded, ride, simulated
+from tree_sway_ros.tools.sway_in_wind import Samples, recorded, simulated, sway_in_wind
 from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 from tree_sway_ros.tools.tree_output import add_output_arguments, output_path
 from tree_sway_ros.view.pictures import picture_in_wind
@@ -107,7 +107,7 @@ def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output:
     else:
         record = read_wind(arguments.wind)
         samples, source = recorded(record), Path(record.source).name
-    result = ride(_simulator(scene, arguments), samples, arguments.seconds)
+    result = sway_in_wind(_simulator(scene, arguments), samples, arguments.seconds)
     if len(result.time) < 2:
         raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
     title = f"{scene.tree.name}, {arguments.model}, {source}"

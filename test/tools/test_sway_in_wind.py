@@ -13,7 +13,7 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.study.bench.bench_tree import bench_tree
-from tree_sway_ros.tools.ride import recorded, ride, simulated
+from tree_sway_ros.tools.sway_in_wind import recorded, simulated, sway_in_wind
 
 WESTERLY = np.array([5.0, 0.0, 0.0])
 
@@ -24,7 +24,7 @@ def simulator() -> SwaySimulator:
 
 
 def test_a_steady_wind_ends_where_stepping_by_hand_does(simulator: SwaySimulator) -> None:
-    found = ride(simulator, ((0.05 * k, WESTERLY) for k in itertools.count()), 30.0)
+    found = sway_in_wind(simulator, ((0.05 * k, WESTERLY) for k in itertools.count()), 30.0)
     by_hand = SwaySimulator(simulator.tree, model="subtree")
     for _ in range(1800):
         by_hand.step(WESTERLY, 1 / 60)
@@ -38,14 +38,14 @@ def test_a_steady_wind_ends_where_stepping_by_hand_does(simulator: SwaySimulator
 def test_it_ends_with_the_record(simulator: SwaySimulator) -> None:
     time = np.arange(0.0, 2.0, 0.05)
     record = WindRecord(time, np.tile(WESTERLY, (len(time), 1)), "a test")
-    found = ride(simulator, recorded(record), 60.0)
+    found = sway_in_wind(simulator, recorded(record), 60.0)
     assert found.time[-1] == pytest.approx(time[-1], abs=1 / 60)
     assert found.wind.shape == found.tip.shape == (len(found.time), 3)
 
 
 def test_a_simulated_wind_is_the_same_each_time(simulator: SwaySimulator) -> None:
-    first = ride(simulator, simulated(AnemometerModel(6.0, seed=3)), 3.0)
+    first = sway_in_wind(simulator, simulated(AnemometerModel(6.0, seed=3)), 3.0)
     simulator.reset()
-    second = ride(simulator, simulated(AnemometerModel(6.0, seed=3)), 3.0)
+    second = sway_in_wind(simulator, simulated(AnemometerModel(6.0, seed=3)), 3.0)
     assert np.array_equal(first.tip, second.tip)
     assert not np.array_equal(first.wind[0], first.wind[-1])

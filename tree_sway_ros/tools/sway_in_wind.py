@@ -24,7 +24,7 @@ Samples = Iterator[tuple[float, Floats]]
 
 
 @dataclass(frozen=True)
-class Ride:
+class Sway:
     """
     What happened, one row per step.
 
@@ -55,7 +55,9 @@ def simulated(model: AnemometerModel) -> Samples:
         yield tick / model.rate, model.sample(tick)
 
 
-def ride(simulator: Simulator, samples: Samples, seconds: float, rate: float = 60.0) -> Ride:
+def sway_in_wind(
+    simulator: Simulator, samples: Samples, seconds: float, rate: float = 60.0
+) -> Sway:
     """
     Take a tree through a wind.
 
@@ -72,7 +74,7 @@ def ride(simulator: Simulator, samples: Samples, seconds: float, rate: float = 6
 
     Returns
     -------
-    Ride
+    Sway
         Time, wind and tip.
 
     """
@@ -93,4 +95,4 @@ def ride(simulator: Simulator, samples: Samples, seconds: float, rate: float = 6
         time.append(end)
         wind.append(np.array(mean))
         tip.append(simulator.tip_displacement)
-    return Ride(np.array(time), np.array(wind).reshape(-1, 3), np.array(tip).reshape(-1, 3))
+    return Sway(np.array(time), np.array(wind).reshape(-1, 3), np.array(tip).reshape(-1, 3))
