@@ -23,9 +23,6 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.beam import Attachments, BranchBeam, SlopeShape
 from tree_sway_ros.core.branch.shapes import (
-    FEWER,
-    N_SHAPES,
-    N_TWISTS,
     Carried,
     Coordinate,
     ways_to_move,
@@ -149,8 +146,9 @@ def branch_models(
         if speed_profile is not None:
             drag_area *= (speed_profile[here] ** 2)[:, None]
         carried = sums[children if carries else children[:0]]
-        richness = _richness(tree, branch, enriched)
-        ways = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)
+        ways = ways_to_move(
+            beam, drag_area, mass, carried, shear_ratio, is_enriched=branch in enriched
+        )
         models.append(BranchModel(beam, drag_area, mass, ways, children))
         point, dm = beam.point, beam.weight * mass
         area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
@@ -168,14 +166,6 @@ def branch_models(
         weight_second[branch] = np.einsum("sg,sgi,sgj->ij", dm, point, point)
         weight_second[branch] += weight_second[children].sum(axis=0)
     return models[::-1]
-
-
-def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int, int]:
-    """Shapes and twists of a branch, and how many of these are by the wind."""
-    if branch not in enriched:
-        return 1, 0, 0
-    is_stem = tree.branch_parent[branch] < 0
-    return (N_SHAPES, N_TWISTS, 1) if is_stem else (FEWER, N_TWISTS, 2)
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

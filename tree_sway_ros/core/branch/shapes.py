@@ -1,41 +1,47 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The ways a branch bends and twists: its static shape, and for an enriched branch the shapes that
-follow from it.
+The ways a branch bends and twists: its static fields, and for an enriched branch further shapes.
 
-The first shape is the static one under the wind. Each further one is bent by the inertia of the one
-before it, with all that the branch carries (load-dependent Ritz vectors: Wilson, Yuan & Dickens,
-1982), and made orthogonal in bending energy to those before; so do the twists, from the torque of
-what it carries when it turns as one. Three and three bring the slowest modes of a crown within
-about a percent of the beam frame's, where one shape alone misses the twist of the stem altogether.
+A plain branch moves as winds bend and twist it in space, with all that it carries: two fields, one
+per way that its chord can turn. An enriched branch has shapes, each about two axes across its
+chord, and twists about it. They are those that best hold the static fields and what inertia bends
+these into (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982): the principal components of
+their curvatures, in bending energy.
 
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import BranchBeam, RotationField, SlopeShape, cross_matrix
+from tree_sway_ros.core.branch.beam import (
+    BranchBeam,
+    RotationField,
+    SlopeShape,
+    cross,
+    cross_matrix,
+)
 
 N_SHAPES = 3
-"""Bending shapes of an enriched stem, each about two axes."""
+"""Bending shapes of an enriched branch, each about two axes."""
 
 N_TWISTS = 3
-"""Twists of an enriched branch: of a stem one by the wind, of any other two."""
-
-FEWER = 2
-"""Shapes of any other enriched branch: a third gains 0.5 % of the motion and costs a half more."""
+"""Its twists."""
 
 MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
 
-_NEGLIGIBLE = 1e-8
+N_WANTED = 9
+"""Fields in space that those of an enriched branch are chosen to hold."""
 
-_NO_TWIST = 1e-6
-"""Share of the wind's bending energy below which a branch counts as straight."""
+INERTIAL = 0.1
+"""Weight of the fields by inertia over that of the static ones."""
+
+_NEGLIGIBLE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -99,14 +105,6 @@ class Carried:
             self.mass_second[children],
         )
 
-    def spin(self, places: Floats, axis: Floats) -> Floats:
-        """Moment of inertia about an axis through each place (c, 3), in [kg m^2], (c,)."""
-        cross = places[:, :, None] * self.mass_moment[:, None, :]
-        second = self.mass_second - cross - cross.transpose(0, 2, 1)
-        second += (self.mass[:, None] * places)[:, :, None] * places[:, None, :]
-        spin: Floats = np.trace(second, axis1=1, axis2=2) - second @ axis @ axis
-        return spin
-
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
@@ -135,9 +133,8 @@ def ways_to_move(
     mass: Floats,
     carried: Carried,
     shear_ratio: float,
-    n_shapes: int = 1,
-    n_twists: int = 0,
-    n_by_wind: int = 0,
+    *,
+    is_enriched: bool = False,
 ) -> tuple[Coordinate, ...]:
     """
     Find the coordinates of a branch.
@@ -152,10 +149,8 @@ def ways_to_move(
         What its children hand down; none for a branch that is taken alone.
     shear_ratio
         Shear modulus over Young's in [-].
-    n_shapes, n_twists
-        Shapes it bends in, each about two axes, and twists; fewer where there are no more.
-    n_by_wind
-        How many of the twists are those by the wind.
+    is_enriched
+        Whether it gets further shapes and twists, or its key rotation alone.
 
     Returns
     -------
@@ -172,22 +167,22 @@ def ways_to_move(
     ]
     curvatures = np.stack([beam.curvature_in_space(m, shear_ratio) for m in moments])
     first, fields = _static_pair(beam, curvatures, e1, e2)
-    if first is None:
+    if first is None or fields is None:
         first = _static_shape(beam, drag_area, carried)
-    shapes, twists = [first], list[SlopeShape]()
-    if n_shapes > 1:
-        inertia = 0.5 * (carried.spin(beam.child_point, e1) + carried.spin(beam.child_point, e2))
-        while len(shapes) < n_shapes:
-            bending = _inertia_moment(beam, mass, carried, inertia, shapes[-1])
-            if not _extend(shapes, beam, bending / beam.second_moment):
-                break
-    if n_twists > 0:
-        twists = _twists(beam, carried, curvatures[:2], n_twists, n_by_wind)
-    if len(shapes) > 1 or twists or fields is None or len(beam.child_place):
         fields = [RotationField.about(first, e2), RotationField.about(first, -e1)]
-    ways = [Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)]
-    for shape in shapes[1:]:
-        ways += [Coordinate(shape, axis, RotationField.about(shape, axis)) for axis in (e2, -e1)]
+    if not is_enriched:
+        return tuple(
+            Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)
+        )
+    wanted = _wanted(beam, mass, carried, fields, shear_ratio)
+    bends = np.concatenate([wanted @ e1, wanted @ e2])
+    shapes = [first, *_leading(beam, bends, N_SHAPES - 1, first)]
+    twists = _leading(beam, wanted @ beam.chord, N_TWISTS)
+    ways = [
+        Coordinate(shape, axis, RotationField.about(shape, axis))
+        for shape in shapes
+        for axis in (e2, -e1)
+    ]
     for twist in twists:
         ways.append(Coordinate(twist, beam.chord, RotationField.about(twist, beam.chord), True))
     return tuple(ways)
@@ -221,17 +216,22 @@ def _static_pair(
     Fields that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do.
 
     Of all fields that do, these come nearest to what the three winds make of the branch (least
-    squares). A single slope about both axes, for drawing, is their mean; None for a branch whose
-    chord no wind turns.
+    squares, an upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both
+    ways, what they do is theirs exactly, and so is the static sway of a tree. A single slope about
+    both axes, for drawing, is their mean; None for a branch whose chord no wind turns.
 
     """
-    fields = [RotationField(beam, each) for each in curvatures]
-    turns = np.array([[f.nodes[-1] @ e1, f.nodes[-1] @ e2] for f in fields]) / beam.chord_length
+    ends = np.stack([RotationField(beam, each).nodes[-1] for each in curvatures])
+    turns = _WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
     largest = np.linalg.svd(turns, compute_uv=False)
     if not largest[-1] > 0.02 * largest[0]:
         return None, None
-    pair = np.einsum("cw,wsgk->csgk", np.linalg.pinv(turns), curvatures)
+    pair = np.einsum("cw,wsgk->csgk", np.linalg.pinv(turns) * _WEIGHTS, curvatures)
     return _drawn(beam, 0.5 * (pair[0] @ e2 - pair[1] @ e1)), [RotationField(beam, k) for k in pair]
+
+
+_UPWARD = 0.3
+_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 
 def _drawn(beam: BranchBeam, curvature: Floats) -> SlopeShape:
@@ -239,33 +239,99 @@ def _drawn(beam: BranchBeam, curvature: Floats) -> SlopeShape:
     return beam.slope_shape(curvature * beam.second_moment)
 
 
-def _twists(
-    beam: BranchBeam, carried: Carried, curvatures: Floats, n_twists: int, n_by_wind: int
-) -> list[SlopeShape]:
+def _wanted(
+    beam: BranchBeam,
+    mass: Floats,
+    carried: Carried,
+    static: list[RotationField],
+    shear_ratio: float,
+) -> Floats:
     """
-    Twists by what it carries turning as one, then by the wind on a crooked branch, then by what
-    the one before carries.
+    Curvatures that an enriched branch should be able to take on, weighted by how much they matter,
+    (k, m, 5, 3).
+
+    The static ones come first, then what the inertia of these and of a turn of all it carries about
+    its chord bends it into, and so on (block Krylov space, orthogonal in energy).
 
     """
-    twists: list[SlopeShape] = []
-    spin = carried.spin(beam.child_point, beam.chord)
-    turn = np.ones(len(spin))
-    if len(spin):
-        _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment)
-    along = np.einsum("wsgk,sk->wsg", curvatures, beam.tangent)
-    along *= (beam.tangent @ beam.chord)[:, None]
-    left = [_rest(twists, beam, each) for each in along]
-    gram = np.array([[one.stiffness(other, 1.0) for other in left] for one in left])
-    whole = float(beam.integral(beam.second_moment * np.square(curvatures).sum(axis=(0, -1))))
-    energies, mixes = np.linalg.eigh(gram)
-    for energy, mix in zip(energies[::-1], mixes.T[::-1], strict=True):
-        if len(twists) < n_twists and n_by_wind > 0 and energy > _NO_TWIST * whole:
-            n_by_wind -= _extend(twists, beam, np.einsum("w,wsg->sg", mix, along))
-    while 0 < len(twists) < n_twists and len(spin):
-        turn = twists[-1].child_slope
-        if not _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment):
-            break
-    return twists
+    along = beam.tangent[:, None, :]
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+
+    def scaled(curvature: Floats, twist: float) -> Floats:
+        about = (curvature * along).sum(axis=-1, keepdims=True) * along
+        out: Floats = curvature + (twist - 1.0) * about
+        return out
+
+    stiff = math.sqrt(2.0 * shear_ratio)
+    basis: list[Floats] = []
+    fields: list[RotationField | None] = []
+    due: list[Floats] = [one.curvature for one in static]
+    number = 0
+    while len(basis) < N_WANTED:
+        if not due:
+            if number > len(fields):
+                break
+            source = fields[number - 1] if number > 0 else None
+            moment = inertial_moment(beam, mass, carried, source)
+            due.append(beam.curvature_in_space(moment, shear_ratio))
+            number += 1
+        vector = (measure * scaled(due.pop(0), stiff)).ravel()
+        whole = float(np.linalg.norm(vector))
+        for _ in range(2):
+            for other in basis:
+                vector = vector - (other @ vector) * other
+        size = float(np.linalg.norm(vector))
+        if not size > _NEGLIGIBLE * whole:
+            continue
+        basis.append(vector / size)
+        shape = (*beam.place.shape, 3)
+        fields.append(RotationField(beam, scaled(basis[-1].reshape(shape) / measure, 1.0 / stiff)))
+    weights = np.where(np.arange(len(fields)) < len(static), 1.0, INERTIAL)
+    curvatures = np.stack([one.curvature for one in fields if one is not None])
+    return np.asarray(weights[:, None, None, None] * curvatures)
+
+
+def _leading(
+    beam: BranchBeam, curvatures: Floats, count: int, first: SlopeShape | None = None
+) -> list[SlopeShape]:
+    """
+    Shapes that hold the most bending energy of some curvatures, (k, m, 5), beyond the first shape.
+
+    """
+    measure = np.sqrt(beam.weight * beam.second_moment)
+    rows = (measure * curvatures).reshape(len(curvatures), -1)
+    if first is not None:
+        known = (measure * first.curvature).ravel()
+        known = known / np.linalg.norm(known)
+        rows = rows - np.outer(rows @ known, known)
+    _, sizes, vectors = np.linalg.svd(rows, full_matrices=False)
+    held = sizes[:count] > _NEGLIGIBLE * sizes[0]
+    return [
+        beam.unit_shape(vector.reshape(measure.shape) / measure) for vector in vectors[:count][held]
+    ]
+
+
+def inertial_moment(
+    beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
+) -> Floats:
+    """
+    Internal moment by the inertia of a field and of all that rides on it, (m, 5, 3); of all that is
+    carried turning about the chord as one where there is no field.
+
+    """
+    places = beam.child_point[: len(carried.area)]
+    if field is None:
+        load = np.zeros((*mass.shape, 3))
+        turn = np.broadcast_to(beam.chord, places.shape)
+        moved = np.zeros(places.shape)
+    else:
+        load = mass[..., None] * field.points
+        turn, moved = field.child_slope[: len(places)], field.children[: len(places)]
+    at_root = moved - cross(turn, places)
+    force = carried.mass[:, None] * at_root + cross(turn, carried.mass_moment)
+    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None]
+    spin = trace * turn - np.einsum("cij,cj->ci", carried.mass_second, turn)
+    return beam.moment_in_space(load, force, cross(carried.mass_moment, at_root) + spin)
 
 
 def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:
@@ -274,36 +340,3 @@ def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> Slop
     lever = (carried.area_moment - carried.area[:, None] * places) @ beam.chord
     bending = beam.bending_moment(drag_area, carried.area, np.maximum(lever, 0.0))
     return beam.slope_shape(bending)
-
-
-def _inertia_moment(
-    beam: BranchBeam, mass: Floats, carried: Carried, inertia: Floats, shape: SlopeShape
-) -> Floats:
-    """
-    Bending moment of the masses that ride on a moving shape, per unit of acceleration, (m, 5).
-
-    """
-    lever = (carried.mass_moment - carried.mass[:, None] * beam.child_point) @ beam.chord
-    lift, turn = shape.child_deflection, shape.child_slope
-    return beam.bending_moment(
-        mass * shape.deflection, carried.mass * lift + lever * turn, lever * lift + inertia * turn
-    )
-
-
-def _rest(shapes: list[SlopeShape], beam: BranchBeam, curvature: Floats) -> SlopeShape:
-    """What a curvature has that the shapes have not, in bending energy."""
-    raw = SlopeShape(beam, curvature)
-    for shape in shapes:
-        share = raw.stiffness(shape, 1.0) / shape.stiffness(shape, 1.0)
-        raw = SlopeShape(beam, raw.curvature - share * shape.curvature)
-    return raw
-
-
-def _extend(shapes: list[SlopeShape], beam: BranchBeam, curvature: Floats) -> bool:
-    """Add what a curvature has that the shapes have not; tell whether there was any."""
-    whole = SlopeShape(beam, curvature)
-    rest = _rest(shapes, beam, curvature)
-    if not rest.stiffness(rest, 1.0) > _NEGLIGIBLE * whole.stiffness(whole, 1.0):
-        return False
-    shapes.append(beam.unit_shape(rest.curvature))
-    return True
