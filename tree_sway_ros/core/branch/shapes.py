@@ -1,13 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The ways a branch bends and twists: its static fields, and for an enriched branch further shapes.
+The ways a branch bends and twists in space.
 
-A plain branch moves as winds bend and twist it in space, with all that it carries: two fields, one
-per way that its chord can turn. An enriched branch has shapes, each about two axes across its
-chord, and twists about it. They are those that best hold the static fields and what inertia bends
-these into (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982): the principal components of
-their curvatures, in bending energy.
+A plain branch has two: those in which winds bend and twist it with all that it carries, so that its
+chord turns about one axis or the other. An enriched branch has further ones: what the inertia of
+these bends it into, and so on; and how it is twisted by all it carries when that turns about the
+chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its
+flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and twists
+in one: no coordinate of its own is spent on twist.
 
 """
 
@@ -27,45 +28,19 @@ from tree_sway_ros.core.branch.beam import (
     cross_matrix,
 )
 
-N_SHAPES = 3
-"""Bending shapes of an enriched branch, each about two axes."""
+N_PAIRS = 3
+"""Pairs of ways of an enriched branch: the static ones, then by inertia."""
 
-N_TWISTS = 3
-"""Its twists."""
+N_TURNS, FEWER_TURNS = 3, 1
+"""Further ways by what turns about the chord: of a stem, and of any other branch."""
 
-MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
+MAX_COORDINATES = 2 * N_PAIRS + N_TURNS
 
-N_WANTED = 9
-"""Fields in space that those of an enriched branch are chosen to hold."""
+_NEGLIGIBLE = 1e-4
+"""Share of a way that must be new."""
 
-INERTIAL = 0.1
-"""Weight of the fields by inertia over that of the static ones."""
-
-_NEGLIGIBLE = 1e-6
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """
-    One way for a branch to move.
-
-    Parameters
-    ----------
-    shape
-        Slope along the branch per unit of the coordinate, as it is drawn.
-    axis
-        Direction of its rotation vector, (3,).
-    field
-        How it moves in space; a crooked branch that bends also twists.
-    is_twist
-        Whether it turns the branch about its chord.
-
-    """
-
-    shape: SlopeShape
-    axis: Floats
-    field: RotationField
-    is_twist: bool = False
+_UPWARD = 0.3
+_WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 
 @dataclass(frozen=True)
@@ -133,11 +108,11 @@ def ways_to_move(
     mass: Floats,
     carried: Carried,
     shear_ratio: float,
-    *,
-    is_enriched: bool = False,
-) -> tuple[Coordinate, ...]:
+    n_pairs: int = 1,
+    n_turns: int = 0,
+) -> tuple[SlopeShape, tuple[RotationField, ...]]:
     """
-    Find the coordinates of a branch.
+    Find the ways a branch moves.
 
     Parameters
     ----------
@@ -149,13 +124,14 @@ def ways_to_move(
         What its children hand down; none for a branch that is taken alone.
     shear_ratio
         Shear modulus over Young's in [-].
-    is_enriched
-        Whether it gets further shapes and twists, or its key rotation alone.
+    n_pairs, n_turns
+        How many, of either kind; fewer where there are no more.
 
     Returns
     -------
-    tuple of Coordinate
-        The key rotation x, y; further pairs; twists.
+    tuple
+        The slope that a plain branch is drawn by, and what a unit of each coordinate does: of the
+        key rotation x, y, then of further ones.
 
     """
     e1, e2 = across(beam.chord)
@@ -166,26 +142,17 @@ def ways_to_move(
         for i, wind in enumerate(np.eye(3))
     ]
     curvatures = np.stack([beam.curvature_in_space(m, shear_ratio) for m in moments])
-    first, fields = _static_pair(beam, curvatures, e1, e2)
-    if first is None or fields is None:
-        first = _static_shape(beam, drag_area, carried)
-        fields = [RotationField.about(first, e2), RotationField.about(first, -e1)]
-    if not is_enriched:
-        return tuple(
-            Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)
-        )
-    wanted = _wanted(beam, mass, carried, fields, shear_ratio)
-    bends = np.concatenate([wanted @ e1, wanted @ e2])
-    shapes = [first, *_leading(beam, bends, N_SHAPES - 1, first)]
-    twists = _leading(beam, wanted @ beam.chord, N_TWISTS)
-    ways = [
-        Coordinate(shape, axis, RotationField.about(shape, axis))
-        for shape in shapes
-        for axis in (e2, -e1)
-    ]
-    for twist in twists:
-        ways.append(Coordinate(twist, beam.chord, RotationField.about(twist, beam.chord), True))
-    return tuple(ways)
+    pair = _static_pair(beam, curvatures, e1, e2)
+    if pair is None:
+        drawn = _static_shape(beam, drag_area, carried)
+        fields = [RotationField.about(drawn, e2), RotationField.about(drawn, -e1)]
+    else:
+        mean = 0.5 * (pair[0] @ e2 - pair[1] @ e1)
+        drawn = beam.slope_shape(mean * beam.second_moment)
+        fields = [RotationField(beam, each) for each in pair]
+    if n_pairs > 1 or n_turns > 0:
+        fields += _further(beam, mass, carried, shear_ratio, fields, n_pairs, n_turns)
+    return drawn, tuple(fields)
 
 
 def wind_load(beam: BranchBeam, drag_area: Floats, wind: Floats) -> Floats:
@@ -209,106 +176,79 @@ def exposure(beam: BranchBeam) -> Floats:
 _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 
-def _static_pair(
-    beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats
-) -> tuple[SlopeShape | None, list[RotationField] | None]:
+def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
-    Fields that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do.
+    Curvatures that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do, (2, m,
+    5, 3).
 
-    Of all fields that do, these come nearest to what the three winds make of the branch (least
-    squares, an upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both
-    ways, what they do is theirs exactly, and so is the static sway of a tree. A single slope about
-    both axes, for drawing, is their mean; None for a branch whose chord no wind turns.
+    Of all that do, these come nearest to what the three winds make of the branch (least squares, an
+    upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both ways, what
+    they do is exact, and so is the static sway of a tree. None for a branch whose chord no wind
+    turns.
 
     """
     ends = np.stack([RotationField(beam, each).nodes[-1] for each in curvatures])
-    turns = _WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
+    turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
     largest = np.linalg.svd(turns, compute_uv=False)
     if not largest[-1] > 0.02 * largest[0]:
-        return None, None
-    pair = np.einsum("cw,wsgk->csgk", np.linalg.pinv(turns) * _WEIGHTS, curvatures)
-    return _drawn(beam, 0.5 * (pair[0] @ e2 - pair[1] @ e1)), [RotationField(beam, k) for k in pair]
+        return None
+    mix = np.linalg.pinv(turns) * _WIND_WEIGHTS
+    pair: Floats = np.einsum("cw,wsgk->csgk", mix, curvatures)
+    return pair
 
 
-_UPWARD = 0.3
-_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
-
-
-def _drawn(beam: BranchBeam, curvature: Floats) -> SlopeShape:
-    """Slope shape of a curvature, scaled to turn the chord by 1."""
-    return beam.slope_shape(curvature * beam.second_moment)
-
-
-def _wanted(
+def _further(
     beam: BranchBeam,
     mass: Floats,
     carried: Carried,
-    static: list[RotationField],
     shear_ratio: float,
-) -> Floats:
-    """
-    Curvatures that an enriched branch should be able to take on, weighted by how much they matter,
-    (k, m, 5, 3).
-
-    The static ones come first, then what the inertia of these and of a turn of all it carries about
-    its chord bends it into, and so on (block Krylov space, orthogonal in energy).
-
-    """
+    pair: list[RotationField],
+    n_pairs: int,
+    n_turns: int,
+) -> list[RotationField]:
+    """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
     along = beam.tangent[:, None, :]
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    stiff = math.sqrt(2.0 * shear_ratio)
 
     def scaled(curvature: Floats, twist: float) -> Floats:
         about = (curvature * along).sum(axis=-1, keepdims=True) * along
         out: Floats = curvature + (twist - 1.0) * about
         return out
 
-    stiff = math.sqrt(2.0 * shear_ratio)
     basis: list[Floats] = []
-    fields: list[RotationField | None] = []
-    due: list[Floats] = [one.curvature for one in static]
-    number = 0
-    while len(basis) < N_WANTED:
-        if not due:
-            if number > len(fields):
-                break
-            source = fields[number - 1] if number > 0 else None
-            moment = inertial_moment(beam, mass, carried, source)
-            due.append(beam.curvature_in_space(moment, shear_ratio))
-            number += 1
-        vector = (measure * scaled(due.pop(0), stiff)).ravel()
+
+    def rest_of(curvature: Floats) -> RotationField | None:
+        """What is new in a curvature; it joins the basis."""
+        vector = (measure * scaled(curvature, stiff)).ravel()
         whole = float(np.linalg.norm(vector))
         for _ in range(2):
             for other in basis:
                 vector = vector - (other @ vector) * other
         size = float(np.linalg.norm(vector))
         if not size > _NEGLIGIBLE * whole:
-            continue
+            return None
         basis.append(vector / size)
-        shape = (*beam.place.shape, 3)
-        fields.append(RotationField(beam, scaled(basis[-1].reshape(shape) / measure, 1.0 / stiff)))
-    weights = np.where(np.arange(len(fields)) < len(static), 1.0, INERTIAL)
-    curvatures = np.stack([one.curvature for one in fields if one is not None])
-    return np.asarray(weights[:, None, None, None] * curvatures)
+        new = scaled(vector.reshape(curvature.shape) / measure, 1.0 / stiff)
+        slope, nodes, _ = beam.from_base(new)
+        return RotationField(beam, new / max(np.abs(slope).max(), np.abs(nodes).max()))
 
-
-def _leading(
-    beam: BranchBeam, curvatures: Floats, count: int, first: SlopeShape | None = None
-) -> list[SlopeShape]:
-    """
-    Shapes that hold the most bending energy of some curvatures, (k, m, 5), beyond the first shape.
-
-    """
-    measure = np.sqrt(beam.weight * beam.second_moment)
-    rows = (measure * curvatures).reshape(len(curvatures), -1)
-    if first is not None:
-        known = (measure * first.curvature).ravel()
-        known = known / np.linalg.norm(known)
-        rows = rows - np.outer(rows @ known, known)
-    _, sizes, vectors = np.linalg.svd(rows, full_matrices=False)
-    held = sizes[:count] > _NEGLIGIBLE * sizes[0]
-    return [
-        beam.unit_shape(vector.reshape(measure.shape) / measure) for vector in vectors[:count][held]
-    ]
+    for one in pair:
+        rest_of(one.curvature)
+    found: list[RotationField] = []
+    sources: list[RotationField | None] = list(pair)
+    turning: list[RotationField | None] = [None] if len(carried.area) else []
+    for block in range(1, max(n_pairs, n_turns + 1)):
+        ways = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
+        bent = [
+            [rest_of(beam.curvature_in_space(
+                inertial_moment(beam, mass, carried, one), shear_ratio
+            )) for one in part]
+            for part in ways
+        ]  # fmt: skip
+        sources, turning = ([one for one in part if one is not None] for part in bent)
+        found += [one for one in (*sources, *turning) if one is not None]
+    return found
 
 
 def inertial_moment(
