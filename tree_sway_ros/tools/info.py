@@ -75,33 +75,11 @@ def _facts(
         mode_choice="slowest",
         in_leaf=in_leaf,
     )
-    return tree_facts(tree_file, settings, arguments.count)
+    return _tree_facts(tree_file, settings, arguments.count)
 
 
-def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
-    """
-    Gather what there is to say about a tree.
-
-    Parameters
-    ----------
-    tree_file
-        The tree and its wood.
-    settings
-        How it is modelled.
-    count
-        How many natural frequencies.
-
-    Returns
-    -------
-    dict
-        SI units throughout; fit for JSON.
-
-    Raises
-    ------
-    TreeSwayError
-        A tree that cannot be modelled.
-
-    """
+def _tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
+    """What there is to say about a tree, in SI units, fit for JSON."""
     tree, species = tree_file.tree, tree_file.species
     settings = in_season(tree, species, settings)
     notes = list(tree_file.notes)

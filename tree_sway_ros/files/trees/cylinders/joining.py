@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,24 +18,11 @@ _MAX_LOOSE_VOLUME = 0.2
 """A loose part of more than this of the stem's volume is a tree of its own."""
 
 
-@dataclass(slots=True)
-class JoinedBranches:
-    """
-    Parents after loose branches were joined.
-
-    Parameters
-    ----------
-    parent
-        Parent of each cylinder, -1 only at the stem, (n,).
-    count
-        Number of branches that were loose.
-    distance
-        Largest distance from the base of one to the axis it was set on, in [m].
-
-    """
+class JoinedBranches(NamedTuple):
+    """Parents after loose branches were joined, how many, and how far from the axis at most [m]."""
 
     parent: Ints
-    count: int
+    loose: int
     distance: float
 
 
