@@ -185,7 +185,7 @@ def run_process(command: str, **environment: str) -> subprocess.CompletedProcess
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device /dev/full")
 def test_a_full_disk_under_standard_output_is_one_line() -> None:
-    result = run_process("$TREE_SWAY info goldcrest > /dev/full")
+    result = run_process("$TREE_SWAY info goldcrest --quiet > /dev/full")
     assert result.returncode == 2
     assert "No space left on device" in one_line(result.stderr)
 
