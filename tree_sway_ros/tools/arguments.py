@@ -209,16 +209,22 @@ def output_path(arguments: argparse.Namespace, default: str = "") -> str:
 
     """
     if arguments.output is not None:
-        if Path(arguments.output).is_file() and not arguments.force:
-            raise ParameterError(
-                f"'{arguments.output}' is there already",
-                where="--output",
-                cure="name another file, or write over it with --force",
-            )
+        if not arguments.force:
+            refuse_overwriting(arguments.output, "--output")
         return str(arguments.output)
     path = Path(default)
     names = (path.with_stem(f"{path.stem}_{n}") for n in itertools.count(2))
     return str(next(name for name in itertools.chain([path], names) if not name.exists()))
+
+
+def refuse_overwriting(path: str | Path, option: str) -> None:
+    """Raise a `ParameterError` if a file that an option names is there already."""
+    if Path(path).is_file():
+        raise ParameterError(
+            f"'{path}' is there already",
+            where=option,
+            cure="name another file, or write over it with --force",
+        )
 
 
 def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
