@@ -21,6 +21,7 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.tools.progress import waiting
 
 OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
@@ -79,9 +80,9 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
         positive.
 
     """
-    return _of_wood(
-        open_tree(arguments.tree, arguments.seed, **_options(arguments.option)), arguments
-    )
+    with waiting(f"opening {arguments.tree}"):
+        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
+    return _of_wood(opened, arguments)
 
 
 def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
@@ -94,7 +95,8 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
         As `opened_tree`; values for one tree where there are several.
 
     """
-    scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
+    with waiting(f"opening {arguments.tree}"):
+        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
     if isinstance(scene, TreeFile):
         return _of_wood(scene, arguments)
     if _wood(arguments):
