@@ -65,8 +65,7 @@ class ToldBasis:
 
     def per_key(self, branch: int, turns: Floats) -> Floats:
         """Turn what is per unit of the solver's key rotations (k, 3) to those that are told."""
-        told: Floats = np.linalg.solve(self.from_own[branch].T, turns)
-        return told
+        return np.asarray(np.linalg.solve(self.from_own[branch].T, turns), dtype=np.float64)
 
     def coordinates(self, rotations: Floats) -> Floats:
         """Coordinates (m,) of the solver's key rotations (N,) in [rad]."""

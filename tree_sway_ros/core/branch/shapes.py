@@ -246,8 +246,9 @@ def _further(
             )) for one in part]
             for part in ways
         ]  # fmt: skip
-        sources, turning = ([one for one in part if one is not None] for part in bent)
-        found += [one for one in (*sources, *turning) if one is not None]
+        new = [[one for one in part if one is not None] for part in bent]
+        found += [*new[0], *new[1]]
+        sources, turning = [*new[0]], [*new[1]]
     return found
 
 
