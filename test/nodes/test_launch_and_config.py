@@ -59,7 +59,7 @@ def test_shards_hear_one_wind_and_speak_in_namespaces_of_their_own(launch_file):
     node = launch_file.make_shard(2, given, str(ROOT / "config"), "/north")
     assert node.expanded_node_namespace in ("wood/shard2", node.UNSPECIFIED_NODE_NAMESPACE)
     for wrong in ({"here": "3"}, {"here": "-1"}, {"shards": "0"}):
-        with pytest.raises(ValueError):
+        with pytest.raises(ValueError, match="'here'"):
             launch_file.shards_here(given | wrong)
 
 

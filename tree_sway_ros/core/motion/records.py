@@ -95,13 +95,13 @@ _LINE = 64
 
 def _whole_lines(fields: list[tuple[Any, ...]]) -> np.dtype[np.void]:
     """Fields of whole vectors first, the others behind, filled up to whole cache lines."""
-    packed = np.dtype(sorted(fields, key=lambda field: len(field) < 3))
-    told = dict(packed.fields or {})
+    packed: Any = np.dtype(sorted(fields, key=lambda field: len(field) < 3))
+    told: dict[str, Any] = dict(packed.fields or {})
     return np.dtype(
         {
             "names": list(told),
-            "formats": [kind for kind, _ in told.values()],
-            "offsets": [offset for _, offset in told.values()],
+            "formats": [kind[0] for kind in told.values()],
+            "offsets": [kind[1] for kind in told.values()],
             "itemsize": -(-packed.itemsize // _LINE) * _LINE,
         }
     )

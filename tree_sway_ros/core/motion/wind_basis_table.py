@@ -145,8 +145,8 @@ class WindBasisTable:
         slopes, here = np.zeros_like(ways), self._moments(at, self._still, wind)
         for row, way in zip(slopes, ways, strict=True):
             size = _DIFFERENCE / max(float(np.abs(way).max()), 1e-12)
-            moved = (at, size * way) if rates else (at + size * way, self._still)
-            row[:] = (self._moments(*moved, wind) - here) / size
+            x, v = (at, size * way) if rates else (at + size * way, self._still)
+            row[:] = (self._moments(x, v, wind) - here) / size
         return slopes
 
     def _rest_of(self, moments: Floats) -> Floats:

@@ -253,7 +253,7 @@ class Stand(KeepsState):
         return self._wind
 
     @cached_property
-    def tree(self) -> Tree:
+    def tree(self) -> Tree:  # type: ignore[override]
         """All trees in one record, to be described or drawn."""
         return joined([self.tree_of(t) for t in range(len(self.trees))], "stand")
 
@@ -370,8 +370,8 @@ class Stand(KeepsState):
 
     def digest(self) -> str:
         """Digest of all trees, what they are, and how they are modelled."""
-        kinds = [(model.tree, model.species) for model in self._models]
-        return digest_of(*(each for kind in kinds for each in kind), *self.trees, self.settings)
+        kinds = [each for model in self._models for each in (model.tree, model.species)]
+        return digest_of(*kinds, *self.trees, self.settings)
 
     def memory(self) -> tuple[Any, ...]:
         """Views of what is carried from one step to the next, the wind first."""
@@ -406,8 +406,9 @@ class Stand(KeepsState):
                 own.place_rotations(x, rows)
                 continue
             heads, work, _ = self._rooms[0][kind]
+            east, north, up = here["at"].tolist()
             place_standing_at(
-                records.branches, records.segments, heads, work, x, *here["at"].tolist(),
+                records.branches, records.segments, heads, work, x, east, north, up,
                 float(here["cosine"]), float(here["sine"]), float(here["scale"]), rows,
             )  # fmt: skip
         return poses

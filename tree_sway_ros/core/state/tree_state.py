@@ -94,13 +94,13 @@ def refuse_version(version: object) -> None:
         )
 
 
-def digest_of(tree: Tree, *told: Any) -> str:
+def digest_of(*told: Any) -> str:
     """
-    Digest of a tree and of frozen dataclasses that tell how it is modelled, 16 hexadecimal digits.
+    Digest of trees and of frozen dataclasses that tell how they are modelled, 16 hex digits.
 
     """
     digest = hashlib.sha256()
-    for each in (tree, *told):
+    for each in told:
         for field in fields(each):
             value = getattr(each, field.name)
             if field.name in ("name", "source_index"):
