@@ -110,7 +110,7 @@ class BroadleafForm:
     branch_turn: float = 0.2
     lift: float = 0.2
     twig: float = 0.045
-    exponent: float = 2.15
+    exponent: float = 2.05
     slenderness: float = 45.0
 
 
@@ -170,7 +170,7 @@ _BROADLEAVES = {
     # Long bole, few open limbs in pairs; branches bow down and turn up at their ends.
     "ash": BroadleafForm(
         Outline(0.2, 0.34, 0.52, 2.0, 2.0), 0.32, 0.8, 12, (0.5, 1.0), (0.1, 0.2), 0.06, True,
-        spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, exponent=2.05, slenderness=52.0,
+        spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, slenderness=52.0,
     ),
     # Broad full dome on a stout bole, limbs in pairs.
     "sycamore": BroadleafForm(
@@ -179,7 +179,7 @@ _BROADLEAVES = {
     ),
     # Short bole that parts into few wide limbs; round open crown of coarse twigs.
     "walnut": BroadleafForm(
-        Outline(0.2, 0.43, 0.5, 2.0, 2.2), 0.24, 0.46, 8, (0.35, 1.05), (0.25, 0.2), 0.12,
+        Outline(0.2, 0.43, 0.5, 2.0, 2.2), 0.24, 0.46, 10, (0.35, 1.05), (0.25, 0.2), 0.12,
         n_branches=7, spread=0.9, branch_turn=0.3, lift=0.5, twig=0.065,
     ),
 }  # fmt: skip

@@ -25,7 +25,6 @@ from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.one_tree import OneTree
-from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
     OK,

@@ -56,6 +56,8 @@ class Species:
         give way. Belongs to one tree; `typical_root_stiffness` tells that of a size.
     leaves
         Its leaves; evergreen ones are there unless a simulator is told otherwise.
+    bark
+        Colour of its bark in pictures, red, green and blue from 0 to 1.
     habit
         How `grow` shapes it: ``conifer``, ``broadleaf`` or ``pot``.
     is_estimate
@@ -75,6 +77,7 @@ class Species:
     shear_ratio: float = 1.0 / 14.0
     root_stiffness: float = math.inf
     leaves: LeafTraits = BROAD_LEAVES
+    bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
     habit: str = "broadleaf"
     is_estimate: bool = False
 
@@ -108,6 +111,7 @@ _TABLE = {
             8.3e9,
             950.0,
             leaves=LeafTraits(0.05, 4400.0, 0.20, 5.0, is_evergreen=True, green=(0.22, 0.45, 0.16)),
+            bark=(0.52, 0.48, 0.42),
             habit="pot",
             is_estimate=True,
         ),
@@ -117,6 +121,7 @@ _TABLE = {
             6.0e9,
             950.0,
             leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, True, True, green=(0.63, 0.70, 0.22)),
+            bark=(0.46, 0.32, 0.24),
             habit="pot",
             is_estimate=True,
         ),
@@ -124,9 +129,21 @@ _TABLE = {
             "broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True
         ),
         _with_spruce_drag(
-            "spruce", "Norway spruce", 6.3e9, 850.0, leaves=_needles(0.20, 0.36, 0.22)
+            "spruce",
+            "Norway spruce",
+            6.3e9,
+            850.0,
+            leaves=_needles(0.20, 0.36, 0.22),
+            bark=(0.42, 0.29, 0.22),
         ),
-        _with_spruce_drag("sitka", "Sitka spruce", 5.9e9, 850.0, leaves=_needles(0.26, 0.40, 0.30)),
+        _with_spruce_drag(
+            "sitka",
+            "Sitka spruce",
+            5.9e9,
+            850.0,
+            leaves=_needles(0.26, 0.40, 0.30),
+            bark=(0.42, 0.37, 0.36),
+        ),
         _conifer(
             "pine",
             "Scots pine",
@@ -135,6 +152,7 @@ _TABLE = {
             drag_coefficient=3.07,
             drag_exponent=0.75,
             leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, True, True, green=(0.28, 0.42, 0.28)),
+            bark=(0.66, 0.40, 0.24),
         ),
         _conifer(
             "douglas_fir",
@@ -144,6 +162,7 @@ _TABLE = {
             drag_coefficient=2.40,
             drag_exponent=0.70,
             leaves=_needles(0.22, 0.38, 0.20),
+            bark=(0.38, 0.29, 0.24),
         ),
         Species(
             "birch",
@@ -152,7 +171,8 @@ _TABLE = {
             900.0,
             drag_coefficient=1.9627,
             drag_exponent=0.881,
-            leaves=LeafTraits(0.045, 4000.0, 0.16, 5.0),
+            leaves=LeafTraits(0.045, 4000.0, 0.16, 5.0, green=(0.40, 0.57, 0.22)),
+            bark=(0.86, 0.85, 0.81),
         ),
         Species(
             "oak",
@@ -162,6 +182,7 @@ _TABLE = {
             drag_coefficient=2.6575,
             drag_exponent=0.846,
             leaves=LeafTraits(0.09, 1900.0, 0.20, 3.5),
+            bark=(0.36, 0.31, 0.26),
         ),
         Species(
             "beech",
@@ -170,12 +191,32 @@ _TABLE = {
             1158.0,
             drag_coefficient=2.4141,
             drag_exponent=0.904,
-            leaves=LeafTraits(0.065, 3000.0, 0.17, 4.5),
+            leaves=LeafTraits(0.065, 3000.0, 0.17, 4.5, green=(0.25, 0.48, 0.18)),
+            bark=(0.55, 0.56, 0.54),
         ),
-        _with_broadleaf_drag("ash", "ash", 9.5e9, 801.0, leaves=LeafTraits(0.06, 2700.0, 0.18, 4.5)),
-        _with_broadleaf_drag("sycamore", "sycamore", 8.4e9, 721.0, leaves=LeafTraits(0.13, 2600.0, 0.18, 3.0)),
         _with_broadleaf_drag(
-            "walnut", "walnut", 11.3e9, 805.0, leaves=LeafTraits(0.10, 2500.0, 0.21, 3.0)
+            "ash",
+            "ash",
+            9.5e9,
+            801.0,
+            leaves=LeafTraits(0.06, 2700.0, 0.18, 4.5, green=(0.34, 0.55, 0.24)),
+            bark=(0.52, 0.50, 0.44),
+        ),
+        _with_broadleaf_drag(
+            "sycamore",
+            "sycamore",
+            8.4e9,
+            721.0,
+            leaves=LeafTraits(0.13, 2600.0, 0.18, 3.0, green=(0.27, 0.45, 0.17)),
+            bark=(0.50, 0.45, 0.41),
+        ),
+        _with_broadleaf_drag(
+            "walnut",
+            "walnut",
+            11.3e9,
+            805.0,
+            leaves=LeafTraits(0.10, 2500.0, 0.21, 3.0, green=(0.36, 0.53, 0.20)),
+            bark=(0.46, 0.43, 0.40),
         ),
     )
 }
@@ -203,6 +244,11 @@ def species_named(key: str) -> Species:
 def species_keys() -> tuple[str, ...]:
     """Keys of every species in the table."""
     return tuple(_TABLE)
+
+
+def bark_color(key: str) -> tuple[float, float, float]:
+    """Colour of a species' bark; that of an average tree if the table does not have it."""
+    return _TABLE[key].bark if key in _TABLE else Species.bark
 
 
 def typical_root_stiffness(stem_mass: float) -> float:

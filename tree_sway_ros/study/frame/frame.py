@@ -40,8 +40,8 @@ class FrameModel:
     base_node, base_offset
         Node each segment is fixed to, (n,), and its start from there in [m], (n, 3).
     stiffness, mass
-        Of the free coordinates, six per node; of the root none if it is clamped, and its rotation if
-        a spring holds it.
+        Of the free coordinates, six per node; of the root none if it is clamped, and its rotation
+        if a spring holds it.
     load
         Maps forces spread over the segments, 3 n, to the free coordinates.
 

@@ -21,7 +21,6 @@ by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` besid
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -86,8 +85,6 @@ def species_of(document: YamlDocument) -> Species:
                     cure="give damping_ratio alone, or the two states apart",
                 )
             wood[state] = ratio
-    if wood.get("root_stiffness") == "rigid":
-        wood["root_stiffness"] = math.inf
     # A modulus from the file is a measured one, and no longer the table's guess.
     return replace(species, **wood, is_estimate=species.is_estimate and "modulus" not in wood)
 
