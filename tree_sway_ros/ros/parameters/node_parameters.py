@@ -407,6 +407,13 @@ PLAYER: Table = (
     _LIFECYCLE,
     Parameter("file", "", "The wind record to play: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
     Parameter(
+        "play",
+        "wind",
+        "The player publishes the `wind` of the record, to be solved anew, or of a bag the `state` "
+        "as it was sent: `tree_state` and `tree_description`.",
+        choices=("wind", "state"),
+    ),
+    Parameter(
         "output_type",
         WIND_TYPE_NAMES[0],
         "The node publishes messages of this type.",
