@@ -39,9 +39,7 @@ def recorded(observer, path, format, topics):
 
 
 @pytest.mark.parametrize(("format", "topics"), [("mcap", _USUAL + _MORE), ("sqlite3", _USUAL)])
-def test_a_recorded_state_is_played_again(
-    compose, observer, tree_file, tmp_path, format, topics
-):
+def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path, format, topics):
     nodes = compose(anemometer={"rate": 40.0}, wind={}, solver={"tree": tree_file})
     bag = tmp_path / "bag"
     counts = recorded(observer, bag, format, topics)

@@ -32,7 +32,7 @@ from tree_sway_ros.page.protocol import (
     decode_frame,
 )
 
-_CREDIT, _GRANT_EVERY = 12, 4
+_CREDIT, _GRANT_EVERY = 24, 4
 _SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
 _PING_EVERY, _SILENCE = 2.0, 6.0
 

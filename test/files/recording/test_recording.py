@@ -11,11 +11,11 @@ import pytest
 
 pytest.importorskip("rosbags", reason="rosbags is not installed")
 
-from rosbags.typesys import Stores, get_typestore  # noqa: E402
+from rosbags.typesys import Stores, get_typestore
 
-from tree_sway_ros.errors import FormatError, ParameterError  # noqa: E402
-from tree_sway_ros.files.recording.bag_writer import BagWriter  # noqa: E402
-from tree_sway_ros.files.recording.state_record import (  # noqa: E402
+from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.files.recording.bag_writer import BagWriter
+from tree_sway_ros.files.recording.state_record import (
     DESCRIPTION_TYPE,
     STATE_TYPE,
     read_state_record,

@@ -6,7 +6,7 @@
 
 import { decodeDescription, decodeFrame, isFrame, ProtocolError } from "./protocol.js";
 
-const CREDIT = 12;
+const CREDIT = 24;
 const GRANT_EVERY = 4;
 const SHORTEST_WAIT = 500;
 const LONGEST_WAIT = 10000;

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.files.recording.bag_writer import FORMATS, BagWriter
-from tree_sway_ros.ros.process.ending import LONGEST, Ending
+from tree_sway_ros.ros.process.ending import Ending
 from tree_sway_ros.ros.process.spin import create, init, require_rclpy
 from tree_sway_ros.ros.process.topics import (
     DIAGNOSTICS,
@@ -49,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--poses", action="store_true", help="also poses, markers and diagnostics: GB per hour"
     )
     parser.add_argument(
-        "--seconds", type=float, metavar="N", help="end so long after the first message; else Ctrl-C"
+        "--seconds", type=float, metavar="N", help="so long from the first message; else by Ctrl-C"
     )
 
 
@@ -128,9 +128,7 @@ class Recorder:
         self._node.destroy_node()
 
     def _join(self, name: str, topic: Topic, kind: str) -> None:
-        self._bag.add(
-            name, kind, reliable=topic.reliable, latched=topic.latched, depth=topic.depth
-        )
+        self._bag.add(name, kind, reliable=topic.reliable, latched=topic.latched, depth=topic.depth)
 
         def write(data: bytes) -> None:
             self._bag.write(name, time.time_ns(), data)
