@@ -3,14 +3,19 @@
 """What is recorded of a running tree over real DDS, and what the player makes of it again."""
 
 import json
+import re
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytest.importorskip("rosbags", reason="rosbags is not installed")
 pytestmark = pytest.mark.ros
+
+from rosbags.highlevel import AnyReader  # noqa: E402
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
 from tree_sway_ros.files.recording.bag_writer import BagWriter  # noqa: E402
@@ -21,6 +26,7 @@ from tree_sway_ros.ros.process.topics import TREE_DESCRIPTION, TREE_STATE  # noq
 from tree_sway_ros.ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
 from tree_sway_ros.tools.stream.record import _MORE, _USUAL, Recorder  # noqa: E402
 
+CONFIG = Path(__file__).resolve().parents[2] / "config"
 DEADLINE = 60.0
 
 
@@ -58,6 +64,33 @@ def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path
     assert max(moved) > 1e-6
     assert len(moved) == len(description.arrays["basis_scale"])
     assert Placer(description).n_segments == 7
+
+
+def test_the_layouts_show_what_a_bag_holds(compose, observer, tree_file, tmp_path):
+    """Every topic that RViz and Foxglove are told to show is there, of a type that they show."""
+    compose(anemometer={"rate": 40.0}, wind={}, solver={"tree": tree_file})
+    counts = recorded(observer, tmp_path / "bag", "mcap", _USUAL + _MORE)
+    layout = json.loads((CONFIG / "tree_sway.foxglove.json").read_text())["configById"]
+    rviz = yaml.safe_load((CONFIG / "tree_sway.rviz").read_text())["Visualization Manager"]
+    shown = {f"/{d['Topic']['Value']}": d["Class"] for d in rviz["Displays"] if "Topic" in d}
+    in_space = {"MarkerArray", "PoseArray", "PoseStamped"}
+    plotted = [p["value"] for panel in layout.values() for p in panel.get("paths", ())]
+    with AnyReader([tmp_path / "bag"]) as bag:
+        types = {c.topic: c.msgtype.rpartition("/")[2] for c in bag.connections}
+        assert all(counts[topic] > 0 for topic in types)
+        for topic, kind in shown.items():
+            assert types[topic].startswith(kind.rpartition("/")[2])
+        assert {types[topic] for topic in layout["3D!tree"]["topics"]} <= in_space
+        assert types[layout["DiagnosticSummary!nodes"]["topicToRender"]] == "DiagnosticArray"
+        for path in plotted:
+            topic, *fields = re.split(r"[.\[]", path.rstrip("]"))
+            (connection,) = [c for c in bag.connections if c.topic == topic]
+            *_, data = next(bag.messages([connection]))
+            value = bag.deserialize(data, connection.msgtype)
+            for field in fields:
+                value = value[int(field)] if field.isdecimal() else getattr(value, field)
+            assert np.isfinite(value)
+    assert layout["3D!tree"]["followTf"] == rviz["Global Options"]["Fixed Frame"] == "map"
 
 
 def test_a_bag_without_a_state_is_refused(compose, tmp_path):

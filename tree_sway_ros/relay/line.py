@@ -62,7 +62,7 @@ class Line:
                 config.insert_json5("scouting/multicast/enabled", "false")
             config.insert_json5("listen/endpoints", json.dumps(list(listen)))
             config.insert_json5("connect/endpoints", json.dumps(list(connect)))
-            self._session = zenoh.open(config)
+            self._session: Any = zenoh.open(config)
             self._key("x")
         except zenoh.ZError as error:
             where = ", ".join([*listen, *connect])

@@ -51,6 +51,10 @@ COMMANDS: dict[str, Command] = {
     "record": Command(
         "wind, state and description of a running tree as a bag", "record -o bag --seconds 10"
     ),
+    "relay": Command(
+        "one tree at several sites: send the wind, and receive it",
+        "relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1",
+    ),
     "info": Command("what a tree is: size, masses, natural frequencies", "info benjamina"),
     "plot": Command(
         "pictures of a tree, and of the wind and the motion of its tip",

@@ -34,7 +34,8 @@ def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
     mark_stamp(message.header.stamp)
     message.name = [*WIND_NAMES, *coordinate_names]
     message.position = [block_mark(), *[0.0] * (len(message.name) - 1)]
-    return CdrTemplate(message, 1, [(len(message.name),)])
+    # Velocities and efforts: two empty lists.
+    return CdrTemplate(message, 1, [(len(message.name),)], tail=8)
 
 
 def read_state(message: Any) -> tuple[Floats, Floats]:
