@@ -1,6 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The stream over lines and to clients that are not as good as this machine's own."""
+"""
+The stream over lines and to clients that are not as good as this machine's own.
+
+What is timed to milliseconds wants a machine that does nothing else: ``pytest -m long -s`` tells.
+
+"""
 
 from __future__ import annotations
 
@@ -21,13 +26,13 @@ import pytest
 
 aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 
-from tree_sway_ros.page.protocol import (
+from tree_sway_ros.page.protocol import (  # noqa: E402
     Frame,
     decode_description,
     decode_frame,
     encode_frame,
 )
-from tree_sway_ros.page.server import PageServer, PageSettings
+from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
 
 HERE = Path(__file__).parent
 DESCRIPTION = (HERE / "vectors" / "description.bin").read_bytes()
@@ -35,6 +40,7 @@ RATE = 60.0
 DEADLINE = 20.0
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="needs network namespaces")
 def test_a_long_line_that_loses_packets_loses_no_frame() -> None:
     """30 Hz over 80 ms there and back, 1 % lost, shown 200 ms late."""
@@ -99,6 +105,7 @@ def test_a_slow_reader_sees_what_is_new(server: PageServer) -> None:
     assert max(seen[1:]) <= 0.25
 
 
+@pytest.mark.long
 def test_sixty_four_clients_are_served_in_time(server: PageServer) -> None:
     command = [sys.executable, str(HERE / "test_long_line.py"), server.url, "64", "6"]
     clients = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)

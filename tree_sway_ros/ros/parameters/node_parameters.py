@@ -466,6 +466,9 @@ VIEWER: Table = (
     Parameter("certificate", "", "PEM file, to serve the page over TLS."),
     Parameter("private_key", "", "PEM file of the certificate's key."),
     Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
+    Parameter(
+        "origins", "", "Pages of these origins may follow the stream: `https://a.org https://b.org`."
+    ),
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )
 
