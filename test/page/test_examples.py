@@ -20,7 +20,6 @@ import pytest
 
 pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 
-from test.page.conftest import Browser, browser_class  # noqa: F401
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.page.server import PageServer, PageSettings
 from tree_sway_ros.page.session import Choices, Session
@@ -89,11 +88,11 @@ def test_three_draws_a_tree_that_sways(
     kind: str,
     page: PageServer,
     files: str,
-    browser_class: type[Browser],  # noqa: F811
+    browser_class: Any,
 ) -> None:
     if kind == "gltf":
         target = WEB / "tree.glb"
-        command = ["convert", "goldcrest", "--sway", "morph", "--leaves", "off"]
+        command = ["convert", "goldcrest", "--sway", "morph"]
         assert main([*command, "-o", str(target), "--force"]) == 0
 
     async def look() -> None:
