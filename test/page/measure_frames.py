@@ -13,7 +13,10 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+import contextlib
+import os
 import statistics
+from pathlib import Path
 
 from conftest import Browser
 
@@ -58,20 +61,37 @@ async def look(url: str, name: str, session: Session, seconds: float, is_profile
         await asyncio.sleep(4.0)
         if is_profiled:
             await browser.run(_PROFILE)
-        found = []
+        found, cpu = [], cpu_time(browser)
+        drawn = await browser.run("treeSway.scene._frame")
         for _ in range(round(seconds / 0.5)):
             await asyncio.sleep(0.5)
             found.append(await browser.run("treeSway.fps"))
+        frames = await browser.run("treeSway.scene._frame") - drawn
+        cpu = 1e3 * (cpu_time(browser) - cpu) / max(frames, 1)
         status = session.status()
-        fineness = await browser.run("treeSway.scene._fineness")
         print(
             f"{name}: {status['segments']} segments, {statistics.median(found):.0f} frames/s "
-            f"({min(found):.0f} .. {max(found):.0f}), at {fineness:.2f} points per point; "
+            f"({min(found):.0f} .. {max(found):.0f}), {cpu:.1f} ms of a core per frame, "
+            f"{await browser.run('treeSway.scene.leftOut') or 'nothing left out'}; "
             f"{status['rate']:.0f} steps/s of {status['work_us'] / 1e3:.2f} ms",
             flush=True,
         )
         if is_profiled:
             print(await browser.run("JSON.stringify(times)"))
+
+
+def cpu_time(browser: Browser) -> float:
+    """What the browser's processes have used so far [s]."""
+    parents = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            words = (folder / "stat").read_text().rpartition(")")[2].split()
+            parents[int(folder.name)] = (int(words[1]), int(words[11]) + int(words[12]))
+    own, ticks = {browser._process.pid}, 0
+    while more := {pid for pid, (parent, _) in parents.items() if parent in own} - own:
+        own |= more
+    ticks = sum(parents[pid][1] for pid in own if pid in parents)
+    return ticks / os.sysconf("SC_CLK_TCK")
 
 
 _PROFILE = """{

@@ -151,7 +151,9 @@ function showFacts() {
   const span = (now - factsAt) / 1000;
   if (span < FACTS_EVERY / 1000) return;
   fps = drawn / span;
-  element("drawn").textContent = `${Math.round(fps)} fps`;
+  const leftOut = scene?.leftOut ?? "";
+  element("drawn").textContent = `${Math.round(fps)} fps${leftOut && ", coarser"}`;
+  element("drawn").title = leftOut;
   element("stream").textContent = `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`;
   const half = connection.roundTrip / 2;
   const latency = Number.isFinite(half) ? half + Math.max(0, playout.lateness) : NaN;
