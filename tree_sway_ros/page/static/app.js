@@ -191,7 +191,7 @@ function draw(now) {
   scene.wind = playout.wind;
   if (!playout.isPaused) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
   lastDrawn = now;
-  scene.draw(coordinates, sceneTime);
+  scene.draw(coordinates, sceneTime, playout.isPaused);
   drawn += 1;
   if (coordinates && stateNow()[0] === "live") {
     const at = scene.position(highest);

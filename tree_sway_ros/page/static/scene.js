@@ -208,8 +208,9 @@ export class Scene {
    *
    * @param {Float32Array | null} coordinates the state; the poses stay as they are if null
    * @param {number} time [s]
+   * @param {boolean} isPaused nothing of the picture changes then
    */
-  draw(coordinates, time) {
+  draw(coordinates, time, isPaused) {
     const { gl, look } = this;
     this.resize();
     const matrix = this.camera.update();
@@ -218,7 +219,7 @@ export class Scene {
     // The eye takes a shadow that is some frames old for one that is not.
     const every = this.isSlow ? SHADOW_EVERY : 1;
     if (this.placer && this._frame % every === 0) this._castShadow(matrix, time);
-    if (this.isSlow) this._keepPace();
+    if (this.isSlow && !isPaused) this._keepPace();
     this._frame++;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -303,6 +304,7 @@ export class Scene {
   _keepPace() {
     const now = performance.now();
     this._paced++;
+    if (now - this._paceFrom > 3000) [this._paceFrom, this._paced] = [now, 0];
     if (now - this._paceFrom < 700) return;
     const fps = (1000 * this._paced) / (now - this._paceFrom);
     if (this._paceFrom && this._paced > 2) {
