@@ -1,12 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-For all tests: repeatable Hypothesis, one thread per test, small trees, and derivatives against
-differences.
+For all tests: repeatable Hypothesis, one thread per test, a ROS domain for each, small trees, and
+derivatives against differences.
 
 """
 
+import contextlib
 import os
+import random
+import sys
+import tempfile
+from pathlib import Path
 
 # Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the
 # test beside.
@@ -24,6 +29,58 @@ from tree_sway_ros.errors import MissingDependencyError
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+
+LAST_DOMAIN = 101
+"""Of those whose ports are not handed out by the system."""
+
+
+@contextlib.contextmanager
+def _claimed_domain():
+    """
+    A ROS domain that no other test has, of this run or another on this machine.
+
+    It is locked until the end of the block, or of the process whatever it dies of.
+
+    """
+    if not sys.platform.startswith("linux"):
+        yield random.randint(1, LAST_DOMAIN)
+        return
+    import fcntl
+
+    folder = Path(tempfile.gettempdir()) / "tree_sway_ros_test_domains"
+    folder.mkdir(mode=0o777, exist_ok=True)
+    # Anywhere first: a domain that was left a moment ago may still hold what it last sent.
+    for domain in random.sample(range(1, LAST_DOMAIN + 1), LAST_DOMAIN):
+        with (folder / str(domain)).open("a") as place:
+            try:
+                fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                continue
+            yield domain
+            return
+    pytest.fail("all ROS domains are taken by other tests on this machine")
+
+
+@pytest.fixture(scope="session")
+def claimed_domain():
+    """``with claimed_domain() as domain:`` for fixtures that live longer than a test."""
+    return _claimed_domain
+
+
+@pytest.fixture
+def domain():
+    """A ROS domain for one test alone."""
+    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+    with _claimed_domain() as claimed:
+        yield claimed
+
+
+@pytest.fixture
+def ros_environment(domain):
+    """Environment of a process in a ROS domain for one test alone, on this machine alone."""
+    own = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    return os.environ | own
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -44,14 +44,17 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p, "sh", "python")], ids=name)
 def test_it_runs_as_written(
-    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    page: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    request: pytest.FixtureRequest,
 ) -> None:
     for folder in FOLDERS:
         if (ROOT / folder).is_dir():
             (tmp_path / folder).symlink_to(ROOT / folder)
     monkeypatch.chdir(tmp_path)
-    told = {"PYTHON": sys.executable, "ROS_DOMAIN_ID": str(81 + os.getpid() % 21)}
-    told |= {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    told = {"PYTHON": sys.executable}
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     for language, text in blocks(page, "sh", "python"):
         if language == "python":
@@ -59,7 +62,7 @@ def test_it_runs_as_written(
             assert capsys.readouterr().out
             continue
         if "tree-sway demo" in text:
-            pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+            told |= request.getfixturevalue("ros_environment")
         result = subprocess.run(
             ["bash", "-c", SHELL + text],
             env=os.environ | told | {"PYTHONPATH": paths},

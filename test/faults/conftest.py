@@ -14,11 +14,7 @@ _spec.loader.exec_module(nodes_conftest)
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
-compose, domain, observer = (
-    nodes_conftest.compose,
-    nodes_conftest.domain,
-    nodes_conftest.observer,
-)
+compose, observer = nodes_conftest.compose, nodes_conftest.observer
 level, statuses, tree_file = (
     nodes_conftest.level,
     nodes_conftest.statuses,
@@ -98,13 +94,14 @@ class Chain:
 
 
 @pytest.fixture(scope="module")
-def chain(tmp_path_factory):
+def chain(tmp_path_factory, claimed_domain):
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     path = tmp_path_factory.mktemp("faults") / "sapling.csv"
     path.write_text(nodes_conftest.TREE)
-    made = Chain(str(path), 1 + nodes_conftest._HALF + next(nodes_conftest._domains) % 40)
-    yield made
-    made.close()
+    with claimed_domain() as domain:
+        made = Chain(str(path), domain)
+        yield made
+        made.close()
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import itertools
 import os
 import threading
 import time
@@ -12,9 +11,6 @@ os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 DEADLINE = 10.0
-# Tests that run side by side take their domains from different halves of 1 .. 80.
-_HALF = 40 * (int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]) % 2)
-_domains = itertools.count(os.getpid() * 7)
 
 TREE = """\
 segment,parent,branch,x0,y0,z0,x1,y1,z1,d0,d1
@@ -46,7 +42,7 @@ class Observer:
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
 
-    def listen(self, topic, kind=None, name=None, raw=False):
+    def listen(self, topic, kind=None, name=None, raw=False, depth=None):
         """A list that fills with the messages of a topic of the table."""
         from tree_sway_ros.ros.process.topics import message_class, qos_profile
 
@@ -58,7 +54,9 @@ class Observer:
                 self._more.notify_all()
 
         kind = kind or message_class(topic)
-        self.node.create_subscription(kind, name or topic.name, take, qos_profile(topic), raw=raw)
+        qos = qos_profile(topic)
+        qos.depth = depth or qos.depth
+        self.node.create_subscription(kind, name or topic.name, take, qos, raw=raw)
         self._executor.wake()
         return messages
 
@@ -99,13 +97,6 @@ class Observer:
     def _spin(self):
         while not self._closing:
             self._executor.spin_once(timeout_sec=0.2)
-
-
-@pytest.fixture
-def domain():
-    """A ROS domain for one test alone."""
-    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-    return 1 + _HALF + next(_domains) % 40
 
 
 @pytest.fixture

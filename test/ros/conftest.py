@@ -10,12 +10,12 @@ os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
 @pytest.fixture
-def context():
+def context(domain):
     """A ROS context in a domain of its own."""
     rclpy = pytest.importorskip("rclpy")
     from rclpy.context import Context
 
     context = Context()
-    rclpy.init(args=[], context=context, domain_id=1 + os.getpid() % 99)
+    rclpy.init(args=[], context=context, domain_id=domain)
     yield context
     context.try_shutdown()

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import signal
 import subprocess
@@ -17,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.tools.tree_argument import opened_scene
+from tree_sway_ros.tools.arguments import opened_scene
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from tree_sway_ros.tools import demo
@@ -34,11 +33,9 @@ _started: list[Started] = []
 
 
 @pytest.fixture
-def environment() -> Iterator[dict[str, str]]:
+def environment(ros_environment: dict[str, str]) -> Iterator[dict[str, str]]:
     """A ROS domain for one test alone, on this machine alone; no process outlives it."""
-    # The tests of the nodes take 1 to 80; beyond 101 the ports are those that the system hands out.
-    domain = 81 + os.getpid() % 21
-    yield {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    yield ros_environment
     while _started:
         process = _started.pop()
         process.kill()

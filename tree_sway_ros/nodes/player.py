@@ -16,6 +16,7 @@ from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import (
     CLOCK,
+    SEGMENT_POSES,
     TREE_DESCRIPTION,
     TREE_STATE,
     WIND,
@@ -25,8 +26,12 @@ from tree_sway_ros.ros.reports.diagnostics import OK, Status
 from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
 from tree_sway_ros.ros.timing.playback import LONGEST_CLOCK_STEP, Playback, is_ros_time
 from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
+from tree_sway_ros.ros.wire.cdr import stamp_of
 from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD
-from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message, stamp_to_ns
+from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
+
+_SLACK = 200_000_000
+"""The clock may be so much ahead of the frames of an exact replay [ns]."""
 
 
 class PlayerNode(TreeSwayNode):
@@ -62,20 +67,21 @@ class PlayerNode(TreeSwayNode):
                 "it starts at 1 s"
             )
             epoch = None
+        wait_for = TREE_STATE.name if self.values["play"] == "state" else self.values["wait_for"]
+        wanted = required(wait_for) if self.values["wait_for_subscriber"] else {}
+        self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
+        is_exact = has_clock and WIND_FILTERED.name in wanted
         self._playback = Playback(
             self._record.time,
             epoch=epoch,
             **self.values("start", "loop"),
             clock_period=self.values["speed"] / self.values["clock_rate"] if has_clock else 0.0,
+            ahead=is_exact,
         )
-        wait_for = "tree_state" if self.values["play"] == "state" else self.values["wait_for"]
-        wanted = required(wait_for) if self.values["wait_for_subscriber"] else {}
-        self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
         self._answers: Answers | None = None
-        if has_clock and WIND_FILTERED.name in wanted:
-            self._answers = Answers()
-            self.subscription(WIND_FILTERED, self._hear)
-            wanted[WIND_FILTERED.name] += 1  # our own
+        if is_exact:
+            self._answers = Answers(_SLACK)
+            self.subscription(SEGMENT_POSES, self._hear, raw=True)
         self._thread = self._make_thread()
         self.report_with(self._record.source, self._report)
 
@@ -136,19 +142,20 @@ class PlayerNode(TreeSwayNode):
     def _publish(self, row: int, stamp: int) -> None:
         if row >= 0:
             self._send(row, stamp)
-            if self._answers is not None:
-                self._answers.sent(stamp)
             return
         if self._answers is not None:
             self._answers.wait()
+            self._answers.sent(stamp)
         self._clock_publisher.publish(clock_message(stamp))
 
-    def _hear(self, message: Any) -> None:
+    def _hear(self, data: bytes) -> None:
         if self._answers is not None:
-            self._answers.heard(stamp_to_ns(message.header.stamp))
+            self._answers.heard(stamp_of(data))
 
     def _may_start(self) -> bool:
-        return self._audience.is_there()
+        return self._audience.is_there() and (
+            self._answers is None or self.count_publishers(SEGMENT_POSES.name) > 0
+        )
 
     def _end(self) -> None:
         self.get_logger().info("the record has ended")
@@ -157,5 +164,5 @@ class PlayerNode(TreeSwayNode):
     def _report(self) -> list[Status]:
         values = {**self._thread.progress(), "refused in file": self._record.refused}
         if self._answers is not None:
-            values["samples that never came back"] = self._answers.missing
+            values["waited for frames in vain"] = self._answers.missing
         return [Status("playback", OK, self._record.source, values)]

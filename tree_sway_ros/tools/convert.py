@@ -15,12 +15,15 @@ from tree_sway_ros.files.export.gltf_tree import morphing_tree
 from tree_sway_ros.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
-from tree_sway_ros.tools.tree_output import (
+from tree_sway_ros.tools.arguments import (
     OUTPUT_HELP,
+    add_leaves_argument,
     add_output_arguments,
+    add_tree_arguments,
+    drawn_leaves,
+    opened_scene,
     output_path,
+    told_leaves,
     what_was_written,
 )
 

@@ -19,10 +19,14 @@ from tree_sway_ros.core.tree.plausibility import doubt_of_sway
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_tree_arguments,
+    opened_scene,
+    told_leaves,
+)
 from tree_sway_ros.tools.info_forest import forest_facts, forest_text
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 

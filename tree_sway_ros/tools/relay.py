@@ -32,8 +32,8 @@ from tree_sway_ros.relay.line import Line
 from tree_sway_ros.relay.site import Site
 from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
 from tree_sway_ros.ros.process.ending import Ending
+from tree_sway_ros.tools.arguments import add_tree_arguments, add_wind_arguments, opened_tree
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
 
 _MODELS = tuple(name for name in FIDELITIES if name != "auto")
 _WIND_RATE = 20
@@ -54,10 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--rate", type=int, default=60, help="steps per second (%(default)s)")
     parser.add_argument("--ros", action="store_true", help="wind from, or to, `wind/filtered`")
-    parser.add_argument("--wind", metavar="FILE", help="send this record, over and over")
-    parser.add_argument(
-        "--speed", type=float, default=6.0, help="send a simulated wind of this mean (%(default)s)"
-    )
+    add_wind_arguments(parser, "the record to send, over and over; simulated if left out")
     parser.add_argument("--state", action="store_true", help="send the state as well, to be played")
     parser.add_argument("--play", action="store_true", help="play the state, solve nothing")
     parser.add_argument("--no-snapshot", action="store_true", help="receive from rest")

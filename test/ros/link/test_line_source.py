@@ -1,5 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import asyncio
 import socket
 import sys
 import threading
@@ -7,6 +8,7 @@ import threading
 import pytest
 
 from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.ros.link import line_source
 from tree_sway_ros.ros.link.address import Address
 from tree_sway_ros.ros.link.line_source import LineSource
 
@@ -75,6 +77,24 @@ def test_a_link_that_falls_silent_is_made_anew(hear, server):
     assert any("nothing for 0.1 s" in text for text in heard.said)
     first.close()
     second.close()
+
+
+def test_it_ends_though_a_chunk_comes_with_the_end(monkeypatch):
+    told = asyncio.Event()
+
+    async def late(source):
+        source._gain()
+        await told.wait()
+        source._loop.call_soon(cancel)  # meets the chunk: `wait_for` returns it and cancels nothing
+        yield b"late\n"
+        await asyncio.sleep(3600.0)
+
+    monkeypatch.setitem(line_source._READERS, "tcp", late)
+    heard = Heard(Address("tcp", "nowhere", 1))
+    heard.until(lambda: heard.source.is_up)
+    cancel, heard.source._cancel = heard.source._cancel, told.set
+    heard.source.stop()
+    assert not heard.source._thread.is_alive()
 
 
 def test_nobody_there_is_said_once_and_tried_again(hear, server):

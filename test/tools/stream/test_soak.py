@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 import subprocess
 import sys
@@ -37,16 +36,11 @@ def test_a_process_looks_at_itself() -> None:
 
 @pytest.mark.ros
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
-def test_the_chain_goes_through_all_faults() -> None:
-    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+def test_the_chain_goes_through_all_faults(ros_environment: dict[str, str]) -> None:
     command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "soak", "--hours", "0.003"]
-    environment = os.environ | {
-        "ROS_DOMAIN_ID": str(81 + os.getpid() % 21),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
     ended = subprocess.run(
         [*command, "--every", "0.5", "--slope", "1e9"],
-        env=environment,
+        env=ros_environment,
         capture_output=True,
         text=True,
         cwd=ROOT,

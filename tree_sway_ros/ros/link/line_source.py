@@ -63,6 +63,7 @@ class LineSource:
         self._first_pause = first_pause
         self._loop = asyncio.new_event_loop()
         self._task: asyncio.Task[None] | None = None
+        self._is_ending = False
         self._thread = threading.Thread(target=self._run, name="instrument", daemon=True)
         self.is_up = False
         self.links = 0
@@ -75,6 +76,7 @@ class LineSource:
 
     def stop(self) -> None:
         """Stop listening; may be called twice."""
+        self._is_ending = True  # `wait_for` swallows a cancellation that meets what it waits for
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._cancel)
             self._thread.join(timeout=5.0)
@@ -94,11 +96,11 @@ class LineSource:
 
     async def _listen(self) -> None:
         pause = self._first_pause
-        while True:
+        while not self._is_ending:
             before, lines = self.lines, Lines()
             try:
                 async with aclosing(_READERS[self._address.kind](self)) as chunks:
-                    while True:
+                    while not self._is_ending:
                         data = await asyncio.wait_for(anext(chunks), self._silence)
                         for line in lines.feed(data, is_whole=self._address.kind == "udp"):
                             self.lines += 1

@@ -19,7 +19,7 @@ from tree_sway_ros.files.table_file import filled_lines, parse_columns
 from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.joining import checked_order
-from tree_sway_ros.files.trees.skeletons.node_skeleton import Skeleton
+from tree_sway_ros.files.trees.cylinders.skeleton import Skeleton
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _COLUMNS = ("number", "type", "x", "y", "z", "radius", "parent")

@@ -21,7 +21,7 @@ from tree_sway_ros.errors import FormatError, ParameterError, TreeError
 from tree_sway_ros.files.table_file import TextTable, filled_lines, split_row
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.skeletons.node_skeleton import Skeleton
+from tree_sway_ros.files.trees.cylinders.skeleton import Skeleton
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _FIELDS = ("x", "y", "z", "radius", "parent_id")

@@ -1,24 +1,30 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The TREE of a command and its wood: the same arguments in every command.
-
-"""
+"""Arguments that commands share: TREE and its wood, its leaves, the wind, the model, the output."""
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
+import itertools
+from pathlib import Path
 from typing import Any
 
-from tree_sway_ros.core.tree.species import species_keys
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.simulator.season import LEAVES
+from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
+from tree_sway_ros.core.tree.species import Species, species_keys
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 
+OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
+_DRAWN = 1500
 
 
 def add_tree_arguments(
@@ -137,3 +143,91 @@ def _value(text: str) -> Any:
         return float(text)
     except ValueError:
         return text
+
+
+def add_leaves_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the choice of leaves; ``--leaves`` alone is on."""
+    parser.add_argument(
+        "--leaves",
+        nargs="?",
+        choices=tuple(LEAVES),
+        const="on",
+        default="auto",
+        help="in leaf; auto is in leaf where the species is evergreen; of a forest, those trees of "
+        "which its file does not say (%(default)s)",
+    )
+
+
+def told_leaves(arguments: argparse.Namespace) -> bool | None:
+    """Whether trees bear leaves; None leaves it to their species."""
+    return LEAVES[arguments.leaves]
+
+
+def drawn_leaves(
+    scene: TreeFile | ForestFile, arguments: argparse.Namespace
+) -> LeafClusters | None:
+    """Clusters to draw, the same in every picture of a tree; None if there are none."""
+    return scene.leaves(told_leaves(arguments), _DRAWN)
+
+
+def add_wind_arguments(parser: argparse.ArgumentParser, record: str = "") -> None:
+    """Add the record of a wind, and the speed of a simulated one; `record` is the first's help."""
+    told = record or "a wind record; simulated if left out"
+    parser.add_argument("--wind", metavar="FILE", help=told)
+    told = "mean of the simulated wind [m/s] (%(default)s)"
+    parser.add_argument("--speed", type=float, default=6.0, metavar="U", help=told)
+
+
+def add_model_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the model of the sway, of all that there are."""
+    parser.add_argument(
+        "--model",
+        "--fidelity",
+        dest="model",
+        choices=FIDELITIES,
+        default=Settings().model,
+        help="model of the sway (%(default)s)",
+    )
+
+
+def add_output_arguments(
+    parser: argparse.ArgumentParser, what: str, *, required: bool = True
+) -> None:
+    """Add ``--output`` and ``--force``; `what` is the help of the first."""
+    parser.add_argument("-o", "--output", required=required, metavar="FILE", help=what)
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
+
+
+def output_path(arguments: argparse.Namespace, default: str = "") -> str:
+    """
+    File to write: the one asked for, or the first of the default's names that is free.
+
+    Raises
+    ------
+    ParameterError
+        If the file asked for is there already and ``--force`` is not given.
+
+    """
+    if arguments.output is not None:
+        if Path(arguments.output).is_file() and not arguments.force:
+            raise ParameterError(
+                f"'{arguments.output}' is there already",
+                where="--output",
+                cure="name another file, or write over it with --force",
+            )
+        return str(arguments.output)
+    path = Path(default)
+    names = (path.with_stem(f"{path.stem}_{n}") for n in itertools.count(2))
+    return str(next(name for name in itertools.chain([path], names) if not name.exists()))
+
+
+def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
+    """Write a tree and say what was written."""
+    write_tree(path, tree, species)
+    print(what_was_written(path, tree))
+
+
+def what_was_written(path: str, tree: Tree) -> str:
+    """Return a line about a tree in a file."""
+    size = f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
+    return f"{path}: {tree.name}, {size}"
