@@ -4,7 +4,7 @@
 The state of a tree as `sensor_msgs/JointState`: a name per coordinate, the wind first.
 
 With the ``state`` of `tree_description` it is all that poses are rebuilt from; a bag of it plots
-anywhere and takes some MB per hour.
+anywhere and takes some 50 MB per hour.
 
 """
 

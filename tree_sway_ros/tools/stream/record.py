@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway record``: wind, state and description of a running tree as a bag, some MB per hour.
+``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
 
 The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved anew.
 
