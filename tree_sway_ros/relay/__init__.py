@@ -3,6 +3,6 @@
 """
 One tree at several sites: the wind goes over the line, and each site solves, or plays the state.
 
-`site` steps a tree along samples of wind, `line` is the session of Zenoh between sites.
+`tree_site` steps a tree along samples of wind, `line` is the session of Zenoh between sites.
 
 """

@@ -29,7 +29,7 @@ from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.relay.line import Line
-from tree_sway_ros.relay.site import Site
+from tree_sway_ros.relay.tree_site import Site
 from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
 from tree_sway_ros.ros.process.ending import Ending
 from tree_sway_ros.tools.arguments import add_tree_arguments, add_wind_arguments, opened_tree

@@ -22,6 +22,15 @@ vec4 seen(vec3 p) {
 }
 `;
 
+/** What is lit; the shadow is its outline. */
+const LIT = `#version 300 es
+precision highp float;
+in vec3 normal;
+uniform vec3 light;
+uniform float isShadow;
+out vec4 color;
+`;
+
 export const BARK_VERTEX = `${POSE}
 in uint segment;
 in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, 0, thickness - 2
@@ -48,15 +57,10 @@ void main() {
   gl_Position = seen(p);
 }`;
 
-export const BARK_FRAGMENT = `#version 300 es
-precision highp float;
-in vec3 normal;
+export const BARK_FRAGMENT = `${LIT}
 in float thickness;
-uniform vec3 light;
 uniform vec3 barkColor;
 uniform vec3 twigColor;
-uniform float isShadow;
-out vec4 color;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
@@ -95,15 +99,10 @@ void main() {
   gl_Position = seen(p);
 }`;
 
-export const LEAF_FRAGMENT = `#version 300 es
-precision highp float;
-in vec3 normal;
+export const LEAF_FRAGMENT = `${LIT}
 in float shade;
-uniform vec3 light;
 uniform vec3 leafColor;
 uniform vec3 freshColor;
-uniform float isShadow;
-out vec4 color;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
@@ -131,13 +130,8 @@ void main() {
   gl_Position = seen(p);
 }`;
 
-export const SOLID_FRAGMENT = `#version 300 es
-precision highp float;
-in vec3 normal;
+export const SOLID_FRAGMENT = `${LIT}
 in vec3 base;
-uniform vec3 light;
-uniform float isShadow;
-out vec4 color;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);

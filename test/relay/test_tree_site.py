@@ -12,7 +12,7 @@ import pytest
 
 from tree_sway_ros.errors import FormatError, StateError
 from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.relay.site import PATIENCE, Site
+from tree_sway_ros.relay.tree_site import PATIENCE, Site
 from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
 
 START = 1_700_000_000_123_456_789
