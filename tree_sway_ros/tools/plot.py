@@ -33,7 +33,7 @@ from tree_sway_ros.tools.arguments import (
     output_path,
     told_leaves,
 )
-from tree_sway_ros.tools.progress import bar
+from tree_sway_ros.tools.progress import bar, waiting
 from tree_sway_ros.tools.sway_in_wind import Samples, recorded, simulated, sway_in_wind
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
@@ -91,7 +91,8 @@ def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> S
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
     model: dict[str, Any] = {"model": arguments.model, "in_leaf": told_leaves(arguments)}
     try:
-        return scene.simulator(**model)
+        with waiting("setting up the tree"):
+            return scene.simulator(**model)
     except TreeError as error:
         light = scene.simulator(**model, gravity=0.0)
         print(f"note: without its own weight, as it cannot stand: {error}", file=sys.stderr)

@@ -28,7 +28,7 @@ from tree_sway_ros.tools.arguments import (
     output_path,
     told_leaves,
 )
-from tree_sway_ros.tools.progress import bar
+from tree_sway_ros.tools.progress import bar, waiting
 
 _STEPS_PER_SECOND = 120.0
 _RUN_IN = 20.0
@@ -73,8 +73,13 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         record = read_wind(arguments.wind)
         wind = RecordedWind(record.time, record.velocity)
+<<<<<<< HEAD
     simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
     clusters = _BLADES // blades_per_cluster(scene.tree.species)
+=======
+    with waiting("setting up the tree"):
+        simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
+>>>>>>> main
     began = time.monotonic()
     frames, winds = _swayed(simulator, wind, arguments)
     animate_poses(
@@ -106,7 +111,7 @@ def _swayed(
         simulator.step(wind.mean(now, now + dt), dt)
         now += dt
     frames, winds = [], []
-    for _ in range(max(1, round(arguments.seconds * arguments.rate))):
+    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), "swaying"):
         for _ in range(steps):
             blowing = wind.mean(now, now + dt)
             simulator.step(blowing, dt)

@@ -105,15 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
 def build_scene(
     choices: Choices, arguments: argparse.Namespace
 ) -> tuple[Simulator, LeafClusters | None]:
-    """
-    Make simulator and leaves of what was chosen.
-
-    Raises
-    ------
-    TreeSwayError
-        As `open_scene` and `TreeFile.simulator`.
-
-    """
+    """Make simulator and leaves of what was chosen."""
     is_first = choices.tree == arguments.tree
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
     count = int(choices.count)

@@ -33,11 +33,16 @@ def test_the_report_in_terminal_and_json(tmp_path, capsys):
     assert "4 of 4 rows as they should be" in printed
     document = json.loads(file.read_text())
     assert [case["case"] for case in document["cases"]] == ["T5", "T14"]
-    assert all(row["good"] for case in document["cases"] for row in case["rows"])
+    assert [row["good"] for case in document["cases"] for row in case["rows"]] == [True] * 4
 
 
 def test_a_row_that_fails_gives_exit_code_one(monkeypatch):
     monkeypatch.setattr(load_case("T5"), "run", lambda full: [holds("x", "y", "z", False)])
+    assert run_battery(only=["T5"]) == 1
+
+
+def test_a_case_without_rows_has_shown_nothing(monkeypatch):
+    monkeypatch.setattr(load_case("T5"), "run", lambda full: [])
     assert run_battery(only=["T5"]) == 1
 
 
