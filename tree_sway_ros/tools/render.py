@@ -73,13 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         record = read_wind(arguments.wind)
         wind = RecordedWind(record.time, record.velocity)
-<<<<<<< HEAD
-    simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
-    clusters = _BLADES // blades_per_cluster(scene.tree.species)
-=======
     with waiting("setting up the tree"):
         simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
->>>>>>> main
+    clusters = _BLADES // blades_per_cluster(scene.tree.species)
     began = time.monotonic()
     frames, winds = _swayed(simulator, wind, arguments)
     animate_poses(
