@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Where and to whom a command serves the page: the same arguments in every command that does.
-
-"""
+"""Where and to whom a command serves the page: the same arguments in every command that does."""
 
 from __future__ import annotations
 

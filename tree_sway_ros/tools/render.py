@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway render``: a tree in wind as a moving picture, without a screen.
-
-"""
+"""``tree-sway render``: a tree in wind as a moving picture, without a screen."""
 
 from __future__ import annotations
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway show``: a tree in wind on a page of the browser, without ROS.
-
-"""
+"""``tree-sway show``: a tree in wind on a page of the browser, without ROS."""
 
 from __future__ import annotations
 
