@@ -477,7 +477,9 @@ VIEWER: Table = (
     Parameter("private_key", "", "PEM file of the certificate's key."),
     Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
     Parameter(
-        "origins", "", "Pages of these origins may follow the stream: `https://a.org https://b.org`."
+        "origins",
+        "",
+        "Pages of these origins may follow the stream: `https://a.org https://b.org`.",
     ),
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )
