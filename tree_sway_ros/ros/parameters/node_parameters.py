@@ -425,6 +425,13 @@ PLAYER: Table = (
     _LIFECYCLE,
     Parameter("file", "", "The wind record to play: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
     Parameter(
+        "play",
+        "wind",
+        "The player publishes the `wind` of the record, to be solved anew, or of a bag the `state` "
+        "as it was sent: `tree_state` and `tree_description`.",
+        choices=("wind", "state"),
+    ),
+    Parameter(
         "output_type",
         WIND_TYPE_NAMES[0],
         "The node publishes messages of this type.",
@@ -477,6 +484,11 @@ VIEWER: Table = (
     Parameter("certificate", "", "PEM file, to serve the page over TLS."),
     Parameter("private_key", "", "PEM file of the certificate's key."),
     Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
+    Parameter(
+        "origins",
+        "",
+        "Pages of these origins may follow the stream: `https://a.org https://b.org`.",
+    ),
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )
 
