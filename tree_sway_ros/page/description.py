@@ -12,7 +12,7 @@ follow each other in every array.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -22,26 +22,18 @@ from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.protocol import encode_description
-
-
-class Told(Protocol):
-    """How receivers know the key rotations of a tree."""
-
-    frames: Floats
-
-    def per_key(self, branch: int, turns: Floats) -> Floats:
-        """Turn what is per unit of the solver's key rotations (k, 3) to those that are told."""
-
+from tree_sway_ros.page.told_basis import ToldBasis
 
 RIGID = -1
 """Coordinate of a branch that has none."""
 
 
 def describe_scene(
-    simulator: Any,
-    bases: Sequence[Any],
+    simulator: Simulator,
+    bases: Sequence[ToldBasis],
     *,
     frame_id: str = "map",
     leaves: LeafClusters | None = None,
@@ -54,7 +46,7 @@ def describe_scene(
     simulator
         Of a tree or a forest, on the model whose state will be sent.
     bases
-        Per tree, with `frames` of its moving branches, as `ToldBasis`.
+        Per tree.
     frame_id
         Frame of the poses.
     leaves
@@ -114,7 +106,7 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: Any, told: Told) -> dict[str, Any]:
+def _branches(simulator: TreeSimulator, told: ToldBasis) -> dict[str, Any]:
     """
     Arrays of one tree: how each branch of the whole tree is placed, by the told key rotations.
 

@@ -97,7 +97,9 @@ def relative(one, other):
 def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences, shape):
     error = []
     for fine in (8, 16) if shape == "fork" else (16, 32):
-        tree = fork(fine) if shape == "fork" else forked_tree(0.5, 0.6, segments=fine, generations=2)
+        tree = fork(fine)
+        if shape == "straight":
+            tree = forked_tree(0.5, 0.6, segments=fine, generations=2)
         reduced = Reduced(tree, enriched=range(tree.n_branches))
         matrix = reduced.reduction.mass.toarray()
         error.append(relative(matrix, mass_by_differences(reduced, differences)))
