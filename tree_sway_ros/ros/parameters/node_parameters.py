@@ -350,6 +350,14 @@ SOLVER: Table = (
         30.0,
     ),
     Parameter(
+        "root_stiffness",
+        0.0,
+        "The stiffness of the roots against tilting, 1e15 for rigid ones; 0 means the tree's own.",
+        "N m/rad",
+        0.0,
+        1e15,
+    ),
+    Parameter(
         "damping_ratio",
         0.0,
         "The damping ratio of every branch; 0 means the species' own.",
