@@ -39,7 +39,7 @@ def launchers():
 
 def files(pattern):
     """Return the files of the source that fit a pattern, from its root as setuptools asks."""
-    return sorted(str(path.relative_to(ROOT)) for path in ROOT.glob(pattern))
+    return sorted(str(path.relative_to(ROOT)) for path in ROOT.glob(pattern) if path.is_file())
 
 
 data_files = [
@@ -47,6 +47,7 @@ data_files = [
     (f"share/{PACKAGE}", ["package.xml"]),
     (f"share/{PACKAGE}/launch", files("launch/*.launch.py")),
     (f"share/{PACKAGE}/config", files("config/*")),
+    (f"share/{PACKAGE}/config/examples", files("config/examples/*")),
 ]
 if "bdist_wheel" in sys.argv:
     data_files.append((f"lib/{PACKAGE}", launchers()))

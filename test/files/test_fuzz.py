@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from tree_sway_ros.errors import TreeSwayError
-from tree_sway_ros.files.trees.formats.treeqsm_text import read_treeqsm_text
+from tree_sway_ros.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.files.trees.tree_file import TREE_FORMATS, read_trees
 from tree_sway_ros.files.trees.yaml.forest_yaml import parse_forest

@@ -42,7 +42,7 @@ class Observer:
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
 
-    def listen(self, topic, kind=None, name=None, raw=False):
+    def listen(self, topic, kind=None, name=None, raw=False, depth=None):
         """A list that fills with the messages of a topic of the table."""
         from tree_sway_ros.ros.process.topics import message_class, qos_profile
 
@@ -54,7 +54,9 @@ class Observer:
                 self._more.notify_all()
 
         kind = kind or message_class(topic)
-        self.node.create_subscription(kind, name or topic.name, take, qos_profile(topic), raw=raw)
+        qos = qos_profile(topic)
+        qos.depth = depth or qos.depth
+        self.node.create_subscription(kind, name or topic.name, take, qos, raw=raw)
         self._executor.wake()
         return messages
 

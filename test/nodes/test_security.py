@@ -30,6 +30,11 @@ def test_every_topic_may_be_said_by_somebody():
 def test_what_nodes_say_and_hear_is_allowed(compose, tree_file):
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     parameters = {"solver": {"tree": tree_file}, "wind": {}, "anemometer": {}, "sensor": {}}
+    parameters["player"] = {
+        "file": "canopy",
+        "publish_clock": True,
+        "wait_for": "wind/filtered nobody",
+    }
     for node in compose(**parameters).nodes:
         profile = next(p for p in POLICY.iter("profile") if p.get("node") == node.get_name())
         for way, made in (("publish", node.publishers), ("subscribe", node.subscriptions)):

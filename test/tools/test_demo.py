@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.tools.tree_argument import opened_scene
+from tree_sway_ros.tools.arguments import opened_scene
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from tree_sway_ros.tools import demo

@@ -10,12 +10,16 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.wind.reader_options import reader_options
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import CLOCK, WIND, WIND_FILTERED
+from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import OK, Status
 from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
 from tree_sway_ros.ros.timing.playback import LONGEST_CLOCK_STEP, Playback, is_ros_time
 from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
-from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message, stamp_to_ns
+from tree_sway_ros.ros.wire.cdr import stamp_of
+from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
+
+_SLACK = 200_000_000
+"""The clock may be so much ahead of the frames of an exact replay [ns]."""
 
 
 class PlayerNode(TreeSwayNode):
@@ -50,19 +54,20 @@ class PlayerNode(TreeSwayNode):
                 "it starts at 1 s"
             )
             epoch = None
+        wanted = required(self.values["wait_for"]) if self.values["wait_for_subscriber"] else {}
+        self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
+        is_exact = has_clock and WIND_FILTERED.name in wanted
         self._playback = Playback(
             self._record.time,
             epoch=epoch,
             **self.values("start", "loop"),
             clock_period=self.values["speed"] / self.values["clock_rate"] if has_clock else 0.0,
+            ahead=is_exact,
         )
-        wanted = required(self.values["wait_for"]) if self.values["wait_for_subscriber"] else {}
-        self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
         self._answers: Answers | None = None
-        if has_clock and WIND_FILTERED.name in wanted:
-            self._answers = Answers()
-            self.subscription(WIND_FILTERED, self._hear)
-            wanted[WIND_FILTERED.name] += 1  # our own
+        if is_exact:
+            self._answers = Answers(_SLACK)
+            self.subscription(SEGMENT_POSES, self._hear, raw=True)
         self._thread = self._make_thread()
         self.report_with(self._record.source, self._report)
 
@@ -105,19 +110,20 @@ class PlayerNode(TreeSwayNode):
     def _publish(self, row: int, stamp: int) -> None:
         if row >= 0:
             self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
-            if self._answers is not None:
-                self._answers.sent(stamp)
             return
         if self._answers is not None:
             self._answers.wait()
+            self._answers.sent(stamp)
         self._clock_publisher.publish(clock_message(stamp))
 
-    def _hear(self, message: Any) -> None:
+    def _hear(self, data: bytes) -> None:
         if self._answers is not None:
-            self._answers.heard(stamp_to_ns(message.header.stamp))
+            self._answers.heard(stamp_of(data))
 
     def _may_start(self) -> bool:
-        return self._audience.is_there()
+        return self._audience.is_there() and (
+            self._answers is None or self.count_publishers(SEGMENT_POSES.name) > 0
+        )
 
     def _end(self) -> None:
         self.get_logger().info("the record has ended")
@@ -126,5 +132,5 @@ class PlayerNode(TreeSwayNode):
     def _report(self) -> list[Status]:
         values = {**self._thread.progress(), "refused in file": self._record.refused}
         if self._answers is not None:
-            values["samples that never came back"] = self._answers.missing
+            values["waited for frames in vain"] = self._answers.missing
         return [Status("playback", OK, self._record.source, values)]

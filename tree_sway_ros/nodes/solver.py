@@ -26,6 +26,7 @@ from tree_sway_ros.ros.process.progress import Progress
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import WARN, Status
 from tree_sway_ros.ros.reports.sway_report import SwayReport
+from tree_sway_ros.ros.timing.handshake import Reach
 from tree_sway_ros.ros.timing.pacer import Pacer, Tick
 from tree_sway_ros.ros.timing.stepping import Stepper
 from tree_sway_ros.ros.wire.pose_stream import PoseStream
@@ -108,6 +109,7 @@ class SolverNode(TreeSwayNode):
         self._tell_demand()
         self.simulator.reset()  # on the model that is asked for
         self._intake = WindIntake.of_velocities()
+        self._reach = Reach()
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
@@ -124,6 +126,7 @@ class SolverNode(TreeSwayNode):
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
         arrival = self.get_clock().now().nanoseconds
+        self._reach.add(sample.stamp, arrival)
         components = (sample.u, sample.v, sample.w)
         good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
         if good is not None:
@@ -155,17 +158,26 @@ class SolverNode(TreeSwayNode):
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._stepper.restart(tick.time)
+            self._reach.forget()
+        if self.pacer.is_simulated:  # of a replay every frame comes, however late
+            for later in range(tick.periods - 1, -1, -1):
+                time = tick.time - later * self.pacer.period
+                self._reach.wait(time - round(1e9 * self.values["wind_delay"]), self._take)
+                self._frame(time, 1, may_join=False)
+        else:
+            self._take()
+            self._frame(tick.time, tick.periods, may_join=True)
+
+    def _take(self) -> None:
         for message in self._new_wind():
             self._receive(message)
-        self._stepper.advance(
-            tick.time,
-            tick.periods,
-            self.values["wind_delay"],
-            may_join=not self.pacer.is_simulated,
-        )
-        index = tick.time // self.pacer.period
-        self.stream.publish(self.simulator, index, tick.time, self.values["publish_every"])
-        self._state.publish(index, tick.time)
+
+    def _frame(self, time: int, periods: int, *, may_join: bool) -> None:
+        """Solve up to a time in [ns], and publish what is due then."""
+        self._stepper.advance(time, periods, self.values["wind_delay"], may_join=may_join)
+        index = time // self.pacer.period
+        self.stream.publish(self.simulator, index, time, self.values["publish_every"])
+        self._state.publish(index, time)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._stepper.request(self.simulator.reset)

@@ -18,10 +18,16 @@ from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.wind.sway_table import read_csv_sway
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_output_arguments,
+    add_tree_arguments,
+    opened_tree,
+    output_path,
+    told_leaves,
+    write_tree_file,
+)
 from tree_sway_ros.tools.progress import waiting
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
-from tree_sway_ros.tools.tree_output import add_output_arguments, output_path, write_tree_file
 
 _YAML = (".yaml", ".yml")
 _FAR = 2.0

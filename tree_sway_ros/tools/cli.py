@@ -87,6 +87,7 @@ COMMANDS: dict[str, Command] = {
 _STUDIES = {
     **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
     "study": "campaign",
+    "docs": "pages",
 }
 
 #: Commands that watch a stream.

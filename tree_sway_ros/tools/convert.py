@@ -15,14 +15,18 @@ from tree_sway_ros.files.export.gltf_tree import morphing_tree
 from tree_sway_ros.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
-from tree_sway_ros.tools.tree_output import (
+from tree_sway_ros.tools.arguments import (
     OUTPUT_HELP,
+    add_leaves_argument,
     add_output_arguments,
+    add_tree_arguments,
+    drawn_leaves,
+    opened_scene,
     output_path,
+    told_leaves,
     what_was_written,
 )
+from tree_sway_ros.tools.progress import waiting
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -70,8 +74,9 @@ def _write_morphing(scene: TreeFile | ForestFile, arguments: argparse.Namespace)
             "a forest by morph targets", where="--sway", cure="convert its trees one by one"
         )
     settings = Settings(model="modes", in_leaf=told_leaves(arguments))
-    simulator = SwaySimulator(scene.tree, scene.species, settings)
-    document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
+    with waiting("finding what sways"):
+        simulator = SwaySimulator(scene.tree, scene.species, settings)
+        document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
     write_gltf(arguments.output, document)
     print(
         f"  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} mm "

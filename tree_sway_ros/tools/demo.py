@@ -16,34 +16,36 @@ import webbrowser
 from pathlib import Path
 
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_tree_arguments,
+    add_wind_arguments,
+    opened_scene,
+)
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.only_demo import only_demo
 from tree_sway_ros.tools.stream.text import summary
 from tree_sway_ros.tools.stream.watch import checked_seconds, watch
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True, default="benjamina")
+    add_wind_arguments(parser)
     parser.add_argument(
-        "--wind", metavar="FILE", help="a wind record to play; simulated if left out"
-    )
-    parser.add_argument(
-        "--speed",
-        type=float,
-        default=6.0,
-        metavar="U",
-        help="mean of the simulated wind [m/s] (%(default)s)",
+        "--sensor",
+        metavar="ADDRESS",
+        help="of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, "
+        "udp://:port",
     )
     parser.add_argument(
         "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
@@ -51,15 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)"
     )
-    fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
-    parser.add_argument(
-        "--model",
-        "--fidelity",
-        dest="fidelity",
-        choices=fidelity.choices,
-        default=fidelity.default,
-        help="model of the sway (%(default)s)",
-    )
+    add_model_argument(parser)
     add_leaves_argument(parser)
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
@@ -135,11 +129,15 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
         "tree": tree,
         "species": "" if tree != arguments.tree else arguments.species or "",
         "rate": arguments.rate,
-        "fidelity": arguments.fidelity,
+        "fidelity": arguments.model,
     }
     solver["leaves"] = arguments.leaves
     if arguments.gravity == "off":
         solver["gravity"] = 0.0
+    if arguments.sensor is not None:
+        if arguments.wind is not None:
+            raise ParameterError("both --sensor and --wind", cure="give one of the two")
+        return {"sensor": {"address": arguments.sensor}, "wind": {}, "solver": solver}
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
     return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}

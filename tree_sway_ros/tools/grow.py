@@ -14,7 +14,7 @@ from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.tools.tree_output import (
+from tree_sway_ros.tools.arguments import (
     OUTPUT_HELP,
     add_output_arguments,
     output_path,

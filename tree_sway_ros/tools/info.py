@@ -19,10 +19,15 @@ from tree_sway_ros.core.tree.plausibility import doubt_of_sway
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_tree_arguments,
+    opened_scene,
+    told_leaves,
+)
 from tree_sway_ros.tools.info_forest import forest_facts, forest_text
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
+from tree_sway_ros.tools.progress import waiting
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 
@@ -49,10 +54,12 @@ def run(arguments: argparse.Namespace) -> int:
         )
     scene = opened_scene(arguments)
     if isinstance(scene, ForestFile):
-        facts = forest_facts(scene, partial(_facts, arguments), told_leaves(arguments))
+        with waiting("setting up every tree"):
+            facts = forest_facts(scene, partial(_facts, arguments), told_leaves(arguments))
         print(json.dumps(facts, indent=2) if arguments.json else forest_text(facts))
         return 0
-    facts = _facts(arguments, scene, told_leaves(arguments))
+    with waiting("working out the modes"):
+        facts = _facts(arguments, scene, told_leaves(arguments))
     print(json.dumps(facts, indent=2) if arguments.json else _text(facts, scene))
     return 0
 
@@ -68,33 +75,11 @@ def _facts(
         mode_choice="slowest",
         in_leaf=in_leaf,
     )
-    return tree_facts(tree_file, settings, arguments.count)
+    return _tree_facts(tree_file, settings, arguments.count)
 
 
-def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
-    """
-    Gather what there is to say about a tree.
-
-    Parameters
-    ----------
-    tree_file
-        The tree and its wood.
-    settings
-        How it is modelled.
-    count
-        How many natural frequencies.
-
-    Returns
-    -------
-    dict
-        SI units throughout; fit for JSON.
-
-    Raises
-    ------
-    TreeSwayError
-        A tree that cannot be modelled.
-
-    """
+def _tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
+    """What there is to say about a tree, in SI units, fit for JSON."""
     tree, species = tree_file.tree, tree_file.species
     settings = in_season(tree, species, settings)
     notes = list(tree_file.notes)

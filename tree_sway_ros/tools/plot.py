@@ -17,17 +17,24 @@ import numpy as np
 
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
-from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.wind.wind_file import read_wind
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, drawn_leaves, told_leaves
-from tree_sway_ros.tools.progress import bar
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_output_arguments,
+    add_tree_arguments,
+    add_wind_arguments,
+    drawn_leaves,
+    opened_scene,
+    output_path,
+    told_leaves,
+)
+from tree_sway_ros.tools.progress import bar, waiting
 from tree_sway_ros.tools.sway_in_wind import Samples, recorded, simulated, sway_in_wind
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
-from tree_sway_ros.tools.tree_output import add_output_arguments, output_path
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 
@@ -43,19 +50,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="draw the tree at rest and, beside it, in a steady westerly",
     )
     add_leaves_argument(parser)
-    parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
-    parser.add_argument(
-        "--speed", type=float, metavar="U", help="mean wind speed [m/s] (6; 10 with --portrait)"
-    )
+    add_wind_arguments(parser)
+    parser.set_defaults(speed=None)
     parser.add_argument(
         "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
     )
-    parser.add_argument(
-        "--model",
-        choices=FIDELITIES,
-        default=Settings().model,
-        help="model of the sway (%(default)s)",
-    )
+    add_model_argument(parser)
     picture = "picture (sway.png, or the next name that is free)"
     add_output_arguments(parser, picture, required=False)
 
@@ -91,7 +91,8 @@ def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> S
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
     model: dict[str, Any] = {"model": arguments.model, "in_leaf": told_leaves(arguments)}
     try:
-        return scene.simulator(**model)
+        with waiting("setting up the tree"):
+            return scene.simulator(**model)
     except TreeError as error:
         light = scene.simulator(**model, gravity=0.0)
         print(f"note: without its own weight, as it cannot stand: {error}", file=sys.stderr)

@@ -18,10 +18,17 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
-from tree_sway_ros.tools.progress import bar
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
-from tree_sway_ros.tools.tree_output import add_output_arguments, output_path
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_output_arguments,
+    add_tree_arguments,
+    add_wind_arguments,
+    opened_scene,
+    output_path,
+    told_leaves,
+)
+from tree_sway_ros.tools.progress import bar, waiting
 
 _STEPS_PER_SECOND = 120.0
 _RUN_IN = 20.0
@@ -32,14 +39,7 @@ _LEAVES = 700
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True, default="benjamina")
-    parser.add_argument("--wind", metavar="FILE", help="a wind record; simulated if left out")
-    parser.add_argument(
-        "--speed",
-        type=float,
-        default=6.0,
-        metavar="U",
-        help="mean of the simulated wind [m/s] (%(default)s)",
-    )
+    add_wind_arguments(parser)
     parser.add_argument(
         "--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)"
     )
@@ -50,13 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--pixels", type=int, default=480, help="height of the picture (%(default)s)"
     )
-    fidelity = next(p for p in NODE_PARAMETERS["solver"] if p.name == "fidelity")
-    parser.add_argument(
-        "--fidelity",
-        choices=fidelity.choices,
-        default=fidelity.default,
-        help="model of the sway (%(default)s)",
-    )
+    add_model_argument(parser)
     add_leaves_argument(parser)
     add_output_arguments(parser, "file to write: .gif, .png, .mp4, or a folder for its frames")
 
@@ -78,7 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         record = read_wind(arguments.wind)
         wind = RecordedWind(record.time, record.velocity)
-    simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.fidelity)
+    with waiting("setting up the tree"):
+        simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
     began = time.monotonic()
     frames, winds = _swayed(simulator, wind, arguments)
     animate_poses(
@@ -110,7 +105,7 @@ def _swayed(
         simulator.step(wind.mean(now, now + dt), dt)
         now += dt
     frames, winds = [], []
-    for _ in range(max(1, round(arguments.seconds * arguments.rate))):
+    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), "swaying"):
         for _ in range(steps):
             blowing = wind.mean(now, now + dt)
             simulator.step(blowing, dt)

@@ -28,9 +28,15 @@ from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.session import Choices, Session
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.tools.leaves_argument import add_leaves_argument, told_leaves
+from tree_sway_ros.tools.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_tree_arguments,
+    add_wind_arguments,
+    opened_scene,
+    told_leaves,
+)
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_scene
 
 _SPACING = 1.2
 """Between the trees of a stand over the greater of height and spread of one."""
@@ -50,23 +56,8 @@ _LABELS = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True, default="benjamina")
-    parser.add_argument("--wind", metavar="FILE", help="a wind record, played over and over")
-    parser.add_argument(
-        "--speed",
-        type=float,
-        default=6.0,
-        metavar="U",
-        help="mean of the simulated wind [m/s] (%(default)s)",
-    )
-    fidelity = _parameter("solver", "fidelity")
-    parser.add_argument(
-        "--model",
-        "--fidelity",
-        dest="fidelity",
-        choices=fidelity.choices,
-        default=fidelity.default,
-        help="model of the sway (%(default)s)",
-    )
+    add_wind_arguments(parser, "a wind record, played over and over; simulated if left out")
+    add_model_argument(parser)
     add_leaves_argument(parser)
     parser.add_argument(
         "--stand", type=int, default=1, metavar="N", help="so many of the tree (%(default)s)"
@@ -85,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"a stand of {arguments.stand}", cure="ask for 1 tree or more")
     wind = _wind(arguments)
     print(f"{arguments.tree}: starting (the first start compiles, up to a minute)", flush=True)
-    choices = Choices(arguments.tree, str(arguments.stand), arguments.fidelity)
+    choices = Choices(arguments.tree, str(arguments.stand), arguments.model)
     session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
     panel = ControlPanel()
     if not arguments.read_only:
@@ -109,15 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def build_scene(choices: Choices, arguments: argparse.Namespace) -> tuple[Any, Any]:
-    """
-    Make simulator and leaves of what was chosen.
-
-    Raises
-    ------
-    TreeSwayError
-        As `open_scene` and `TreeFile.simulator`.
-
-    """
+    """Make simulator and leaves of what was chosen."""
     is_first = choices.tree == arguments.tree
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
     count = int(choices.count)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.scene.simulate import simulate
+from tree_sway_ros.core.scene.simulate import Rig, simulate
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import ParameterError
 
@@ -74,6 +74,16 @@ def test_progress_runs_from_nothing_towards_the_whole(stem):
     assert told[0] == 0.0
     assert told == sorted(told)
     assert 0.9 < told[-1] < 1.0
+
+
+@pytest.mark.parametrize("model", ["branch", "modes", "auto"])
+def test_a_second_wind_finds_the_tree_as_the_first_did(fork, model):
+    wind = np.random.default_rng(3).normal([6.0, 0.0, 0.0], 2.0, (60, 3))
+    alone, rig = simulate(fork(), wind, model=model), Rig(fork(), model=model)
+    rig.run(2.0 * wind)
+    again = rig.run(wind)
+    assert np.array_equal(again.tips, alone.tips)
+    assert np.array_equal(again.base_moment, alone.base_moment)
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,9 @@ def test_content_decides_and_suffix_breaks_ties(tmp_path):
 
 def test_format_by_name():
     assert read_tree(DATA / "segments.csv", format="csv").tree.n_branches == 2
-    with pytest.raises(ParameterError, match="unknown tree format 'dwg'; use archi, mtg, csv"):
+    with pytest.raises(
+        ParameterError, match="unknown tree format 'dwg'; use archi, simpleforest, mtg, csv"
+    ):
         read_tree(DATA / "segments.csv", format="dwg")
     with pytest.raises(FormatError):
         read_tree(DATA / "segments.csv", format="yaml")
@@ -38,7 +40,9 @@ def test_options_are_checked():
 
 def test_unknown_content(tmp_path):
     (tmp_path / "x.bin").write_bytes(b"\x00\x01\x02")
-    with pytest.raises(FormatError, match="no known tree format; give one of archi, mtg"):
+    with pytest.raises(
+        FormatError, match="no known tree format; give one of archi, simpleforest, mtg"
+    ):
         read_trees(tmp_path / "x.bin")
     with pytest.raises(FormatError, match="no such file; check the path"):
         read_trees(tmp_path / "none.csv")

@@ -6,7 +6,7 @@ import pytest
 
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.ros.timing import handshake
-from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
+from tree_sway_ros.ros.timing.handshake import Answers, Audience, Reach, required
 
 
 def test_topics_with_and_without_a_number():
@@ -33,18 +33,62 @@ def test_an_audience_is_there_once_all_have_listened_for_a_while(monkeypatch):
     assert Audience({}, here.__getitem__, said.append).is_there()
 
 
-def test_what_came_back_is_waited_for_no_longer():
-    answers = Answers(patience=30.0)
+def test_what_was_answered_is_waited_for_no_longer():
+    answers = Answers(10, patience=30.0)
     assert answers.wait()
-    answers.sent(5_000_000_000)
-    threading.Timer(0.02, answers.heard, [5_000_000_100]).start()
+    answers.sent(5_000)
+    threading.Timer(0.02, answers.heard, [4_990]).start()
     assert answers.wait()
     assert answers.missing == 0
 
 
-def test_what_never_comes_back_is_waited_for_once():
-    answers = Answers(patience=0.01)
-    answers.sent(5_000_000_000)
-    assert not answers.wait()
+def test_an_answer_may_lag_by_the_slack_and_a_step():
+    answers = Answers(10, patience=0.0)
+    answers.heard(1_000)
+    answers.heard(1_100)
+    answers.sent(1_210)
     assert answers.wait()
-    assert answers.missing == 1
+    answers.sent(1_211)
+    assert not answers.wait()
+
+
+def test_what_is_never_answered_is_waited_for_once_until_something_is_heard():
+    answers = Answers(0, patience=0.01)
+    for time, missing in ((5_000, 1), (6_000, 1)):
+        answers.sent(time)
+        assert not answers.wait()
+        assert answers.missing == missing
+    answers.heard(6_000)
+    assert answers.wait()
+    answers.sent(20_000)
+    assert not answers.wait()
+    assert answers.missing == 2
+
+
+MS = 1_000_000
+
+
+def test_samples_that_go_ahead_are_waited_for():
+    reach, coming = Reach(patience=30.0), [1100, 1150]
+    reach.add(1000 * MS, now=1000 * MS)
+    reach.add(1050 * MS, now=1000 * MS)
+    reach.wait(1140 * MS, lambda: reach.add(coming.pop(0) * MS, now=1200 * MS))
+    assert coming == []
+
+
+def test_samples_that_come_with_the_clock_or_rarely_are_not():
+    for step in (50, 1000):
+        reach, taken = Reach(patience=30.0), []
+        for time in (1000, 1000 + step):
+            reach.add(time * MS, now=(time if step == 50 else 1000) * MS)
+        reach.wait(5000 * MS, lambda: taken.append(1))  # noqa: B023
+        assert taken == [1]
+
+
+def test_a_sample_that_never_comes_is_waited_for_once():
+    reach, taken = Reach(patience=0.01), []
+    for time in (1000, 1050):
+        reach.add(time * MS, now=900 * MS)
+    reach.wait(2000 * MS, lambda: None)
+    reach.wait(2000 * MS, lambda: taken.append(1))
+    assert taken == [1]

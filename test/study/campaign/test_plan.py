@@ -25,14 +25,14 @@ def test_every_tree_meets_every_wind_with_every_setting(study):
         study("""
             trees: [goldcrest, {grow: {species: [oak, birch], height: [6, 8], seeds: 3}}]
             winds: [{speed: [3, 6, 9], seeds: 2}]
-            settings: {fidelity: modes, damping_ratio: [0.02, 0.05]}
+            settings: {model: modes, damping_ratio: [0.02, 0.05]}
             seconds: 5
         """)
     )
     assert len(cases) == (1 + 2 * 2 * 3) * 6 * 2
     assert len({case.name for case in cases}) == len(cases)
     assert cases[0].tree == {"name": "goldcrest"}
-    assert cases[0].settings == {"fidelity": "modes", "damping_ratio": 0.02}
+    assert cases[0].settings == {"model": "modes", "damping_ratio": 0.02}
     assert {case.seconds for case in cases} == {5}
 
 

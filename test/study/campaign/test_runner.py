@@ -13,14 +13,15 @@ import pytest
 
 from tree_sway_ros.errors import FormatError, TreeSwayError
 from tree_sway_ros.study.campaign.plan import Case
-from tree_sway_ros.study.campaign.runner import compute_to_file, result_path, run_study
+from tree_sway_ros.study.campaign.runner import batches, compute_to_file, result_path, run_study
 from tree_sway_ros.study.campaign.table import write_table
+from tree_sway_ros.tools import cli
 
 SEEDLING = Path(__file__).parents[2] / "files" / "data" / "seedling.yaml"
 
 
 def cases(seeds=4, **changes):
-    given = {"settings": {"fidelity": "branch"}, "seconds": 1.0, **changes}
+    given = {"settings": {"model": "branch"}, "seconds": 1.0, **changes}
     tree = {"file": str(SEEDLING)}
     return [Case(tree, {"speed": 4.0, "intensity": 0.2, "seed": k}, **given) for k in range(seeds)]
 
@@ -53,6 +54,16 @@ def test_what_is_finished_is_not_computed_again(alone, tmp_path):
     )
 
 
+def test_a_tree_is_set_up_once_for_many_winds():
+    same, other = cases(8), cases(8, settings={"model": "subtree"})
+    mixed = [case for pair in zip(same, other, strict=True) for case in pair]
+    parts = batches(mixed, workers=1)
+    assert sorted(map(len, parts)) == [4, 4, 4, 4]
+    assert all(len({str(case.settings) for case in part}) == 1 for part in parts)
+    assert sorted(str(case) for part in parts for case in part) == sorted(map(str, mixed))
+    assert max(map(len, batches(same, workers=2))) == 1
+
+
 def workers_of(parent: int) -> list[int]:
     """Processes that a process has spawned to compute."""
     found = []
@@ -83,7 +94,7 @@ def test_a_killed_worker_loses_nothing(alone, tmp_path):
 
 
 def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
-    wrong = cases(1, settings={"fidelity": "best"})
+    wrong = cases(1, settings={"model": "best"})
     with pytest.raises(TreeSwayError, match="unknown model 'best'"):
         run_study([*wrong, *cases(2)], tmp_path, workers=1)
     assert all(result_path(tmp_path, case).is_file() for case in cases(2))
@@ -124,3 +135,18 @@ def test_tables_are_csv_or_parquet(alone, tmp_path):
     assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == alone
     with pytest.raises(FormatError, match=r"end it with \.csv or \.parquet"):
         write_table(alone, tmp_path / "rows.xlsx")
+
+
+def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, capsys):
+    study, table = tmp_path / "study.yaml", tmp_path / "study.csv"
+    study.write_text(
+        f"trees: [{SEEDLING}]\nwinds: [{{speed: 4}}]\nsettings: {{model: branch}}\nseconds: 1\n"
+    )
+    words = ["study", str(study), "-o", str(table), "--workers", "1"]
+    table.write_text("of another kind")
+    assert cli.main(words) == 2
+    assert "is there already; name another file, or write over it" in capsys.readouterr().err
+    assert table.read_text() == "of another kind"
+    assert cli.main([*words, "--force"]) == 0
+    assert cli.main(words) == 0
+    assert len(table.read_text().splitlines()) == 2

@@ -19,7 +19,9 @@ from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.sway_record import SwayRecord
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
+from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -96,33 +98,83 @@ def simulate(
         A tree that cannot stand.
 
     """
-    species = species_named(tree.species) if isinstance(tree, Tree) else tree.species
-    body = tree if isinstance(tree, Tree) else tree.tree
-    means = _step_means(wind, rate, seconds)
-    chosen = _chosen(body, branches)
-    model = replace(settings or Settings(), **changes)
-    simulator = make_simulator(body, species, model)
-    base = BaseMoment(body, species, model)
-    rest = tips_of_poses(body, simulator.place())[chosen]
-    tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
-    poses, every = np.empty((body.n_segments, 7)), max(len(means) // 100, 1)
-    for step, mean in enumerate(means):
-        simulator.step(mean, 1.0 / rate)
-        tips[step] = tips_of_poses(body, simulator.place(poses))[chosen] - rest
-        moment[step] = base.of(simulator.rotations())
-        if progress is not None and step % every == 0:
-            progress(step / len(means))
-    return SwayRecord(
-        body.name,
-        simulator.model,
-        np.arange(1, len(means) + 1) / rate,
-        means,
-        chosen,
-        tuple(body.branch_names[branch] for branch in chosen),
-        tips,
-        moment,
-        base.strain(moment),
-    )
+    rig = Rig(tree, settings, **changes)
+    return rig.run(wind, rate=rate, seconds=seconds, branches=branches, progress=progress)
+
+
+class Rig:
+    """
+    A tree set up once, to be taken through one wind after the other, each from rest.
+
+    Parameters
+    ----------
+    tree, settings, **changes
+        As for `simulate`.
+
+    """
+
+    def __init__(
+        self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
+    ) -> None:
+        """Calibrate the tree, once for the simulator and for what is measured on it."""
+        self.tree = tree if isinstance(tree, Tree) else tree.tree
+        self.species = species_named(tree.species) if isinstance(tree, Tree) else tree.species
+        self.settings = replace(settings or Settings(), **changes)
+        self.calibrated = CalibratedTree(self.tree, self.species, self.settings)
+        self._simulator: TreeSimulator | None = None
+        self.base = BaseMoment(self.calibrated)
+
+    def run(
+        self,
+        wind: WindSamples | ArrayLike,
+        *,
+        rate: float = 60.0,
+        seconds: float | None = None,
+        branches: Sequence[int] | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> SwayRecord:
+        """
+        Let the tree sway in a wind from rest: the same numbers, whatever it went through before.
+
+        Parameters
+        ----------
+        wind, rate, seconds, branches, progress
+            As for `simulate`.
+
+        """
+        means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
+        simulator = self._at_rest()
+        rest = tips_of_poses(self.tree, simulator.place())[chosen]
+        tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
+        poses, every = np.empty((self.tree.n_segments, 7)), max(len(means) // 100, 1)
+        for step, mean in enumerate(means):
+            simulator.step(mean, 1.0 / rate)
+            tips[step] = tips_of_poses(self.tree, simulator.place(poses))[chosen] - rest
+            moment[step] = self.base.of(simulator.rotations())
+            if progress is not None and step % every == 0:
+                progress(step / len(means))
+        return SwayRecord(
+            self.tree.name,
+            simulator.model,
+            np.arange(1, len(means) + 1) / rate,
+            means,
+            chosen,
+            tuple(self.tree.branch_names[branch] for branch in chosen),
+            tips,
+            moment,
+            self.base.strain(moment),
+        )
+
+    def _at_rest(self) -> TreeSimulator:
+        """Return the simulator at rest; one that chooses its model by what it met is made anew."""
+        if self.settings.model not in MODELS:
+            return make_simulator(self.tree, self.species, self.settings)
+        if self._simulator is None:
+            self._simulator = SwaySimulator(
+                self.tree, self.species, self.settings, calibrated=self.calibrated
+            )
+        self._simulator.reset()
+        return self._simulator
 
 
 class BaseMoment:
@@ -133,16 +185,15 @@ class BaseMoment:
 
     Parameters
     ----------
-    tree, species, settings
-        As for the simulator that is asked.
+    calibrated
+        Of the simulator that is asked.
 
     """
 
-    def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
+    def __init__(self, calibrated: CalibratedTree) -> None:
         """Find the moment per unit of each coordinate of the stem."""
-        layer = CalibratedTree(tree, species, settings).layer(
-            settings.model if settings.model in ("branch", "subtree") else "coupled"
-        )
+        tree, species, model = calibrated.tree, calibrated.species, calibrated.settings.model
+        layer = calibrated.layer(model if model in ("branch", "subtree") else "coupled")
         stem = layer.models[0]
         beam = stem.beam
         self._per_unit = np.zeros((len(stem.coordinates), 3))

@@ -4,7 +4,7 @@
 Read a tree from a file of any known format.
 
 The content decides, the suffix breaks ties: files of the field come with the suffix of the day. A
-new format is one module in `formats`, with a `TreeFormat` called ``FORMAT``.
+new format is one module in `formats`, with a `TreeFormat`.
 
 """
 
@@ -26,10 +26,12 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 TREE_FORMATS: tuple[TreeFormat, ...] = tuple(
-    import_module(f"{formats.__name__}.{module.name}").FORMAT
+    each
     for module in pkgutil.iter_modules(formats.__path__)
+    for each in vars(import_module(f"{formats.__name__}.{module.name}")).values()
+    if isinstance(each, TreeFormat)
 )
-"""Every format, by the name of its module."""
+"""Every format, in the order of modules and of what stands in them."""
 
 
 def options_of(known: TreeFormat) -> tuple[str, ...]:

@@ -435,8 +435,8 @@ PLAYER: Table = (
         "wait_for",
         "wind",
         "These topics must have a subscriber, or so many as `topic:number` says. With "
-        "`publish_clock` and `wind/filtered` among them time waits until each sample has come "
-        "back: the replay is exact.",
+        "`publish_clock` and `wind/filtered` among them time waits for the solver: the replay is "
+        "exact.",
     ),
     Parameter("topic", "", "The topic of the wind in a bag; may be empty if it has but one."),
     Parameter("yaw", 0.0, "Angle from east to the x axis of the sensor.", "rad", -6.3, 6.3),

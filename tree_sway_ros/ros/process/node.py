@@ -183,14 +183,21 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             self._alone[made.topic_name] = set()
         return made
 
-    def subscription(self, topic: Topic, callback: Callable[[Any], None], kind: Any = None) -> Any:
-        """Subscription to a topic of the table; `kind` where a parameter chooses the type."""
+    def subscription(
+        self, topic: Topic, callback: Callable[[Any], None], kind: Any = None, *, raw: bool = False
+    ) -> Any:
+        """
+        Subscription to a topic of the table; `kind` where a parameter chooses the type, `raw` for
+        bytes.
+
+        """
         kind = kind or message_class(topic)
         return self.create_subscription(
             kind,
             topic.name,
             callback,
             qos_profile(topic),
+            raw=raw,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
 

@@ -3,8 +3,8 @@
 """
 Who must listen before a record begins, and who must have heard before time goes on.
 
-A replay is exact where every sample has reached the solver before the tick of the clock that the
-solver steps to, and where the first tick finds everybody listening.
+A replay is exact where the first tick of the clock finds everybody listening, where every sample
+has reached the solver before it steps to that time, and where it skips no frame to keep up.
 
 """
 
@@ -16,6 +16,9 @@ from collections.abc import Callable, Mapping
 
 from tree_sway_ros.errors import ParameterError
 
+LONGEST_LEAD = 0.4
+"""A sample goes ahead by no more than this [s]; gates take what is farther ahead for a fault."""
+_POLL = 0.0005
 SETTLING = 0.5
 """From the moment all are seen to the first sample [s]: they must see us as well."""
 
@@ -91,43 +94,82 @@ class Audience:
 
 class Answers:
     """
-    Waits until what was sent has come back.
+    Holds the clock until those who follow it have come as far.
+
+    Parameters
+    ----------
+    slack
+        The clock may be so much ahead of what was heard, and the step between two answers [ns].
+    patience
+        Longest wait in [s]; then time goes on, until something is heard again.
+
+    """
+
+    def __init__(self, slack: int, patience: float = 1.0) -> None:
+        self._slack = slack
+        self._patience = patience
+        self._more = threading.Condition()
+        self._heard = self._step = self._sent = 0
+        self._is_deaf = False
+        self.missing = 0
+
+    def sent(self, time_ns: int) -> None:
+        """Note what must be answered: the time of a sample, or of the clock, in [ns]."""
+        self._sent = time_ns
+
+    def heard(self, time_ns: int) -> None:
+        """Note the time of an answer in [ns]; another thread may call this."""
+        with self._more:
+            self._step = max(0, time_ns - self._heard) if self._heard else 0
+            self._heard = time_ns
+            self._is_deaf = False
+            self._more.notify_all()
+
+    def wait(self) -> bool:
+        """Wait for the answer to what was sent last; return whether it came."""
+        with self._more:
+            came = self._more.wait_for(self._has_come, 0.0 if self._is_deaf else self._patience)
+            self.missing += not (came or self._is_deaf)
+            self._is_deaf = not came
+        return came
+
+    def _has_come(self) -> bool:
+        return self._heard >= self._sent - self._slack - self._step
+
+
+class Reach:
+    """
+    How far samples reach that are sent ahead of the clock, as those of an exact replay are.
 
     Parameters
     ----------
     patience
-        Longest wait in [s]: a sample that is refused on the way never comes back.
+        Longest wait for a sample in [s]: what is refused on the way never comes.
 
     """
 
     def __init__(self, patience: float = 1.0) -> None:
         self._patience = patience
-        self._more = threading.Condition()
-        self._heard = 0
-        self._sent = 0
-        self.missing = 0
+        self._newest = 0
+        self._is_ahead = False
+        self._tick = threading.Event()
 
-    def sent(self, stamp: int) -> None:
-        """Note the stamp of a sample that was sent in [ns]."""
-        self._sent = stamp
+    def add(self, stamp: int, now: int) -> None:
+        """Note a sample's stamp, and the clock when it came, in [ns]."""
+        is_dense = 0 < stamp - self._newest <= LONGEST_LEAD * 1e9
+        self._is_ahead = is_dense and (self._is_ahead or stamp > now)
+        self._newest = stamp
 
-    def heard(self, stamp: int) -> None:
-        """Note the stamp of a sample that came back in [ns]; another thread may call this."""
-        with self._more:
-            self._heard = max(self._heard, stamp)
-            self._more.notify_all()
+    def wait(self, time_ns: int, take: Callable[[], None]) -> None:
+        """Take samples until they reach a time in [ns]; just once where none goes ahead."""
+        end = time.monotonic() + self._patience
+        take()
+        while self._is_ahead and self._newest < time_ns:
+            self._tick.wait(_POLL)
+            take()
+            if time.monotonic() > end:
+                self._is_ahead = False
 
-    def wait(self) -> bool:
-        """Wait for the newest sample that was sent; return whether it came back."""
-        with self._more:
-            came = self._more.wait_for(
-                lambda: self._heard >= self._sent - _ROUNDING, self._patience
-            )
-        if not came:
-            self.missing += 1
-            self._heard = max(self._heard, self._sent)  # waited for once
-        return came
-
-
-_ROUNDING = 2_000
-"""Of a time that was in [s] on its way, in [ns]."""
+    def forget(self) -> None:
+        """Begin anew, at another time."""
+        self._newest, self._is_ahead = 0, False

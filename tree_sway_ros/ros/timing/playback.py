@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.errors import FormatError
+from tree_sway_ros.ros.timing.handshake import LONGEST_LEAD
 
 LONGEST_CLOCK_STEP = 0.25
 """Between two ticks of /clock in the record's time [s]; half of what a node takes for a jump."""
@@ -38,11 +39,14 @@ class Event(NamedTuple):
         Since the playback began, in the record's time [s].
     row
         Of the record; -1 for a tick of /clock.
+    due
+        When to publish it, on the same scale; before its time where samples go ahead.
 
     """
 
     time: float
     row: int
+    due: float
 
 
 def is_ros_time(epoch: float | None, time: NDArray[np.float64]) -> bool:
@@ -78,6 +82,9 @@ class Playback:
         Whether it starts again at its end.
     clock_period
         From one tick of /clock to the next, in the record's time [s]; 0 for none.
+    ahead
+        Whether each sample goes out with the time of the one before: who has heard one later than
+        the clock knows that none is missing.
 
     Raises
     ------
@@ -94,6 +101,7 @@ class Playback:
         start: float = 0.0,
         loop: bool = False,
         clock_period: float = 0.0,
+        ahead: bool = False,
     ) -> None:
         self._first_row = int(np.searchsorted(time, time[0] + start)) if len(time) else 0
         self._time = time[self._first_row :]
@@ -104,6 +112,7 @@ class Playback:
         self._clock_period = clock_period
         steps = np.diff(self._time)
         self.round = float(self._time[-1] - self._time[0] + (np.median(steps) if len(steps) else 1))
+        self.goes_ahead = ahead
 
     @property
     def has_clock(self) -> bool:
@@ -127,17 +136,21 @@ class Playback:
         """
         if not self.has_clock:
             return self._samples()
-        return heapq.merge(self._samples(), self._ticks(), key=lambda event: event.time)
+        return heapq.merge(self._samples(), self._ticks(), key=lambda event: event.due)
 
     def _samples(self) -> Iterator[Event]:
-        relative = (self._time - self._time[0]).tolist()
+        relative, before = (self._time - self._time[0]).tolist(), 0.0
         for turn in itertools.count() if self._loop else range(1):
-            for row, time in enumerate(relative, start=self._first_row):
-                yield Event(turn * self.round + time, row)
+            for row, since in enumerate(relative, start=self._first_row):
+                time = turn * self.round + since
+                yield Event(
+                    time, row, max(before, time - LONGEST_LEAD) if self.goes_ahead else time
+                )
+                before = time
 
     def _ticks(self) -> Iterator[Event]:
         for tick in itertools.count():
             time = tick * self._clock_period
             if not self._loop and time > self.round:
                 return
-            yield Event(time, -1)
+            yield Event(time, -1, time)

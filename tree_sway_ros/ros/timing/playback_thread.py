@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable
 
+from tree_sway_ros.ros.timing.handshake import SETTLING
 from tree_sway_ros.ros.timing.playback import Playback
 
 _LATEST = 0.5
@@ -91,11 +92,14 @@ class PlaybackThread:
 
     def _play(self) -> None:
         has_clock = self._playback.has_clock
-        begin = time.monotonic()
+        # What goes ahead of all time is given a while to arrive.
+        begin = time.monotonic() + (SETTLING if self._playback.goes_ahead else 0.0)
         wall = time.time_ns()
         for event in self._playback.events():
-            due = event.time / self._speed
+            due = event.due / self._speed
             wait = begin + due - time.monotonic()
+            if event.row >= 0 and due == 0.0:
+                wait = 0.0
             if wait > 0.0 and self._stopping.wait(wait):
                 return
             if wait < -_LATEST:

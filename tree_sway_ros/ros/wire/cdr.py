@@ -89,6 +89,12 @@ def mark_stamp(stamp: Any, number: int = 0) -> None:
     stamp.sec = _STAMP + number
 
 
+def stamp_of(data: bytes) -> int:
+    """Stamp of a serialised message that begins with a header, in [ns]."""
+    second, nanosecond = struct.unpack_from("<iI", data, 4)
+    return int(second * 1_000_000_000 + nanosecond)
+
+
 def block_mark(number: int = 0) -> float:
     """The value to put into the first field of the float64 block of that number."""
     return float(_NUMBER + number)

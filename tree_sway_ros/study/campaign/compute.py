@@ -4,18 +4,16 @@
 
 from __future__ import annotations
 
+import json
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.reference.measure import frame_means
-from tree_sway_ros.core.scene.simulate import GrownTree, simulate
+from tree_sway_ros.core.scene.simulate import Rig
 from tree_sway_ros.core.scene.sway_record import SwayRecord
-from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import FormatError
@@ -46,21 +44,17 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
         A tree, a wind or a setting that cannot be.
 
     """
-    tree = _tree(tuple(sorted(case.tree.items())))
-    settings = dict(case.settings)
-    model = settings.pop("fidelity", "auto")
-    record = simulate(
-        tree, _wind(case), rate=case.rate, seconds=case.seconds, model=model, **settings
-    )
-    layer = CalibratedTree(tree.tree, tree.species, Settings(**settings))
+    rig, frequency = _rig(json.dumps([case.tree, case.settings, case.digest], sort_keys=True))
+    tree = rig.tree
+    record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
     row: Plain = {**_told("tree", case.tree), **_told("wind", case.wind), **case.settings}
     row |= {
         "seconds": case.seconds,
-        "branches": tree.tree.n_branches,
-        "segments": tree.tree.n_segments,
-        "height": tree.tree.height,
+        "branches": tree.n_branches,
+        "segments": tree.n_segments,
+        "height": tree.height,
         "model": record.model,
-        "frequency": float(layer.bank("modes").frequencies[0]),
+        "frequency": frequency,
         "wind_mean": float(np.linalg.norm(record.wind.mean(axis=0))),
         "wind_largest": float(np.linalg.norm(record.wind, axis=1).max()),
     }
@@ -69,9 +63,15 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     return row, record
 
 
-@lru_cache(maxsize=8)
-def _tree(items: tuple[tuple[str, Any], ...]) -> GrownTree:
-    asked = dict(items)
+@lru_cache(maxsize=2)
+def _rig(asked: str) -> tuple[Rig, float]:
+    """Tree and settings set up, as what comes next is often the same; its frequency in [Hz]."""
+    tree, settings, _ = json.loads(asked)
+    rig = Rig(_tree(tree), **{"model": "auto", **settings})
+    return rig, float(rig.calibrated.bank("modes").frequencies[0])
+
+
+def _tree(asked: Plain) -> TreeFile:
     if "species" in asked:
         species = species_named(asked["species"])
         rng = np.random.default_rng(asked["seed"])

@@ -11,6 +11,7 @@ reads, and the source of the simulator.
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import itertools
 import json
@@ -28,8 +29,8 @@ from tree_sway_ros.files.yaml_document import read_yaml
 
 Plain = dict[str, Any]
 
-_OWN_FIELDS = ("leaf_mass", "leaf_area", "profile", "model")
-"""Settings that a study does not vary: arrays, and what ``fidelity`` says."""
+_ARRAYS = {"leaf_mass", "leaf_area", "profile"}
+"""Settings that a study does not vary."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Case:
     wind
         ``{"file": path, "scale"}`` or ``{"speed", "intensity", "seed"}``.
     settings
-        Fields of `Settings`, and ``fidelity``.
+        Fields of `Settings`.
     seconds, rate
         Length in [s] and steps per second [Hz].
     series
@@ -147,13 +148,16 @@ def _winds(entries: list[Plain], folder: Path) -> list[Plain]:
 
 
 def _settings(varied: Plain, path: Path) -> list[Plain]:
-    known = {field.name for field in fields(Settings)} - set(_OWN_FIELDS) | {"fidelity"}
+    known = {field.name for field in fields(Settings)} - _ARRAYS
     unknown = sorted(set(varied) - known)
     if unknown:
+        near = difflib.get_close_matches(unknown[0], known, n=1)
         raise ParameterError(
             f"no setting is called '{unknown[0]}'",
             where=f"{path}: settings",
-            cure="use one of: " + ", ".join(sorted(known)),
+            cure=f"did you mean '{near[0]}'?"
+            if near
+            else f"use one of: {', '.join(sorted(known))}",
         )
     return list(_products(varied))
 

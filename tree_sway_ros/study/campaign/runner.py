@@ -14,7 +14,7 @@ import json
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
@@ -101,23 +101,55 @@ def compute_to_file(case: Case, folder: Path) -> None:
     write_text_whole(result_path(folder, case), json.dumps(row))
 
 
+def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]:
+    """Compute cases one after the other; of each what is wrong with it, or None."""
+    outcomes: list[TreeSwayError | None] = []
+    for case in cases:
+        try:
+            compute_to_file(case, folder)
+            outcomes.append(None)
+        except TreeSwayError as error:
+            where = f"tree {case.tree}, wind {case.wind}"
+            outcomes.append(TreeSwayError(str(error), where=where))
+    return outcomes
+
+
+def batches(cases: list[Case], workers: int) -> list[list[Case]]:
+    """
+    Cases of one tree with one set of settings together.
+
+    Its set-up costs more than a minute of wind does. A tree in many winds is given out in parts, so
+    that no worker is left without work.
+
+    """
+    most = -(-len(cases) // (4 * workers))
+    found: dict[str, list[list[Case]]] = {}
+    for case in cases:
+        parts = found.setdefault(json.dumps([case.tree, case.settings], sort_keys=True), [[]])
+        if len(parts[-1]) == most:
+            parts.append([])
+        parts[-1].append(case)
+    return [part for parts in found.values() for part in parts]
+
+
 def _on_cores(
     cases: list[Case], folder: Path, workers: int | None
 ) -> Iterator[TreeSwayError | None]:
     """Outcome of each case as it is finished: None, or what is wrong with it."""
-    attempts = 0
+    attempts, workers = 0, workers or os.cpu_count() or 1
     while cases:
         before = len(cases)
         # One thread per process: the same numbers, and no threads that wait for each other.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers or os.cpu_count(), mp_context=context) as pool:
-            futures = {pool.submit(compute_to_file, case, folder): case for case in cases}
+        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            parts = batches(cases, workers)
+            futures = {pool.submit(compute_batch, part, folder): part for part in parts}
             try:
                 for future in as_completed(futures):
-                    outcome = _outcome(future, futures[future])
-                    cases = [case for case in cases if case is not futures[future]]
-                    yield outcome
+                    outcomes = future.result()
+                    cases = [case for case in cases if case not in futures[future]]
+                    yield from outcomes
             except BrokenProcessPool:
                 kept = [case for case in cases if result_path(folder, case).is_file()]
                 cases = [case for case in cases if case not in kept]
@@ -129,14 +161,6 @@ def _on_cores(
                 where=f"{len(cases)} cases left",
                 cure="look for what kills them (memory?), use fewer --workers, and run it again",
             )
-
-
-def _outcome(future: Future[None], case: Case) -> TreeSwayError | None:
-    try:
-        future.result()
-    except TreeSwayError as error:
-        return TreeSwayError(str(error), where=f"tree {case.tree}, wind {case.wind}")
-    return None
 
 
 def _on_cluster(cases: list[Case], folder: Path, scheduler: str) -> Iterator[TreeSwayError | None]:
@@ -154,10 +178,10 @@ def _on_cluster(cases: list[Case], folder: Path, scheduler: str) -> Iterator[Tre
             f"no scheduler answers ({error})", where=scheduler, cure="start dask scheduler"
         ) from None
     with client:
-        place = folder.resolve()
-        futures = {
-            client.submit(compute_to_file, case, place, key=case.name, retries=ATTEMPTS): case
-            for case in cases
-        }
-        for future in distributed.as_completed(list(futures)):
-            yield _outcome(future, futures[future])
+        place, workers = folder.resolve(), max(len(client.scheduler_info()["workers"]), 1)
+        futures = [
+            client.submit(compute_batch, part, place, key=part[0].name, retries=ATTEMPTS)
+            for part in batches(cases, workers)
+        ]
+        for future in distributed.as_completed(futures):
+            yield from future.result()

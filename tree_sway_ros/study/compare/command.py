@@ -13,7 +13,7 @@ from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.study.chart.fidelity import simulated_wind
 from tree_sway_ros.study.compare.mujoco_tree import take_warnings
 from tree_sway_ros.study.compare.with_mujoco import FRAME, compare_with_mujoco
-from tree_sway_ros.tools.tree_argument import add_tree_arguments, opened_tree
+from tree_sway_ros.tools.arguments import add_tree_arguments, opened_tree
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -9,7 +9,7 @@ import pytest
 from scipy.io import savemat
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError, TreeError, TreeSwayError
-from tree_sway_ros.files.trees.formats.treeqsm_text import read_treeqsm_text
+from tree_sway_ros.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[2] / "data"

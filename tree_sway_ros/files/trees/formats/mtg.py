@@ -1,7 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Digitised trees in MTG files (FORM-A), with the position and diameter of each vertex.
+Digitised trees in MTG files in the code FORM-A (Godin & Caraglio 1998).
+
+Each line of the section MTG holds a vertex, in the column that is its depth, and the values of its
+features. ``/`` decomposes, ``<`` goes on, ``+`` branches; with ``^`` before, it does so from the
+vertex above in its own column, else from the latest in the column before.
 
 Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its
 diameter there in millimetres, as AMAPmod's digitising has them; ``length_unit`` and
@@ -13,51 +17,54 @@ finest scales.
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.text_file import read_lines
+from tree_sway_ros.errors import FormatError, ParameterError, TreeError
+from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.skeletons.mtg_graph import MtgVertex, parse_mtg
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _POSITION = ("XX", "YY", "ZZ")
 _DIAMETER = "TopDia"
+_CODE = re.compile(r"([/<+])([A-Za-z]\w*)(?=[/<+]|$)", re.ASCII)
 
 
-def looks_like_mtg(head: str) -> bool:
+@dataclass(slots=True)
+class _Vertex:
+    """
+    A vertex of the graph: the vertex it is a part of and the one it sits on, -1 for none.
+
+    It is on scale 1 for the plant, more for its parts; ``edge`` ties it to the vertex that it was
+    written after.
+
+    """
+
+    label: str
+    scale: int
+    edge: str
+    complex: int
+    parent: int
+    features: dict[str, float] = field(default_factory=dict)
+
+
+def _is_mtg(head: str) -> bool:
     """Whether the beginning of a file is that of an MTG file."""
     return any(line.startswith("CODE") and "FORM-" in line for line in head.splitlines())
 
 
-def read_mtg(
+def _read(
     path: Path, length_unit: float = 0.01, diameter_unit: float = 0.001
 ) -> tuple[Cylinders, ...]:
-    """
-    Read a digitised tree.
-
-    Parameters
-    ----------
-    path
-        The file.
-    length_unit, diameter_unit
-        Unit of its positions and of its diameters in [m].
-
-    Raises
-    ------
-    FormatError
-        No FORM-A, or no vertices with position and diameter.
-    TreeError
-        A vertex that sits on nothing.
-
-    """
+    """Segments of a digitised tree; the units of positions and of diameters are in [m]."""
     for unit in (length_unit, diameter_unit):
         if not 0.0 < unit < 1e6:
             raise ParameterError(f"a unit is {unit:g} m", cure="give more than 0")
     source = str(path)
-    vertices = parse_mtg(read_lines(path), source)
+    vertices = _parse(read_lines(path), source)
     placed = [all(name in vertex.features for name in _POSITION) for vertex in vertices]
     scale_of_segments = _scale_of_segments(vertices, placed)
     start, end, diameter = list[list[float]](), list[list[float]](), list[list[float]]()
@@ -99,16 +106,14 @@ def read_mtg(
     return (cylinders,)
 
 
-def _scale_of_segments(vertices: list[MtgVertex], placed: list[bool]) -> int:
+def _scale_of_segments(vertices: list[_Vertex], placed: list[bool]) -> int:
     """Return the finest scale that has positions."""
     return max(
         (v.scale for v, is_placed in zip(vertices, placed, strict=True) if is_placed), default=0
     )
 
 
-def _before(
-    vertices: list[MtgVertex], vertex: MtgVertex, placed: list[bool], place: list[int]
-) -> int:
+def _before(vertices: list[_Vertex], vertex: _Vertex, placed: list[bool], place: list[int]) -> int:
     """
     Vertex at whose position another one begins, -1 if there is none.
 
@@ -123,4 +128,89 @@ def _before(
     return place[vertex.parent] if vertex.parent >= 0 else -1
 
 
-FORMAT = TreeFormat("mtg", (".mtg",), looks_like_mtg, read_mtg)
+def _parse(lines: list[str], source: str) -> list[_Vertex]:
+    """Parse the vertices of an MTG file."""
+    scales = _scales(lines, source)
+    begin = next((i for i, line in enumerate(lines) if line.startswith("ENTITY-CODE")), None)
+    if begin is None:
+        raise FormatError("no line ENTITY-CODE", where=source, cure="save it as FORM-A")
+    header = [cell.strip() for cell in lines[begin].split("\t")]
+    first = next((i for i, cell in enumerate(header) if i and cell), len(header))
+    vertices: list[_Vertex] = []
+    latest: list[int] = []
+    for number, line in enumerate(lines[begin + 1 :], start=begin + 2):
+        cells = line.rstrip().split("\t")
+        if not line.strip():
+            continue
+        where = f"{source}:{number}"
+        column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
+        if column is None:
+            raise FormatError(f"no code in the first {first} columns", where=where)
+        code = cells[column].strip()
+        goes_on = code.startswith("^")
+        if column - (not goes_on) >= len(latest):
+            raise TreeError(f"'{code[:20]}' sits on nothing", where=where, cure="check its column")
+        reference = latest[column] if goes_on else (latest[column - 1] if column else -1)
+        reference = _add(vertices, code.removeprefix("^"), reference, scales, where)
+        del latest[column:]
+        latest.append(reference)
+        for name, cell in zip(header[first:], cells[first:], strict=False):
+            value = finite(cell)
+            if value is not None:
+                vertices[reference].features[name] = value
+    if not vertices:
+        raise FormatError("no vertices", where=source)
+    return vertices
+
+
+def _scales(lines: list[str], source: str) -> dict[str, int]:
+    """Scale of each class, from the section CLASSES."""
+    code = next((line.partition(":")[2].strip() for line in lines if line.startswith("CODE")), "")
+    if not code.startswith("FORM-A"):
+        raise FormatError(f"the code is '{code[:20]}', not FORM-A", where=source)
+    begin = next((i for i, line in enumerate(lines) if line.startswith("SYMBOL")), len(lines))
+    scales = {}
+    for line in lines[begin + 1 :]:
+        cells = line.split()
+        if len(cells) < 2 or finite(cells[1]) is None:
+            break
+        scales[cells[0]] = int(finite(cells[1]) or 0)
+    if not scales:
+        raise FormatError("no CLASSES with SYMBOL and SCALE", where=source)
+    return scales
+
+
+def _add(
+    vertices: list[_Vertex], code: str, reference: int, scales: dict[str, int], where: str
+) -> int:
+    """Add the vertices of a code, such as ``/P1/A1``, and return the last one."""
+    parts = list(_CODE.finditer(code))
+    if not parts or "".join(part[0] for part in parts) != code:
+        raise FormatError(
+            f"'{code[:20]}' is not a code", where=where, cure="such as /P1, <S2 or +A1"
+        )
+    for edge, name in (part.groups() for part in parts):
+        symbol = name.rstrip("0123456789")
+        if symbol not in scales:
+            raise FormatError(f"no class '{symbol}'", where=where, cure="list it under CLASSES")
+        scale, above = scales[symbol], vertices[reference].scale if reference >= 0 else 0
+        label = f"{where}: {name}"
+        if edge == "/":
+            if scale != above + 1:
+                raise TreeError(f"scale {scale} in scale {above}", where=label)
+            # The first part of a branch sits where its branch sits.
+            on = vertices[reference].parent if reference >= 0 else -1
+            vertex = _Vertex(label, scale, edge, reference, on)
+        else:
+            whole = reference
+            while whole >= 0 and vertices[whole].scale > scale:
+                whole = vertices[whole].complex
+            if whole < 0 or vertices[whole].scale != scale:
+                raise TreeError(f"'{edge}' has nothing of scale {scale} before it", where=label)
+            vertex = _Vertex(label, scale, edge, vertices[whole].complex, reference)
+        vertices.append(vertex)
+        reference = len(vertices) - 1
+    return reference
+
+
+FORMAT = TreeFormat("mtg", (".mtg",), _is_mtg, _read)

@@ -24,8 +24,8 @@ from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process import topics
+from tree_sway_ros.study.pages.rooms import rooms_drawing
 from tree_sway_ros.tools import cli
-from tree_sway_ros.tools.rooms import rooms_drawing
 
 PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
 """Pages with tables."""

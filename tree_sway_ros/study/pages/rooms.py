@@ -14,7 +14,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-PACKAGE = Path(__file__).resolve().parents[1]
+PACKAGE = Path(__file__).resolve().parents[2]
 _NAME = PACKAGE.name
 
 _WIDTH, _ROW, _BOX, _HEIGHT, _MARGIN = 1180, 78, 30, 14, 26

@@ -11,10 +11,16 @@ import pytest
 from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.study.pages.command import (
+    DRAWINGS,
+    PAGES,
+    markdown_tables,
+    species_table,
+    with_tables,
+)
 from tree_sway_ros.tools import cli
-from tree_sway_ros.tools.docs import DRAWINGS, PAGES, markdown_tables, species_table, with_tables
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 MARK = "before\n<!-- table: {} -->\nSTALE\n<!-- end -->\nafter\n"
 
 

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tree_sway_ros.tools.rooms import room_imports, rooms_drawing, storeys, without_shortcuts
+from tree_sway_ros.study.pages.rooms import room_imports, rooms_drawing, storeys, without_shortcuts
 
 HOUSE = {"top": {"middle", "cellar"}, "middle": {"cellar"}, "cellar": set(), "shed": {"cellar"}}
 

@@ -1,0 +1,44 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind at which a stem would break: base strain against mean speed, up to what green wood bears.
+
+    python examples/critical_wind_speed.py [TREE]
+
+The largest strain of a minute is fitted by ``a U^b`` over several speeds; it crosses the strain of
+rupture, modulus of rupture over Young's modulus, at the critical speed. This is the stem's own
+strength: what holds the roots is not in the model.
+
+"""
+
+import sys
+
+import numpy as np
+
+from tree_sway_ros import open_tree, simulate, simulate_turbulence
+
+RATE = 30.0
+SPEEDS = (4.0, 6.0, 9.0, 13.0, 18.0)
+RUPTURE = 40e6
+"""Modulus of rupture of green wood [Pa]: 30 to 65 MPa in the tables of ForestGALES."""
+
+
+def main(name: str = "goldcrest") -> None:
+    """Print the largest strain at each speed, and the critical speed."""
+    tree = open_tree(name)
+    limit = RUPTURE / tree.species.modulus
+    largest = []
+    for speed in SPEEDS:
+        rng = np.random.default_rng(2)
+        wind = simulate_turbulence(speed, rate=RATE, duration=60.0, rng=rng)
+        record = simulate(tree, wind, rate=RATE)
+        largest.append(np.linalg.norm(record.base_strain, axis=1).max())
+        print(f"{speed:5.1f} m/s   largest strain {1e3 * largest[-1]:6.3f} permille")
+    power, at_one = np.polyfit(np.log(SPEEDS), np.log(largest), 1)
+    critical = np.exp((np.log(limit) - at_one) / power)
+    print(f"strain grows with the wind to the power {power:.2f}; {1e3 * limit:.1f} permille, where "
+          f"green wood breaks, would be reached at a mean of {critical:.0f} m/s")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

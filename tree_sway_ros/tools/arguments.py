@@ -1,0 +1,241 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments that commands share: TREE and its wood, its leaves, the wind, the model, the output."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import itertools
+from pathlib import Path
+from typing import Any
+
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.simulator.season import LEAVES
+from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
+from tree_sway_ros.core.tree.species import Species, species_keys
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.export.tree_export import write_tree
+from tree_sway_ros.files.trees.imported_tree import TreeFile
+from tree_sway_ros.files.trees.source import open_scene, open_tree
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.tools.progress import waiting
+
+OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
+_TREE = "benjamina, goldcrest, broadleaf, or a file"
+_DRAWN = 1500
+
+
+def add_tree_arguments(
+    parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
+) -> None:
+    """
+    Add TREE and what can be said of its wood.
+
+    Parameters
+    ----------
+    parser
+        Of the command.
+    forests
+        TREE may be a forest.
+    default
+        TREE where it is left out; it may not be if None.
+
+    """
+    kind = f"{_TREE}{' of a tree or a forest' * forests}"
+    if default is None:
+        parser.add_argument("tree", metavar="TREE", help=kind)
+    else:
+        parser.add_argument(
+            "tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)"
+        )
+    parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
+    parser.add_argument(
+        "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"
+    )
+    parser.add_argument(
+        "--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]"
+    )
+    parser.add_argument("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
+    parser.add_argument(
+        "--option",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="how to read its file, for example twig_diameter=0.004; may be repeated "
+        "(doc/trees.md)",
+    )
+
+
+def opened_tree(arguments: argparse.Namespace) -> TreeFile:
+    """
+    Open the tree that the arguments name, with the wood they give it.
+
+    Raises
+    ------
+    TreeSwayError
+        No such tree or species, a file that cannot be read, a modulus or density that is not
+        positive.
+
+    """
+    with waiting(f"opening {arguments.tree}"):
+        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
+    return _of_wood(opened, arguments)
+
+
+def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
+    """
+    Open the tree or the forest that the arguments name, with the wood they give it.
+
+    Raises
+    ------
+    TreeSwayError
+        As `opened_tree`; values for one tree where there are several.
+
+    """
+    with waiting(f"opening {arguments.tree}"):
+        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
+    if isinstance(scene, TreeFile):
+        return _of_wood(scene, arguments)
+    if _wood(arguments):
+        raise ParameterError(
+            "modulus or density for a whole forest",
+            where=scene.source,
+            cure="say --species, or give trees files with wood of their own",
+        )
+    if not arguments.species:
+        return scene
+    return scene.of_species(open_species(arguments.species)).checked()
+
+
+def _of_wood(tree_file: TreeFile, arguments: argparse.Namespace) -> TreeFile:
+    species = open_species(arguments.species) if arguments.species else tree_file.species
+    return tree_file.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
+
+
+def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Values in place of those of the species."""
+    given = {name: getattr(arguments, name) for name in ("modulus", "density")}
+    changed = {name: value for name, value in given.items() if value is not None}
+    for name, value in changed.items():
+        if not 0.0 < value < float("inf"):
+            raise ParameterError(
+                f"{value:g} is not positive", where=f"--{name}", cure="give an SI value"
+            )
+    return changed
+
+
+def _options(given: list[str]) -> dict[str, Any]:
+    """Options of the reader: numbers and truths as such, all else as text."""
+    options: dict[str, Any] = {}
+    for each in given:
+        name, equals, text = each.partition("=")
+        if not (name and equals and text):
+            raise ParameterError(f"'{each}'", where="--option", cure="write NAME=VALUE")
+        options[name.strip().replace("-", "_")] = _value(text.strip())
+    return options
+
+
+def _value(text: str) -> Any:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def add_leaves_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the choice of leaves; ``--leaves`` alone is on."""
+    parser.add_argument(
+        "--leaves",
+        nargs="?",
+        choices=tuple(LEAVES),
+        const="on",
+        default="auto",
+        help="in leaf; auto is in leaf where the species is evergreen; of a forest, those trees of "
+        "which its file does not say (%(default)s)",
+    )
+
+
+def told_leaves(arguments: argparse.Namespace) -> bool | None:
+    """Whether trees bear leaves; None leaves it to their species."""
+    return LEAVES[arguments.leaves]
+
+
+def drawn_leaves(
+    scene: TreeFile | ForestFile, arguments: argparse.Namespace
+) -> LeafClusters | None:
+    """Clusters to draw, the same in every picture of a tree; None if there are none."""
+    return scene.leaves(told_leaves(arguments), _DRAWN)
+
+
+def add_wind_arguments(parser: argparse.ArgumentParser, record: str = "") -> None:
+    """Add the record of a wind, and the speed of a simulated one; `record` is the first's help."""
+    told = record or "a wind record; simulated if left out"
+    parser.add_argument("--wind", metavar="FILE", help=told)
+    told = "mean of the simulated wind [m/s] (%(default)s)"
+    parser.add_argument("--speed", type=float, default=6.0, metavar="U", help=told)
+
+
+def add_model_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the model of the sway, of all that there are."""
+    parser.add_argument(
+        "--model",
+        "--fidelity",
+        dest="model",
+        choices=FIDELITIES,
+        default=Settings().model,
+        help="model of the sway (%(default)s)",
+    )
+
+
+def add_output_arguments(
+    parser: argparse.ArgumentParser, what: str, *, required: bool = True
+) -> None:
+    """Add ``--output`` and ``--force``; `what` is the help of the first."""
+    parser.add_argument("-o", "--output", required=required, metavar="FILE", help=what)
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
+
+
+def output_path(arguments: argparse.Namespace, default: str = "") -> str:
+    """
+    File to write: the one asked for, or the first of the default's names that is free.
+
+    Raises
+    ------
+    ParameterError
+        If the file asked for is there already and ``--force`` is not given.
+
+    """
+    if arguments.output is not None:
+        if not arguments.force:
+            refuse_overwriting(arguments.output, "--output")
+        return str(arguments.output)
+    path = Path(default)
+    names = (path.with_stem(f"{path.stem}_{n}") for n in itertools.count(2))
+    return str(next(name for name in itertools.chain([path], names) if not name.exists()))
+
+
+def refuse_overwriting(path: str | Path, option: str) -> None:
+    """Raise a `ParameterError` if a file that an option names is there already."""
+    if Path(path).is_file():
+        raise ParameterError(
+            f"'{path}' is there already",
+            where=option,
+            cure="name another file, or write over it with --force",
+        )
+
+
+def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
+    """Write a tree and say what was written."""
+    write_tree(path, tree, species)
+    print(what_was_written(path, tree))
+
+
+def what_was_written(path: str, tree: Tree) -> str:
+    """Return a line about a tree in a file."""
+    size = f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
+    return f"{path}: {tree.name}, {size}"
