@@ -16,6 +16,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.intake import WindIntake
+from tree_sway_ros.files.stands.shard import dealt
 from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -83,7 +84,8 @@ class SolverNode(TreeSwayNode):
         source = open_scene(self.values["tree"])
         if self.values["species"]:
             source = source.of_species(open_species(self.values["species"])).checked()
-        return placed_scene(source, **self.values("x", "y", "z", "yaw"))
+        placed = placed_scene(source, **self.values("x", "y", "z", "yaw"))
+        return dealt(placed, **self.values("shard", "shards"))
 
     def _make(self, source: Any) -> None:
         settings = Settings(

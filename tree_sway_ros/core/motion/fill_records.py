@@ -27,6 +27,7 @@ from tree_sway_ros.core.motion.records import (
     head_layout,
     load_layout,
     segment_layout,
+    zeros_in_lines,
 )
 from tree_sway_ros.core.reduction.matrices import Reduction
 from tree_sway_ros.core.rotation import rotated
@@ -48,7 +49,7 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     """
     block, lane, n_records = lanes(tree, models)
     is_plain = all(len(model.coordinates) == 2 for model in models)
-    records = np.zeros(n_records, dtype=segment_layout(1) if is_plain else segment_layout())
+    records = zeros_in_lines(n_records, segment_layout(1) if is_plain else segment_layout())
     records["rest"][:, 0] = 1.0
     rest = tree.rest_frame
     for branch, model in enumerate(models):
@@ -77,13 +78,14 @@ def head_records(branches: Any, segments: Any) -> Any:
     """
     first, block = np.unique(branches["block"], return_inverse=True)
     lane, parent = branches["lane"], branches["parent"]
-    heads = np.zeros(len(first) + 1, dtype=head_layout(segments["slope"].shape[1]))
+    heads = zeros_in_lines(len(first) + 1, head_layout(segments["slope"].shape[1]))
     heads["block"] = [*first, len(segments)]
     heads["n_records"][:-1] = np.diff(heads["block"])
     heads["n_lanes"][:-1] = segments["n_lanes"][first]
     heads["is_plain"] = 1
     heads["is_plain"][block[branches["n_coordinates"] > 2]] = 0
     heads["branch"][block, lane] = np.arange(len(branches))
+    heads["is_joined"][:-1] = np.logical_and.reduceat(_joined(segments), first)
     heads["is_parent_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
     for name in ("parent", "coordinate", "base_segment", "first"):
         heads[name][block, lane] = branches[name]
@@ -92,6 +94,18 @@ def head_records(branches: Any, segments: Any) -> Any:
     for name in ("steepest", "base_slope"):
         heads[name][block, lane] = branches[name][:, 0]
     return heads
+
+
+_AS_ONE = 1e-12
+"""Share of a chord by which a segment may miss it and still reach from its start to its end."""
+
+
+def _joined(segments: Any) -> Any:
+    """Tell chords in each segment's own frame, and of which records they run along its x axis."""
+    w, x, y, z = np.moveaxis(segments["rest"], 1, 0)
+    reach = rotated.py_func(w, -x, -y, -z, *np.moveaxis(segments["chord"], 1, 0))  # type: ignore[attr-defined]
+    segments["reach"] = np.stack(reach, axis=1)
+    return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
 
 
 def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
@@ -412,7 +426,7 @@ def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
     """
     if layout is None:
         layout = load_layout(branches.dtype["push"].shape[0])
-    records = np.zeros(-(-len(branches) // LANES), dtype=layout)
+    records = zeros_in_lines(-(-len(branches) // LANES), layout)
     block, lane = np.divmod(np.arange(len(branches)), LANES)
     for name in ("speed", "area", "projector", "centre"):
         records[name][block, ..., lane] = branches[name]

@@ -63,34 +63,38 @@ def place(
         Pose block to write, (n, 7).
 
     """
-    last = len(heads) - 1
-    place_blocks(branches, segments, heads, work, heads, x, origin, out, last, 0, last)
+    place_standing_at(
+        branches, segments, heads, work, x, origin[0], origin[1], origin[2], 1.0, 0.0, 1.0, out
+    )
 
 
 @fused
-def place_blocks(
-    branches: Any, segments: Any, heads: Any, work: Any, scratches: Any, x: Floats, origin: Floats,
-    out: Floats, mine: int, first: int, end: int,
+def place_standing_at(
+    branches: Any, segments: Any, heads: Any, work: Any, x: Floats,
+    east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
-    Place the segments of some blocks, whose parents stand.
+    Place every segment of a tree that is turned and scaled.
 
     Parameters
     ----------
-    branches, segments, heads, work, x, origin, out
+    branches, segments, heads, work, x, out
         As for `place`.
-    scratches, mine
-        Records of `head_layout`, and which of them to work in.
-    first, end
-        First block and one past the last.
+    east, north, up
+        Root node.
+    cosine, sine
+        Of half the angle that the tree is turned by about the vertical.
+    scale
+        Its size over that of its records.
 
     """
-    scratch = scratches[mine]
+    last = len(heads) - 1
+    scratch = heads[last]
     at, pose = scratch.at, scratch.pose
-    for block in range(first, end):
+    for block in range(last):
         head = heads[block]
-        _read_parents(branches, head, scratch, work, x, origin, out)
-        _turn_bases(head, scratch)
+        _read_parents(branches, head, scratch, work, x, east, north, up, cosine, sine, out)
+        _turn_bases(head, scratch, scale)
         is_far = _write_bases(head, scratch, work)
         if not head.is_plain:
             is_far = _set_further_turns(branches, head, scratch, x) or is_far
@@ -102,11 +106,15 @@ def place_blocks(
                 _bend_in_plane(segment, scratch)
             else:
                 _bend(segment, scratch)
+            if head.is_joined:
+                _join(segment, scratch, scale)
+            else:
+                _join_gaps(segment, scratch, scale)
             for j in range(segment.n_lanes):
-                row = head.first[j] + rank
-                out[row, 0], out[row, 1], out[row, 2] = at[0, j], at[1, j], at[2, j]
-                out[row, 3], out[row, 4], out[row, 5] = pose[1, j], pose[2, j], pose[3, j]
-                out[row, 6] = pose[0, j]
+                pose_to = out[np.uintp(head.first[j] + rank)]
+                pose_to[0], pose_to[1], pose_to[2] = at[0, j], at[1, j], at[2, j]
+                pose_to[3], pose_to[4], pose_to[5] = pose[1, j], pose[2, j], pose[3, j]
+                pose_to[6] = pose[0, j]
 
 
 @fused
@@ -154,8 +162,9 @@ def _half_turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, 
 
 @fused
 def _read_parents(
-    branches: Any, head: Any, scratch: Any, work: Any, x: Floats, origin: Floats, out: Floats
-) -> None:
+    branches: Any, head: Any, scratch: Any, work: Any, x: Floats,
+    east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
+) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
     turned, base, carrier = scratch.carrier_turn, scratch.parent_base, scratch.carrier
     for j in range(head.n_lanes):
@@ -163,9 +172,9 @@ def _read_parents(
         scratch.key[0, j], scratch.key[1, j] = x[i], x[i + 1]
         if head.parent[j] < 0:
             hx, hy, hz = 0.0, 0.0, 0.0
-            bw, bx, by, bz = 1.0, 0.0, 0.0, 0.0
-            px, py, pz = origin[0], origin[1], origin[2]
-            sx, sy, sz, sw = 0.0, 0.0, 0.0, 1.0
+            bw, bx, by, bz = cosine, 0.0, 0.0, sine
+            px, py, pz = east, north, up
+            sx, sy, sz, sw = 0.0, 0.0, sine, cosine
         else:
             below, on = work[head.parent[j]], head.base_segment[j]
             if head.is_parent_plain[j]:
@@ -188,7 +197,7 @@ def _read_parents(
 
 
 @fused
-def _turn_bases(head: Any, scratch: Any) -> None:
+def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
@@ -197,14 +206,9 @@ def _turn_bases(head: Any, scratch: Any) -> None:
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
-    turn, base, half_turn, swing, at, ahead = (
-        scratch.turn,
-        scratch.base,
-        scratch.half_turn,
-        scratch.swing,
-        scratch.at,
-        scratch.ahead,
-    )
+    turn, base, half_turn, swing, following = (
+        scratch.turn, scratch.base, scratch.half_turn, scratch.swing, scratch.next,
+    )  # fmt: skip
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
         t = x * x + y * y
@@ -234,8 +238,9 @@ def _turn_bases(head: Any, scratch: Any) -> None:
             carrier[6, j], carrier[3, j], carrier[4, j], carrier[5, j],
             offset[0, j], offset[1, j], offset[2, j],
         )  # fmt: skip
-        at[0, j], at[1, j], at[2, j] = carrier[0, j] + ox, carrier[1, j] + oy, carrier[2, j] + oz
-        ahead[0, j], ahead[1, j], ahead[2, j] = 0.0, 0.0, 0.0
+        following[0, j] = carrier[0, j] + scale * ox
+        following[1, j] = carrier[1, j] + scale * oy
+        following[2, j] = carrier[2, j] + scale * oz
 
 
 @fused
@@ -301,20 +306,40 @@ def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, floa
 
 @inlined
 def _turn(segment: Any, scratch: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
-    """Turn the segment of the lane j from rest, at the end of the one before."""
-    rest, chord = segment.rest, segment.chord
-    pose, at, ahead = scratch.pose, scratch.at, scratch.ahead
-    at[0, j], at[1, j], at[2, j] = (
-        at[0, j] + ahead[0, j],
-        at[1, j] + ahead[1, j],
-        at[2, j] + ahead[2, j],
-    )
+    """Turn the segment of the lane j from rest."""
+    rest, pose = segment.rest, scratch.pose
     pose[0, j], pose[1, j], pose[2, j], pose[3, j] = product(
         qw, qx, qy, qz, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
     )
-    ahead[0, j], ahead[1, j], ahead[2, j] = rotated(
-        qw, qx, qy, qz, chord[0, j], chord[1, j], chord[2, j]
-    )
+
+
+@fused
+def _join(segment: Any, scratch: Any, scale: float) -> None:
+    """Put sixteen turned segments at the ends of those before them, and find their own ends."""
+    pose, at, following, reach = scratch.pose, scratch.at, scratch.next, segment.reach
+    for j in range(LANES):
+        w, x, y, z = pose[0, j], pose[1, j], pose[2, j], pose[3, j]
+        px, py, pz, length = following[0, j], following[1, j], following[2, j], scale * reach[0, j]
+        at[0, j], at[1, j], at[2, j] = px, py, pz
+        twice = length + length
+        following[0, j] = px + length - twice * (y * y + z * z)
+        following[1, j] = py + twice * (x * y + w * z)
+        following[2, j] = pz + twice * (x * z - w * y)
+
+
+@fused
+def _join_gaps(segment: Any, scratch: Any, scale: float) -> None:
+    """Do the same where the next segment does not start at this one's end."""
+    pose, at, following, reach = scratch.pose, scratch.at, scratch.next, segment.reach
+    for j in range(LANES):
+        px, py, pz = following[0, j], following[1, j], following[2, j]
+        at[0, j], at[1, j], at[2, j] = px, py, pz
+        rx, ry, rz = rotated(
+            pose[0, j], pose[1, j], pose[2, j], pose[3, j], reach[0, j], reach[1, j], reach[2, j]
+        )
+        following[0, j] = px + scale * rx
+        following[1, j] = py + scale * ry
+        following[2, j] = pz + scale * rz
 
 
 @fused

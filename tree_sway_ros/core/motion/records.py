@@ -89,17 +89,42 @@ BRANCH = branch_layout()
 
 LANES = 16
 
+_LINE = 64
+"""Bytes of a cache line, and of the widest vector."""
+
+
+def _whole_lines(fields: list[tuple[Any, ...]]) -> np.dtype[np.void]:
+    """Fields of whole vectors first, the others behind, filled up to whole cache lines."""
+    packed: Any = np.dtype(sorted(fields, key=lambda field: len(field) < 3))
+    told: dict[str, Any] = dict(packed.fields or {})
+    return np.dtype(
+        {
+            "names": list(told),
+            "formats": [kind[0] for kind in told.values()],
+            "offsets": [kind[1] for kind in told.values()],
+            "itemsize": -(-packed.itemsize // _LINE) * _LINE,
+        }
+    )
+
+
+def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Any:
+    """Return so many records of zeros that begin where a cache line does."""
+    memory = np.zeros(count * layout.itemsize + _LINE, dtype=np.uint8)
+    first = -memory.ctypes.data % _LINE
+    return memory[first : first + count * layout.itemsize].view(layout)
+
 
 @cache
 def segment_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
     """All that placing needs to know of one segment of each of sixteen branches."""
-    return np.dtype(
+    return _whole_lines(
         [
-            ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
             ("slope", "f8", (n_slopes, LANES)),  # of each shape, then of each twist
             ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
             ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
+            ("reach", "f8", (3, LANES)),  # the same in its own frame
             ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
+            ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
         ]
     )
 
@@ -112,12 +137,13 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
     All work in the last record, behind the last block's, so that it stays in the fastest cache.
 
     """
-    return np.dtype(
+    return _whole_lines(
         [
             ("block", "i8"),  # first record of their segments
             ("n_records", "i8"),
             ("n_lanes", "i8"),
             ("is_plain", "i8"),  # whether none of them has more than one shape
+            ("is_joined", "i8"),  # whether each segment starts where the one before ends
             # As in `BRANCH`:
             ("branch", "i8", (LANES,)),
             ("parent", "i8", (LANES,)),
@@ -160,7 +186,7 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
                 (LANES,),
             ),  # bound on the square of half of what segments turn by [rad^2]
             ("at", "f8", (3, LANES)),  # where the segment starts
-            ("ahead", "f8", (3, LANES)),  # its chord when placed
+            ("next", "f8", (3, LANES)),  # where the one after it starts
             ("pose", "f8", (4, LANES)),  # its orientation when placed, w x y z
         ]
     )
@@ -225,10 +251,10 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
 @cache
 def load_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """Records of `load_fields`."""
-    return np.dtype(load_fields(n_coordinates))
+    return _whole_lines(load_fields(n_coordinates))
 
 
-OSCILLATORS = np.dtype(
+OSCILLATORS = _whole_lines(
     [
         *load_fields(2),
         ("now_x", "f8", (2, LANES)),

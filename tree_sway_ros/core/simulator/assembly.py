@@ -210,24 +210,6 @@ class Bank:
             self._plain_placing.place(rotations, origin, out)
             return
         self._compiled_placing(rotations, origin, out)
-        self._place_frozen(rotations, out)
-
-    def on_threads(self, threads: int) -> Callable[[Floats, Floats, Floats], None]:
-        """Return what `place` does on several threads; on one where nothing is compiled."""
-        if self.plain:
-            return self.place
-        from tree_sway_ros.core.motion.threaded_placing import ThreadedPlacing
-
-        work = self.oscillators.work
-        threaded = ThreadedPlacing(self.branches, self.segments, self.heads, work, threads)
-
-        def place_all(rotations: Floats, origin: Floats, out: Floats) -> None:
-            threaded.place(rotations, origin, out)
-            self._place_frozen(rotations, out)
-
-        return place_all
-
-    def _place_frozen(self, rotations: Floats, out: Floats) -> None:
         if self.frozen is not None:
             self.frozen.place(self.branches, self.oscillators.work, rotations, out)
 
@@ -364,7 +346,7 @@ class CalibratedTree:
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
         solved = int((branches["source"] == np.arange(len(branches))).sum())
-        segments = layer.segments.copy()
+        segments = layer.segments
         heads = head_records(branches, segments)
         return Bank(
             oscillators, branches, segments, heads, frequencies, solved, layer.mass,
@@ -374,7 +356,7 @@ class CalibratedTree:
     def at_rest(self, model: str) -> Bank:
         """Return what places the key rotations of a model, and steps nothing."""
         layer = self.layer(model)
-        branches, segments = layer.branches.copy(), layer.segments.copy()
+        branches, segments = layer.branches.copy(), layer.segments
         still = Frozen(branches, layer.reduction.n_coordinates)
         heads = head_records(branches, segments)
         return Bank(still, branches, segments, heads, np.zeros(0), 0, layer.mass)

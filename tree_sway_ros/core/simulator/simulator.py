@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill, array_to_read, within
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
+from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
@@ -71,8 +72,6 @@ class SwaySimulator(OneTree, KeepsState):
         How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
-    threads
-        How many threads place, 1 to 64: more than one pays from some ten thousand segments on.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
@@ -101,7 +100,6 @@ class SwaySimulator(OneTree, KeepsState):
         settings: Settings | None = None,
         *,
         calibrated: CalibratedTree | None = None,
-        threads: int = 1,
         **changes: Any,
     ) -> None:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
@@ -113,9 +111,9 @@ class SwaySimulator(OneTree, KeepsState):
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self.drag_law = calibrated.drag_law
+        self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
         self._advance = self.bank.oscillators.advance
-        within("threads", threads, 1, 64)
-        self._place = self.bank.place if threads == 1 else self.bank.on_threads(int(threads))
+        self._place = self.bank.place
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
         if self.settings.crown_coherence < 1.0:
@@ -128,6 +126,7 @@ class SwaySimulator(OneTree, KeepsState):
         self._wind = np.zeros(3)
         self._expected = self.bank.oscillators.rotations().shape
         self._poses = np.zeros((tree.n_segments, 7))
+        self._filled = self._poses
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
         self._rest_tip = tree.end[self._highest].copy()
@@ -224,7 +223,7 @@ class SwaySimulator(OneTree, KeepsState):
         if dt != self._dt:
             self._set_step(dt)
         wx, wy, wz = self._wind.tolist()
-        load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
         if self._gusts is not None:
             wx, wy, wz = self._gusts.felt(self._wind, dt)
         for _ in range(self._pieces):
@@ -263,10 +262,12 @@ class SwaySimulator(OneTree, KeepsState):
         return self._placed(self.bank.oscillators.rotations(), out)
 
     def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
-        shape = self._poses.shape
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self._place(rotations, self._origin, poses)
-        return poses
+        if out is None:
+            out = np.empty(self._poses.shape)
+        elif out is not self._filled:
+            self._filled = array_to_fill("out", out, self._poses.shape)
+        self._place(rotations, self._origin, out)
+        return out
 
     @property
     def tip_displacement(self) -> Floats:
@@ -317,6 +318,9 @@ class SwaySimulator(OneTree, KeepsState):
         self.bank.oscillators.set_step(dt / pieces)
         self._longest = max(self._longest, dt / pieces)
         self._dt, self._pieces = dt, pieces
+
+
+_pressure = fused(pressure)
 
 
 def refuse_time_step(dt: float) -> None:

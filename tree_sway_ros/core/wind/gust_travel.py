@@ -18,6 +18,7 @@ delays follow so slowly that for every tree time goes on.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -154,6 +155,10 @@ class GustHistory:
             x, y, z, dt, self._wanted, self._delay, self._felt,
         )  # fmt: skip
         return self._felt
+
+    def memory(self) -> tuple[Any, ...]:
+        """Views of what is carried from one step to the next."""
+        return self._run, self._at, self._mean, self._wanted, self._delay, self._felt
 
     def reset(self) -> None:
         """Forget the wind."""

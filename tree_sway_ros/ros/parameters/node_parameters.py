@@ -217,6 +217,16 @@ SOLVER: Table = (
     _LIFECYCLE,
     Parameter("tree", "benjamina", "The tree: a built-in name, or the file of a tree or a forest."),
     Parameter(
+        "shards",
+        1,
+        "The trees of a stand are dealt over so many solvers, of which this is one.",
+        "",
+        1,
+        10_000,
+        source="doc/shards.md",
+    ),
+    Parameter("shard", 0, "This solver's own shard, from 0 on.", "", 0, 9_999),
+    Parameter(
         "species",
         "",
         "The wood: a key of the species table or a species file; the tree's own if empty.",
