@@ -65,6 +65,7 @@ extras = {
     ],
     "serial": ["pyserial>=3.5"],
     "bag": ["rosbags>=0.10"],
+    "relay": ["eclipse-zenoh>=1.0"],
     "plot": ["matplotlib>=3.6"],
     "h5": ["h5py>=3.7"],
     "mujoco": ["mujoco>=3.2"],

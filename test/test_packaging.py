@@ -74,6 +74,7 @@ OPTIONAL = {
         "pyarrow",
         "rosbags",
         "sksundae",
+        "zenoh",
     ),
 }
 

@@ -107,7 +107,7 @@ def test_a_frame_of_any_tree_of_the_package_is_small(name: str) -> None:
     assert len(state.frame(0)) <= 96
 
 
-@pytest.mark.parametrize("fidelity", ["branch", "auto", "segments"])
+@pytest.mark.parametrize("fidelity", ["branch", "wind_basis", "auto", "segments"])
 def test_every_model_can_be_told(fidelity: str) -> None:
     source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
     simulator = source.simulator(model=fidelity)

@@ -10,7 +10,7 @@ from typing import Any
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.simulator.protocol import Simulator
-from tree_sway_ros.page.scene_state import SceneState, wind_of
+from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.ros.process.topics import TREE_STATE
 from tree_sway_ros.ros.timing.stepping import Divider
 from tree_sway_ros.ros.wire.tree_state import state_entry, state_template
@@ -56,7 +56,7 @@ class StatePublisher:
                 self._finder.start()
             return
         block = self._template.blocks[0]
-        block[:3] = wind_of(self._simulator)
+        block[:3] = self._simulator.wind
         block[3:] = self._scene.coordinates()
         self._publisher.publish(self._template.to_bytes(stamp))
 

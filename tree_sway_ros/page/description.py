@@ -21,16 +21,18 @@ from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.protocol import encode_description
+from tree_sway_ros.page.told_basis import ToldBasis
 
 RIGID = -1
 """Coordinate of a branch that has none."""
 
 
 def describe_scene(
-    simulator: Any,
-    bases: Sequence[Any],
+    simulator: Simulator,
+    bases: Sequence[ToldBasis],
     *,
     frame_id: str = "map",
     leaves: LeafClusters | None = None,
@@ -43,7 +45,7 @@ def describe_scene(
     simulator
         Of a tree or a forest, on the model whose state will be sent.
     bases
-        Per tree, with `frames` of its moving branches, as `ToldBasis`.
+        Per tree.
     frame_id
         Frame of the poses.
     leaves
@@ -103,7 +105,7 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: Any, frames: Floats) -> dict[str, Any]:
+def _branches(simulator: TreeSimulator, frames: Floats) -> dict[str, Any]:
     """
     Arrays of one tree: how each branch of the whole tree is placed, by frames per moving branch.
 

@@ -71,7 +71,10 @@ class Placer:
             )
         if len(frame.coordinates) != len(self._scale):
             raise FormatError(f"{len(frame.coordinates)} coordinates", where="tree state")
-        values = frame.coordinates * (self._scale / FULL_SCALE)
+        return self._expanded(frame.coordinates * (self._scale / FULL_SCALE))
+
+    def _expanded(self, values: Floats) -> Floats:
+        """Key rotations (N,) of coordinates (m,)."""
         out = np.zeros(self._n_keys + 2)  # the last two are what rigid branches turn by
         for (key, key_end, first, end), matrix in self._blocks:
             out[key:key_end] = matrix @ values[first:end]
@@ -80,6 +83,10 @@ class Placer:
     def place(self, frame: Frame) -> Floats:
         """Poses of a frame, (n, 7): x y z in [m] and the quaternion's x y z w."""
         return self.place_rotations(self.rotations(frame))
+
+    def place_coordinates(self, coordinates: Floats) -> Floats:
+        """Poses of coordinates in their own unit (m,), (n, 7)."""
+        return self.place_rotations(self._expanded(coordinates))
 
     def place_rotations(self, rotations: Floats) -> Floats:
         """Poses of key rotations (N,) in [rad], (n, 7)."""

@@ -16,8 +16,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.demand import tell_demand
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 from tree_sway_ros.page.scene_state import SceneState
@@ -52,7 +54,7 @@ class Choices:
     damping_ratio: float = 0.0
 
 
-Build = Callable[[Choices], tuple[Any, Any]]
+Build = Callable[[Choices], tuple[Simulator, LeafClusters | None]]
 """Makes the simulator and the leaves, or none, of some choices."""
 
 
@@ -110,6 +112,10 @@ class Session:
         self._server = server
         if not self._thread.is_alive():
             self._thread.start()
+
+    def wait(self, seconds: float) -> None:
+        """Wait so long [s], or until the session has failed."""
+        self._thread.join(max(0.0, seconds))
 
     def stop(self) -> None:
         """Stop stepping; may be called twice."""

@@ -101,7 +101,9 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
 
 def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
     """Add the viewer, tell where its page is, and open it if asked to."""
-    url = nodes.add("viewer", {**vars(page_settings(arguments)), "control": True}).server.url
+    told = {**vars(page_settings(arguments)), "control": True}
+    told["origins"] = " ".join(arguments.origin)
+    url = nodes.add("viewer", told).server.url
     print(f"page: {url}", flush=True)
     if arguments.open:
         webbrowser.open(url)

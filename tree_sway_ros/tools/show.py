@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway show``: a tree in wind on a page of the browser, without ROS.
-
-"""
+"""``tree-sway show``: a tree in wind on a page of the browser, without ROS."""
 
 from __future__ import annotations
 
@@ -16,7 +13,9 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
+from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -28,6 +27,7 @@ from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.session import Choices, Session
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.parameters.parameter import Parameter
 from tree_sway_ros.tools.arguments import (
     add_leaves_argument,
     add_model_argument,
@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
             while session.failure is None and time.monotonic() < end:
-                time.sleep(0.1)
+                session.wait(min(0.1, end - time.monotonic()))
         except KeyboardInterrupt:
             print("", file=sys.stderr)
         finally:
@@ -99,7 +99,9 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def build_scene(choices: Choices, arguments: argparse.Namespace) -> tuple[Any, Any]:
+def build_scene(
+    choices: Choices, arguments: argparse.Namespace
+) -> tuple[Simulator, LeafClusters | None]:
     """Make simulator and leaves of what was chosen."""
     is_first = choices.tree == arguments.tree
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
@@ -174,5 +176,5 @@ def _control(node: str, name: str, value: Any = None) -> Control:
     )
 
 
-def _parameter(node: str, name: str) -> Any:
+def _parameter(node: str, name: str) -> Parameter:
     return next(p for p in NODE_PARAMETERS[node] if p.name == name)

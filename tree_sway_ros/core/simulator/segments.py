@@ -25,7 +25,6 @@ from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.one_tree import OneTree
-from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
     OK,
@@ -75,13 +74,13 @@ class SegmentsSimulator(OneTree, KeepsState):
             raise ParameterError(
                 f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
-        settings = in_season(tree, species, settings)
+        calibrated = CalibratedTree(tree, species, settings)
+        species, settings = calibrated.species, calibrated.settings
         self.tree, self.species, self.settings = tree, species, settings
         self.counts = Counts()
         damping = settings.damping_ratio
         if damping is None:
             damping = species.damping(bool(settings.in_leaf))
-        calibrated = CalibratedTree(tree, species, settings)
         law = calibrated.drag_law
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
@@ -97,6 +96,7 @@ class SegmentsSimulator(OneTree, KeepsState):
             wind_factor=settings.profile.over_anemometer(middle),
             leaf_mass=settings.leaf_mass,
             leaf_area=calibrated.leaf_load_area,
+            root_stiffness=species.root_stiffness,
         )
         self.wind, self._air = np.zeros(3), np.zeros((tree.n_segments, 3))
         self._crown: CrownWind | None = None

@@ -69,6 +69,9 @@ class Settings:
         Branches that get further shapes and twists in the models ``modes`` and ``coupled``:
         ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
         branches), all ``carriers`` of others, or ``all``.
+    root_stiffness
+        Stiffness of the roots against tilting in [N m/rad], infinite if they are rigid; the tree's
+        own if None.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,); those of the species in leaf if both are
         None.
@@ -92,6 +95,7 @@ class Settings:
     integrator: str = DEFAULT
     twig_tolerance: float = 0.05
     enrich: str = "limbs"
+    root_stiffness: float | None = None
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
     max_wind: float = FASTEST_WIND
@@ -115,6 +119,12 @@ class Settings:
             )
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
             raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
+        if self.root_stiffness is not None and not self.root_stiffness > 0.0:
+            raise ParameterError(
+                f"{self.root_stiffness} N m/rad",
+                where="root_stiffness",
+                cure="give a stiffness above 0, infinite for rigid roots",
+            )
         if self.n_modes is not None and self.n_modes < 1:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
         if self.degree not in (1, 3, 5):

@@ -7,7 +7,6 @@ import {
   barkMesh,
   boxOf,
   drawnBranches,
-
   isPotted,
   leafMesh,
   restPoses,
@@ -20,8 +19,10 @@ import * as shaders from "./shaders.js";
 /** A shadow is drawn anew every so many frames without a graphics unit. */
 const SHADOW_EVERY = 5;
 /** Frames per second below which, without a graphics unit, fewer points are drawn. */
-const WANTED_FPS = 45;
+const WANTED_FPS = 55;
+/** Points per point of the page, and share of the leaves, that are drawn at least. */
 const COARSEST = 0.7;
+const THINNEST = 0.3;
 const POT_HEIGHT = 0.17;
 
 /**
@@ -49,9 +50,14 @@ const WOODS = {
   spruce: { bark: [0.4, 0.29, 0.22], twig: [0.38, 0.28, 0.18], leaf: [0.11, 0.27, 0.16], fresh: [0.25, 0.43, 0.22] },
   birch: { bark: [0.82, 0.81, 0.78], twig: [0.4, 0.3, 0.25], leaf: [0.3, 0.48, 0.16], fresh: [0.55, 0.68, 0.25] },
 };
-WOODS.sitka = WOODS.spruce;
+WOODS.sitka = { ...WOODS.spruce, bark: [0.42, 0.37, 0.36] };
+WOODS.oak = { ...WOODS.usual, bark: [0.36, 0.31, 0.26] };
+WOODS.beech = { ...WOODS.usual, bark: [0.55, 0.56, 0.54] };
+WOODS.ash = { ...WOODS.usual, bark: [0.52, 0.5, 0.44] };
+WOODS.sycamore = { ...WOODS.usual, bark: [0.5, 0.45, 0.41] };
+WOODS.walnut = { ...WOODS.usual, bark: [0.46, 0.43, 0.4] };
 WOODS.douglas_fir = WOODS.spruce;
-WOODS.pine = { ...WOODS.spruce, bark: [0.55, 0.36, 0.25] };
+WOODS.pine = { ...WOODS.spruce, bark: [0.66, 0.4, 0.24] };
 
 /** @param {WebGLRenderingContext | WebGL2RenderingContext} gl */
 function isSoftware(gl) {
@@ -116,6 +122,8 @@ export class Scene {
     this._shadowHalf = 1;
     /** Points of the picture per point of the page. */
     this._fineness = 1;
+    /** Share of the leaves that is drawn. */
+    this._density = 1;
     this._paceFrom = 0;
     this._paced = 0;
     this._groundHeight = 0;
@@ -151,7 +159,8 @@ export class Scene {
     this._free("leaf");
     const bark = barkMesh(description, branches, rest);
     this._parts.bark = this._hung("bark", bark, [["ring", 4]]);
-    const leaves = leafMesh(description, branches, rest, this.isSlow ? 4500 : 24000);
+    const leaves = leafMesh(description, branches, rest, this.isSlow ? 4500 : 24000,
+      !this.isSlow);
     this._parts.leaf = this._hung("leaf", leaves, [
       ["centre", 3],
       ["orientation", 4],
@@ -204,8 +213,9 @@ export class Scene {
    *
    * @param {Float32Array | null} coordinates the state; the poses stay as they are if null
    * @param {number} time [s]
+   * @param {boolean} isPaused nothing of the picture changes then
    */
-  draw(coordinates, time) {
+  draw(coordinates, time, isPaused) {
     const { gl, look } = this;
     this.resize();
     const matrix = this.camera.update();
@@ -214,7 +224,7 @@ export class Scene {
     // The eye takes a shadow that is some frames old for one that is not.
     const every = this.isSlow ? SHADOW_EVERY : 1;
     if (this.placer && this._frame % every === 0) this._castShadow(matrix, time);
-    if (this.isSlow) this._keepPace();
+    if (this.isSlow && !isPaused) this._keepPace();
     this._frame++;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -263,6 +273,7 @@ export class Scene {
     gl.useProgram(used.program);
     gl.uniformMatrix4fv(at.camera, false, matrix);
     gl.uniform3f(at.light, light[0], light[1], light[2]);
+    gl.uniform3f(at.eye, this.camera.eye[0], this.camera.eye[1], this.camera.eye[2]);
     gl.uniform1f(at.ground, this._groundHeight);
     gl.uniform1f(at.isShadow, isShadow ? 1 : 0);
     const [x, y] = this._shadowMiddle;
@@ -286,15 +297,27 @@ export class Scene {
     this._shadowHalf = Math.max(to[0] - from[0], to[1] - from[1]) / 2;
   }
 
-  /** Draw fewer points while frames come too slowly, and more again when there is time. */
+  /** What of the picture is left out so that frames come in time, for people; empty if nothing. */
+  get leftOut() {
+    const parts = [];
+    if (this._fineness < 0.99) parts.push(`${Math.round(100 * this._fineness)} % of the points`);
+    if (this._density < 0.99) parts.push(`${Math.round(100 * this._density)} % of the leaves`);
+    return parts.length ? `Drawn without a graphics unit: ${parts.join(", ")}` : "";
+  }
+
+  /** Draw fewer points and leaves while frames come too slowly, more again when there is time. */
   _keepPace() {
     const now = performance.now();
     this._paced++;
+    if (now - this._paceFrom > 3000) [this._paceFrom, this._paced] = [now, 0];
     if (now - this._paceFrom < 700) return;
     const fps = (1000 * this._paced) / (now - this._paceFrom);
     if (this._paceFrom && this._paced > 2) {
-      const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.04;
+      const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.02;
       this._fineness = Math.min(1, Math.max(COARSEST, this._fineness * factor));
+      // Points cost less than leaves, and are missed less.
+      const thinner = factor < 1 && this._fineness > COARSEST ? 1 : factor;
+      this._density = Math.min(1, Math.max(THINNEST, this._density * thinner));
     }
     this._paceFrom = now;
     this._paced = 0;
@@ -326,7 +349,8 @@ export class Scene {
       gl.uniform1f(used.uniforms.speed, Math.hypot(...this.wind));
       const law = description.flutter ?? { gain: 0, largest_angle: 1 };
       gl.uniform2f(used.uniforms.law, law.gain, law.largest_angle);
-      drawPart(gl, leaf);
+      gl.uniform1f(used.uniforms.swell, 1 / Math.sqrt(this._density));
+      drawPart(gl, leaf, this._density);
     }
   }
 
@@ -536,10 +560,11 @@ function filled(gl, kind, data) {
 /**
  * @param {WebGL2RenderingContext} gl
  * @param {Drawable} part
+ * @param {number} [share] of its triangles
  */
-function drawPart(gl, part) {
+function drawPart(gl, part, share = 1) {
   gl.bindVertexArray(part.vao);
-  gl.drawElements(gl.TRIANGLES, part.count, gl.UNSIGNED_INT, 0);
+  gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
 /** @param {number[]} v */

@@ -350,6 +350,14 @@ SOLVER: Table = (
         30.0,
     ),
     Parameter(
+        "root_stiffness",
+        0.0,
+        "The stiffness of the roots against tilting, 1e15 for rigid ones; 0 means the tree's own.",
+        "N m/rad",
+        0.0,
+        1e15,
+    ),
+    Parameter(
         "damping_ratio",
         0.0,
         "The damping ratio of every branch; 0 means the species' own.",
@@ -417,6 +425,13 @@ PLAYER: Table = (
     _LIFECYCLE,
     Parameter("file", "", "The wind record to play: TOA5, NMEA 0183, CSV or a rosbag2 bag."),
     Parameter(
+        "play",
+        "wind",
+        "The player publishes the `wind` of the record, to be solved anew, or of a bag the `state` "
+        "as it was sent: `tree_state` and `tree_description`.",
+        choices=("wind", "state"),
+    ),
+    Parameter(
         "output_type",
         WIND_TYPE_NAMES[0],
         "The node publishes messages of this type.",
@@ -469,6 +484,11 @@ VIEWER: Table = (
     Parameter("certificate", "", "PEM file, to serve the page over TLS."),
     Parameter("private_key", "", "PEM file of the certificate's key."),
     Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
+    Parameter(
+        "origins",
+        "",
+        "Pages of these origins may follow the stream: `https://a.org https://b.org`.",
+    ),
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )
 

@@ -145,7 +145,7 @@ class Turbulence:
 
         """
         n_lines = (n_samples - 1) // 2  # without the mean, nor the line at half the rate
-        frequency = np.arange(1, n_lines + 1) * (rate / n_samples)
+        frequency: Floats = np.arange(1, n_lines + 1, dtype=np.float64) * (rate / n_samples)
         power = self.spectrum(frequency)
         power *= self.deviations**2 / np.maximum(power.sum(axis=0), np.finfo(np.float64).tiny)
         phase = rng.uniform(0.0, 2.0 * np.pi, size=(3, n_lines)).T
