@@ -132,3 +132,14 @@ def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
     rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
     assert json.dumps(state.coordinate_names).startswith('["t0/c0"')
+
+
+def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
+    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
+    simulator = source.simulator(model="modes")
+    for _ in range(30):
+        simulator.step((6.0, 1.0, 0.0), 1.0 / 60.0)
+    before = simulator.state().values
+    own = SceneState(simulator, is_running=False)
+    np.testing.assert_array_equal(simulator.state().values, before)
+    assert own.description == SceneState(simulator).description

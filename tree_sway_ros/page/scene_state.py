@@ -41,16 +41,23 @@ class SceneState:
         Clusters that are drawn; None without.
     frame_id
         Frame of the poses.
+    is_running
+        Whether the simulator is stepped meanwhile; one that is not is itself run, and set back.
 
     """
 
     def __init__(
-        self, simulator: Simulator, leaves: LeafClusters | None = None, frame_id: str = "map"
+        self,
+        simulator: Simulator,
+        leaves: LeafClusters | None = None,
+        frame_id: str = "map",
+        *,
+        is_running: bool = True,
     ) -> None:
         self.simulator = simulator
         self._parts = simulators_of(simulator)
         found: dict[Any, ToldBasis] = {}
-        self.bases = [told_basis(each, found) for each in self._parts]
+        self.bases = [told_basis(each, found, is_running=is_running) for each in self._parts]
         self.description = describe_scene(simulator, self.bases, frame_id=frame_id, leaves=leaves)
         described = decode_description(self.description)
         self.identity, self._short = described.identity, described.short_identity

@@ -50,7 +50,9 @@ class ToldBasis:
         return told
 
 
-def told_basis(simulator: TreeSimulator, found: dict[Any, ToldBasis]) -> ToldBasis:
+def told_basis(
+    simulator: TreeSimulator, found: dict[Any, ToldBasis], *, is_running: bool = True
+) -> ToldBasis:
     """
     Find the basis of a tree; trees of one shape and model share one, whichever way they are turned.
 
@@ -60,6 +62,8 @@ def told_basis(simulator: TreeSimulator, found: dict[Any, ToldBasis]) -> ToldBas
         Of the tree.
     found
         What was found for other trees, and is added to.
+    is_running
+        Whether the simulator is stepped meanwhile: then the basis is found on another one.
 
     """
     frames = simulator.joints["frame"]
@@ -69,7 +73,7 @@ def told_basis(simulator: TreeSimulator, found: dict[Any, ToldBasis]) -> ToldBas
         twin = _turned(like, frames, simulator.joints)
         if twin is not None:
             return twin
-    runner = _runner(simulator)
+    runner = _runner(simulator, is_running)
     basis = state_basis(runner)
     if len(basis.scale) > MOST_COORDINATES:
         basis = state_basis(runner, MOST_COORDINATES)
@@ -112,14 +116,15 @@ def _turned(basis: ToldBasis, frames: Floats, joints: Any) -> ToldBasis | None:
     return ToldBasis(basis.matrix, projection, basis.scale, basis.error, with_it)
 
 
-def _runner(simulator: TreeSimulator) -> SwaySimulator:
+def _runner(simulator: TreeSimulator, is_running: bool) -> SwaySimulator:
     """
-    Make a simulator to find the basis on, so that the one that runs is left alone.
-
-    It is of the same model, or of ``modes`` where that one has the same key rotations at less cost.
+    Simulator to find the basis on: itself, unless it runs or another has the same key rotations at
+    less cost.
 
     """
     is_cheap = isinstance(simulator, SwaySimulator) and simulator.model != "coupled"
+    if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:
+        return simulator
     model = simulator.model if is_cheap else "modes"
     settings = replace(simulator.settings, model=model, n_modes=None)
     return SwaySimulator(simulator.tree, simulator.species, settings)
