@@ -20,11 +20,10 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.rotation import rotated
-from tree_sway_ros.core.scene.make import simulators_of
-from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.protocol import encode_description
-from tree_sway_ros.page.told_basis import ToldBasis
+from tree_sway_ros.page.told_basis import ToldBasis, ToldTree
 
 RIGID = -1
 """Coordinate of a branch that has none."""
@@ -32,6 +31,7 @@ RIGID = -1
 
 def describe_scene(
     simulator: Simulator,
+    told: Sequence[ToldTree],
     bases: Sequence[ToldBasis],
     *,
     frame_id: str = "map",
@@ -43,9 +43,9 @@ def describe_scene(
     Parameters
     ----------
     simulator
-        Of a tree or a forest, on the model whose state will be sent.
-    bases
-        Per tree.
+        Of a tree, a forest or a stand, on the model whose state will be sent.
+    told, bases
+        Each tree of it, and its basis.
     frame_id
         Frame of the poses.
     leaves
@@ -57,8 +57,7 @@ def describe_scene(
         As `encode_description`.
 
     """
-    simulators = simulators_of(simulator)
-    parts = [_branches(each, basis.frames) for each, basis in zip(simulators, bases, strict=True)]
+    parts = [_branches(each, basis.frames) for each, basis in zip(told, bases, strict=True)]
     arrays: dict[str, Any] = _joined(parts)
     trees: list[dict[str, Any]] = []
     coordinates = key = 0
@@ -66,7 +65,7 @@ def describe_scene(
     # Trees of one shape share a matrix, which is sent once.
     place_of: dict[int, int] = {}
     matrices: list[Any] = []
-    for each, basis in zip(simulators, bases, strict=True):
+    for each, basis in zip(told, bases, strict=True):
         rows, columns = basis.matrix.shape
         if id(basis.matrix) not in place_of:
             place_of[id(basis.matrix)] = sum(len(matrix) for matrix in matrices)
@@ -105,7 +104,7 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: TreeSimulator, frames: Floats) -> dict[str, Any]:
+def _branches(simulator: ToldTree, frames: Floats) -> dict[str, Any]:
     """
     Arrays of one tree: how each branch of the whole tree is placed, by frames per moving branch.
 

@@ -13,10 +13,14 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.scene.stand_member import StandMember
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.find_basis import state_basis
 from tree_sway_ros.core.state.state_basis import BasisError
+
+ToldTree = TreeSimulator | StandMember
+"""A tree whose state is told."""
 
 MOST_COORDINATES = 32
 """Of one tree: a frame then takes 92 bytes."""
@@ -51,7 +55,7 @@ class ToldBasis:
 
 
 def told_basis(
-    simulator: TreeSimulator, found: dict[Any, ToldBasis], *, is_running: bool = True
+    simulator: ToldTree, found: dict[Any, ToldBasis], *, is_running: bool = True
 ) -> ToldBasis:
     """
     Find the basis of a tree; trees of one shape and model share one, whichever way they are turned.
@@ -66,6 +70,11 @@ def told_basis(
         Whether the simulator is stepped meanwhile: then the basis is found on another one.
 
     """
+    if isinstance(simulator, StandMember):
+        kind = simulator.kind  # which stands still: the stand steps its table
+        if id(kind) not in found:
+            found[id(kind)] = _told(kind, kind.joints["frame"])
+        return _yawed(found[id(kind)], simulator.yaw)
     frames = simulator.joints["frame"]
     shape = np.round([*frames[:, 0, 2], *simulator.tree.length], 6).tobytes()
     like = found.get((simulator.model, shape))
@@ -73,13 +82,24 @@ def told_basis(
         twin = _turned(like, frames, simulator.joints)
         if twin is not None:
             return twin
-    runner = _runner(simulator, is_running)
+    told = _told(_runner(simulator, is_running), frames)
+    found[simulator.model, shape] = told
+    return told
+
+
+def _told(runner: SwaySimulator, frames: Floats) -> ToldBasis:
+    """Basis that a simulator finds."""
     basis = state_basis(runner)
     if len(basis.scale) > MOST_COORDINATES:
         basis = state_basis(runner, MOST_COORDINATES)
-    told = ToldBasis(basis.matrix, basis.projection, basis.scale, basis.error, frames)
-    found[simulator.model, shape] = told
-    return told
+    return ToldBasis(basis.matrix, basis.projection, basis.scale, basis.error, frames)
+
+
+def _yawed(basis: ToldBasis, yaw: float) -> ToldBasis:
+    """The basis of a tree that is turned about the vertical, frames and all."""
+    c, s = np.cos(yaw), np.sin(yaw)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return replace(basis, frames=basis.frames @ turn)
 
 
 def _turned(basis: ToldBasis, frames: Floats, joints: Any) -> ToldBasis | None:
@@ -94,8 +114,7 @@ def _turned(basis: ToldBasis, frames: Floats, joints: Any) -> ToldBasis | None:
     chord, other = basis.frames[:, 0], frames[:, 0]
     sine = (chord[:, 0] * other[:, 1] - chord[:, 1] * other[:, 0]).sum()
     angle = np.arctan2(sine, (chord[:, :2] * other[:, :2]).sum())
-    c, s = np.cos(angle), np.sin(angle)
-    with_it = basis.frames @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    with_it = _yawed(basis, angle).frames
     if not np.allclose(with_it[:, 0], other, atol=1e-6):
         return None
     projection = basis.projection.copy()
