@@ -94,6 +94,7 @@ class SolverNode(TreeSwayNode):
             model=self.values["fidelity"],
             in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
+            root_stiffness=self.values["root_stiffness"] or None,
             profile=WindProfile(
                 self.values["profile"],
                 self.values["anemometer_height"],

@@ -77,6 +77,9 @@ class BranchBeam:
         In [m], (m,).
     children
         Places of its children.
+    root_compliance
+        Young's modulus over the stiffness of a spring that holds its base in [1/m^3]; 0 if it is
+        clamped.
 
     """
 
@@ -87,6 +90,7 @@ class BranchBeam:
         base_diameter: Floats,
         tip_diameter: Floats,
         children: Attachments,
+        root_compliance: float = 0.0,
     ) -> None:
         """Set the quadrature points along the branch."""
         step = end - start
@@ -108,16 +112,19 @@ class BranchBeam:
         chord = end[-1] - start[0]
         self.chord_length = float(np.linalg.norm(chord))
         self.chord = chord / self.chord_length if self.chord_length > 1e-9 else self.tangent[0]
+        self.second_moment = np.pi / 64.0 * self.diameter**4
+        """
+        Second moment of area at each point in [m^4], (m, 5); at the first, a twentieth up the first
+        segment, with the spring in series.
+        """
+        if root_compliance > 0.0:
+            own = 1.0 / self.second_moment[0, 0] + root_compliance / self.weight[0, 0]
+            self.second_moment[0, 0] = 1.0 / own
 
     @property
     def area(self) -> Floats:
         """Cross-section at each point in [m^2], (m, 5)."""
         return np.pi / 4.0 * self.diameter**2
-
-    @property
-    def second_moment(self) -> Floats:
-        """Second moment of area at each point in [m^4], (m, 5)."""
-        return np.pi / 64.0 * self.diameter**4
 
     def integral(self, values: Floats) -> Floats:
         """Integral over the branch of values at the points, (m, 5, ...)."""

@@ -89,6 +89,7 @@ def branch_models(
     speed_profile: Floats | None = None,
     leaf_mass: Floats | None = None,
     leaf_area: Floats | None = None,
+    root_compliance: float = 0.0,
 ) -> list[BranchModel]:
     """
     Model each branch of a tree.
@@ -109,6 +110,8 @@ def branch_models(
         Wind speed over that at the anemometer at each segment's middle [-], (n,); 1 if None.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
+    root_compliance
+        Of the stem, as of `BranchBeam`.
 
     Returns
     -------
@@ -138,6 +141,7 @@ def branch_models(
             tree.base_diameter[here],
             tree.tip_diameter[here],
             _places(tree, branch, children),
+            root_compliance if branch == 0 else 0.0,
         )
         length = float(beam.node[-1])
         mass = density * beam.area

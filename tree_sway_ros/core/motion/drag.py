@@ -11,6 +11,10 @@ sum. Wood keeps the drag of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 
 al. 2005) between 4 and 20 m/s, constant outside. Those are the speeds at which crowns were measured
 in wind tunnels (Rudnicki et al. 2004; Vollsinger et al. 2005).
 
+**Sheltering is assumed, not modelled.** Leaves hide each other as the outline of the crown has it,
+and shelter each other as in the crowns that their law was measured on; twigs clad in needles belong
+to such a crown. Bare wood and branches that leaves stand on meet the whole wind.
+
 **Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step,
 where an explicit drag would shake it to pieces. With u the velocity the branch would have half a
 step on without the force, and beta the velocity that a unit of force adds by then, the relative
@@ -24,6 +28,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import inlined
 
 AIR_DENSITY = 1.225
@@ -31,7 +38,6 @@ AIR_DENSITY = 1.225
 
 STREAMLINING_FROM, STREAMLINING_TO = 4.0, 20.0
 """Wind speeds in [m/s] between which the drag law is measured."""
-
 
 SHARED_AT = 8.0
 """Wind in [m/s] in which wood and leaves of each branch share the load as they should."""
@@ -56,18 +62,24 @@ class DragLaw(NamedTuple):
 
 
 def crown_drag(
-    wood_area: float, leaf_area: float, wood: float, leaves: tuple[float, float]
-) -> tuple[DragLaw, float]:
+    wood_area: float,
+    leaf_area: Floats,
+    clad_wood: Floats,
+    wood: float,
+    leaves: tuple[float, float],
+) -> tuple[DragLaw, Floats]:
     """
     Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.
 
     All branches share one law; each has the area that gives it its own share of wood and leaves at
-    `SHARED_AT`. Leaves shelter each other as they do in the crowns that their law was measured on.
+    `SHARED_AT`.
 
     Parameters
     ----------
-    wood_area, leaf_area
-        Of the whole tree in [m^2].
+    wood_area
+        Of all wood in [m^2].
+    leaf_area, clad_wood
+        Of the leaves of each branch, and of the wood that is clad in them, in [m^2], (b,).
     wood
         Drag coefficient of bare wood in [-].
     leaves
@@ -75,14 +87,17 @@ def crown_drag(
 
     Returns
     -------
-    law, weight
-        The law, per area of wood plus weighted leaves, and the weight of a leaf's area.
+    law, area
+        The law, and the area of bare wood that the leaves of each branch add in [m^2], (b,).
 
     """
     coefficient, exponent = leaves
-    weight = coefficient * math.pow(SHARED_AT, -exponent) / wood
-    whole = wood_area + weight * leaf_area
-    return DragLaw(coefficient * leaf_area / whole, exponent, wood * wood_area / whole), weight
+    weighted = coefficient * math.pow(SHARED_AT, -exponent) / wood * leaf_area
+    added = np.maximum(weighted - clad_wood, 0.0)
+    whole = wood_area + float(added.sum())
+    leafy = coefficient * float(leaf_area.sum()) / whole
+    steady = wood * (whole - float(weighted.sum())) / whole
+    return DragLaw(leafy, exponent, steady), added
 
 
 def pressure(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:

@@ -219,6 +219,7 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
     return [
         ("n_rows", "i8"),  # the most coordinates that one of them has
         ("is_solved", "i8", (LANES,)),  # whether it copies no other
+        ("delay", "i8", (LANES,)),  # which delay of `crown_wind` it has
         # As in `BRANCH`:
         ("speed", "f8", (LANES,)),
         ("area", "f8", (LANES,)),
@@ -230,6 +231,8 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         ("along", "f8", (3, LANES)),  # its chord times its lever
         # Set with the time step:
         ("compliance", "f8", (LANES,)),  # velocity half a step after a unit of force [s/kg]
+        # Set with the wind:
+        ("gust", "f8", (3, LANES)),  # by which its own wind differs from the tree's [m/s]
         # State half a step on, and what follows from it:
         ("x", "f8", (n_coordinates, LANES)),
         ("v", "f8", (n_coordinates, LANES)),

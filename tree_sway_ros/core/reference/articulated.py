@@ -74,6 +74,8 @@ class ArticulatedTree:
         Wind at each segment over the wind given to `step`, (n,); 1 if None.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
+    root_stiffness
+        Of the spring that holds the root in [N m/rad].
 
     """
 
@@ -96,13 +98,16 @@ class ArticulatedTree:
         wind_factor: ArrayLike | None = None,
         leaf_mass: Floats | None = None,
         leaf_area: Floats | None = None,
+        root_stiffness: float = math.inf,
     ) -> None:
         need_compiler("the model 'segments'")
         self.tree = tree
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)
         leaves = (self._along(leaf_mass), self._along(leaf_area))
-        self.bodies = articulated_bodies(cut, modulus, density, gravity, twist_ratio, *leaves)
+        self.bodies = articulated_bodies(
+            cut, modulus, density, gravity, twist_ratio, *leaves, root_stiffness
+        )
         n = cut.n_segments
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
         self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)

@@ -52,9 +52,14 @@ const WOODS = {
   spruce: { bark: [0.4, 0.29, 0.22], twig: [0.38, 0.28, 0.18], leaf: [0.11, 0.27, 0.16], fresh: [0.25, 0.43, 0.22] },
   birch: { bark: [0.82, 0.81, 0.78], twig: [0.4, 0.3, 0.25], leaf: [0.3, 0.48, 0.16], fresh: [0.55, 0.68, 0.25] },
 };
-WOODS.sitka = WOODS.spruce;
+WOODS.sitka = { ...WOODS.spruce, bark: [0.42, 0.37, 0.36] };
+WOODS.oak = { ...WOODS.usual, bark: [0.36, 0.31, 0.26] };
+WOODS.beech = { ...WOODS.usual, bark: [0.55, 0.56, 0.54] };
+WOODS.ash = { ...WOODS.usual, bark: [0.52, 0.5, 0.44] };
+WOODS.sycamore = { ...WOODS.usual, bark: [0.5, 0.45, 0.41] };
+WOODS.walnut = { ...WOODS.usual, bark: [0.46, 0.43, 0.4] };
 WOODS.douglas_fir = WOODS.spruce;
-WOODS.pine = { ...WOODS.spruce, bark: [0.55, 0.36, 0.25] };
+WOODS.pine = { ...WOODS.spruce, bark: [0.66, 0.4, 0.24] };
 
 /** @param {WebGLRenderingContext | WebGL2RenderingContext} gl */
 function isSoftware(gl) {

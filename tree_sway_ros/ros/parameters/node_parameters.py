@@ -350,6 +350,14 @@ SOLVER: Table = (
         30.0,
     ),
     Parameter(
+        "root_stiffness",
+        0.0,
+        "The stiffness of the roots against tilting, 1e15 for rigid ones; 0 means the tree's own.",
+        "N m/rad",
+        0.0,
+        1e15,
+    ),
+    Parameter(
         "damping_ratio",
         0.0,
         "The damping ratio of every branch; 0 means the species' own.",
@@ -477,7 +485,9 @@ VIEWER: Table = (
     Parameter("private_key", "", "PEM file of the certificate's key."),
     Parameter("max_clients", 64, "Most pages at once.", "", 1, 1000),
     Parameter(
-        "origins", "", "Pages of these origins may follow the stream: `https://a.org https://b.org`."
+        "origins",
+        "",
+        "Pages of these origins may follow the stream: `https://a.org https://b.org`.",
     ),
     Parameter("control", False, "Pages may change the wind and the tolerance, pause and reset."),
 )

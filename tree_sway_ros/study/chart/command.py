@@ -12,7 +12,7 @@ from typing import Any
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.progress import waiting
 
-_CHARTS = ("methods", "fidelity", "cost", "portraits")
+_CHARTS = ("methods", "fidelity", "cost", "portraits", "habits")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,7 +21,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "what",
         choices=(*_CHARTS, "validation", "all"),
         help="methods: of integration; fidelity: models of a tree; cost: against its size; "
-        "portraits: trees at rest and in wind, and a film; all: every picture of the documentation",
+        "portraits: trees at rest and in wind, and a film; habits: grown species; "
+        "all: every picture of the documentation",
     )
     parser.add_argument(
         "-o", "--output", default=".", metavar="FOLDER", help="for PNG and CSV (%(default)s)"
