@@ -53,6 +53,7 @@ from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 
 SMALLEST, LARGEST = 0.2, 5.0
@@ -285,10 +286,7 @@ class Stand(KeepsState):
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step, as `Forest.step`; a wind beyond a table is held at its limit."""
         status = OK
-        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
-        if math.hypot(x, y, z) <= self.settings.max_wind:
-            self._wind[0], self._wind[1], self._wind[2] = x, y, z
-        else:
+        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
         if dt != self._dt:
