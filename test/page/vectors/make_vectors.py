@@ -94,6 +94,7 @@ def main() -> None:
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
             error=SimpleNamespace(greatest=0.001),
             frames=each.joints["frame"],
+            per_key=lambda branch, turns: turns,
         )
         for each in both.simulators
     ]
