@@ -346,20 +346,20 @@ class Stand(KeepsState):
         for kind, share in enumerate(shares):
             if len(share[thread]):
                 bank, records = self._banks[kind], self._models[kind].bank
-                heads, work, x = self._rooms[thread][kind]
+                heads, work, x, block = self._rooms[thread][kind]
                 place_standing(
                     self._tables, self._standing, self._instances, share[thread], bank.all_shapes,
-                    records.branches, records.segments, heads, work, x,
-                    self._models[kind].tree.n_segments, poses,
+                    records.branches, records.segments, heads, work, x, block, poses,
                 )  # fmt: skip
 
-    def _room(self) -> list[tuple[Any, Any, Floats]]:
+    def _room(self) -> list[tuple[Any, Any, Floats, Floats]]:
         """What placing works in, of each kind."""
         room = []
         for model, bank in zip(self._models, self._banks, strict=True):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
             heads[:] = model.bank.heads
-            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes))))
+            block = np.zeros((model.tree.n_segments, 7))
+            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
         return room
 
     @property
@@ -423,7 +423,7 @@ class Stand(KeepsState):
             if own:
                 own.place_rotations(x, rows)
                 continue
-            heads, work, _ = self._rooms[0][kind]
+            heads, work = self._rooms[0][kind][:2]
             east, north, up = here["at"].tolist()
             place_standing_at(
                 records.branches, records.segments, heads, work, x, east, north, up,
