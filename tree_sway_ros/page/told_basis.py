@@ -87,9 +87,7 @@ def told_basis(simulator: TreeSimulator, found: dict[Any, ToldBasis]) -> ToldBas
     if len(basis.scale) > MOST_COORDINATES:
         basis = state_basis(runner, MOST_COORDINATES)
     same = [np.eye(2 + each.shape[1]) for each in turns]
-    told = ToldBasis(
-        basis.matrix, basis.projection, basis.scale, basis.error, frames, turns, same
-    )
+    told = ToldBasis(basis.matrix, basis.projection, basis.scale, basis.error, frames, turns, same)
     found[simulator.model, shape] = told
     return told
 
@@ -101,9 +99,7 @@ def _further_turns(joint: Any, segments: Any) -> Floats:
     return np.stack(rows)[:, 2:].transpose(0, 2, 1).reshape(3 * len(rows), -1)
 
 
-def _turned(
-    basis: ToldBasis, frames: Floats, turns: list[Floats], first: Any
-) -> ToldBasis | None:
+def _turned(basis: ToldBasis, frames: Floats, turns: list[Floats], first: Any) -> ToldBasis | None:
     """
     The basis of a tree that is the same but turned about the vertical; None if it is not.
 
@@ -138,9 +134,7 @@ def _turned(
         keys = slice(first[branch], first[branch] + len(mix))
         projection[:, keys] = basis.projection[:, keys] @ mix
         from_own.append(mix)
-    return ToldBasis(
-        basis.matrix, projection, basis.scale, basis.error, with_it, told, from_own
-    )
+    return ToldBasis(basis.matrix, projection, basis.scale, basis.error, with_it, told, from_own)
 
 
 def _runner(simulator: TreeSimulator) -> SwaySimulator:
