@@ -221,6 +221,11 @@ class Stand(KeepsState):
         return ", ".join([*shared, *dict.fromkeys(sim.model for sim in self._own.values())])
 
     @property
+    def simulators(self) -> tuple[TreeSimulator, ...]:
+        """The simulators of the trees that are solved on a model of their own."""
+        return tuple(self._own.values())
+
+    @property
     def n_segments(self) -> int:
         """Segments of all trees, rows of the pose block."""
         return int(self._ends[-1])
