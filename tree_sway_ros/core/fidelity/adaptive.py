@@ -42,6 +42,7 @@ from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
+from tree_sway_ros.core.wind.limits import is_wind
 from tree_sway_ros.errors import StateError
 
 RUN_IN = 10.0
@@ -263,6 +264,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         elif self._next is None:
             self._next, self._next_age = self._simulator(wanted), 0.0
             self._next.reset()
+            self._next.follow_wind(self._shown)
             self.choice = wanted
         return self.choice
 
@@ -297,7 +299,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
-        if self._gust < load <= self.settings.max_wind**2:
+        if self._gust < load and is_wind(x, y, z, self.settings.max_wind):
             self._gust, self._bearing = load, (x, y)
             if load > SURPRISE * self._judged:
                 self.review()
@@ -316,6 +318,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
             x, v = shown.motion()
             into_whole = self._into_whole(shown)
             here = self._among(better)
+            better.follow_wind(shown)
             better.take_over((into_whole @ x)[here], (into_whole @ v)[here])
             self._left, self._shown = shown, better
         self._next, self.choice = None, wanted

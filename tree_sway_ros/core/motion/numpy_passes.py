@@ -158,7 +158,7 @@ def of_lanes(field: Floats, count: int) -> Floats:
     return rows.reshape(-1, *rows.shape[2:])[:count]
 
 
-def into_lanes(rows: Floats, field: Floats) -> None:
+def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
     """Write rows of branches, (b, ...), into a field of records in lanes."""
     block, lane = np.divmod(np.arange(len(rows)), LANES)
     field[block, ..., lane] = rows

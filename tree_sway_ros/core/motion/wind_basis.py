@@ -74,6 +74,7 @@ class WindBasisBank:
 
     carries = True
     is_tabled = True
+    loads: Any | None = None
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
         """Stand at rest."""

@@ -11,7 +11,6 @@ need be turned into its frame and no pose out of it. The gusts reach one tree af
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -29,6 +28,7 @@ from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, ref
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 
 
@@ -181,11 +181,8 @@ class Forest:
         """
         refuse_time_step(dt)
         status = OK
-        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         # The history must not remember what no tree would take.
-        if math.hypot(x, y, z) <= self.settings.max_wind:
-            self._wind[0], self._wind[1], self._wind[2] = x, y, z
-        else:
+        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
             status = WIND_REFUSED
             self._refused += 1
         felt = self.gusts.push(self._wind, dt)

@@ -40,10 +40,12 @@ from tree_sway_ros.core.reduction.modes import (
     with_static,
 )
 from tree_sway_ros.core.reduction.one_thread import one_thread
+from tree_sway_ros.core.simulator.crown_gusts import delays_of
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.crown_wind import CrownDelays
 from tree_sway_ros.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -61,6 +63,10 @@ class Oscillators(Protocol):
     is_tabled: bool
     branches: Any
     work: Any
+
+    @property
+    def loads(self) -> Any | None:
+        """Records of `load_fields`; None where only an even wind is known."""
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
@@ -104,6 +110,7 @@ class Frozen:
 
     carries = True
     is_tabled = False
+    loads: Any | None = None
 
     def __init__(self, branches: Any, n_coordinates: int) -> None:
         """Rest is all there is."""
@@ -282,6 +289,11 @@ class CalibratedTree:
         """Area of bare wood that the leaves of each branch stand for in [m^2], (b,)."""
         return self._crown_drag[1]
 
+    @cached_property
+    def crown_delays(self) -> CrownDelays:
+        """When each branch meets a gust."""
+        return delays_of(self.tree, self.leaf_load_area)
+
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
@@ -394,7 +406,7 @@ class CalibratedTree:
         reduction = reduce_tree(
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
-        layout = branch_layout() if enriched else branch_layout(2, 1)
+        layout = branch_layout() if enriched else branch_layout(2)
         return Layer(
             models,
             reduction,

@@ -36,6 +36,8 @@ from tree_sway_ros.core.simulator.simulator import (
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.crown_wind import CrownWind
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError
 
 LONGEST_STEP = 1.0 / 60.0
@@ -96,7 +98,12 @@ class SegmentsSimulator(OneTree, KeepsState):
             leaf_area=calibrated.leaf_load_area,
             root_stiffness=species.root_stiffness,
         )
-        self.wind = np.zeros(3)
+        self.wind, self._air = np.zeros(3), np.zeros((tree.n_segments, 3))
+        self._crown: CrownWind | None = None
+        if settings.crown_coherence < 1.0:
+            delays = calibrated.crown_delays
+            self._crown = CrownWind(delays.spread, settings.crown_coherence)
+            self._delay_of_segment = delays.of_branch[tree.branch_of_segment]
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
 
@@ -109,13 +116,11 @@ class SegmentsSimulator(OneTree, KeepsState):
 
         """
         refuse_time_step(dt)
-        wind = np.asarray(wind_mean, dtype=np.float64)
         status = OK
-        if np.abs(wind).max() < 1e9 and np.linalg.norm(wind) <= self.settings.max_wind:
-            self.wind[:] = wind
-        else:
+        if not take_wind(self.wind, wind_mean, self.settings.max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
+        self._blow(dt)
         pieces = math.ceil(dt / LONGEST_STEP - 1e-9)
         for _ in range(pieces):
             if not self._advance(dt / pieces):
@@ -125,13 +130,20 @@ class SegmentsSimulator(OneTree, KeepsState):
         self.counts.steps += 1
         return status
 
+    def _blow(self, dt: float) -> None:
+        """Give every segment the wind of its limb."""
+        self._air[:] = self.wind
+        if self._crown is not None:
+            x, y, z = self.wind.tolist()
+            self._air += self._crown.push(x, y, z, dt)[self._delay_of_segment]
+
     def _advance(self, dt: float) -> bool:
         """Advance by a time [s], finer where joints turn too fast; tell whether they still do."""
         turn, rate = self._model.state
         before = turn.copy(), rate.copy()
         for pieces in (1, 4, 16, 64, 256):
             for _ in range(pieces):
-                self._model.step(self.wind, dt / pieces)
+                self._model.step(self._air, dt / pieces)
                 largest = float(np.abs(rate).max()) * dt / pieces
                 if not largest <= LARGEST_TURN:
                     break
@@ -162,7 +174,8 @@ class SegmentsSimulator(OneTree, KeepsState):
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next, the wind of the last step first."""
-        return self.wind, self._model.state.turn, self._model.state.rate
+        crown = () if self._crown is None else self._crown.memory()
+        return self.wind, self._model.state.turn, self._model.state.rate, *crown
 
     def rotations(self) -> Floats:
         """Key rotations in [rad] that fit the segments best, (N,); the same array each time."""
@@ -196,4 +209,6 @@ class SegmentsSimulator(OneTree, KeepsState):
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self._model.reset()
+        if self._crown is not None:
+            self._crown.reset()
         self.wind[:] = 0.0

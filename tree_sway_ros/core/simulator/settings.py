@@ -57,6 +57,9 @@ class Settings:
         In [m/s^2]; 0 leaves weight out.
     profile
         Wind over height.
+    crown_coherence
+        Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
+        after a delay of its own (`crown_wind`). 1 is one wind for the whole crown.
     integrator
         Method that steps the oscillators, one of `rule_names.REAL_TIME`; one whose step would be
         unstable is refused at the first step. Later steps that are longer are cut.
@@ -88,6 +91,7 @@ class Settings:
     in_leaf: bool | None = None
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
+    crown_coherence: float = 1.0
     integrator: str = DEFAULT
     twig_tolerance: float = 0.05
     enrich: str = "limbs"
@@ -125,6 +129,7 @@ class Settings:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
         if self.degree not in (1, 3, 5):
             raise ParameterError(f"degree {self.degree}", where="degree", cure="use 1, 3 or 5")
+        within("crown_coherence", self.crown_coherence, 0.0, 1.0)
         within("max_wind", self.max_wind, 0.0, FASTEST_WIND, "m/s", above=True)
         for name in ("volume_stiffness", "volume_damping"):
             value = getattr(self, name)

@@ -20,12 +20,14 @@ from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError
 
 OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
@@ -113,6 +115,13 @@ class SwaySimulator(OneTree, KeepsState):
         self._advance = self.bank.oscillators.advance
         self._place = self.bank.place
         self._max_wind = self.settings.max_wind
+        self._gusts: CrownGusts | None = None
+        if self.settings.crown_coherence < 1.0:
+            self._gusts = CrownGusts(
+                calibrated.crown_delays,
+                self.settings.crown_coherence,
+                self.bank.oscillators.loads,
+            )
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
         self._wind = np.zeros(3)
         self._expected = self.bank.oscillators.rotations().shape
@@ -170,7 +179,8 @@ class SwaySimulator(OneTree, KeepsState):
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next, the wind of the last step first."""
-        return self._wind, *self.bank.oscillators.memory()
+        crown = () if self._gusts is None else self._gusts.wind.memory()
+        return self._wind, *self.bank.oscillators.memory(), *crown
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
@@ -206,20 +216,16 @@ class SwaySimulator(OneTree, KeepsState):
             integrator; later ones are cut into pieces no longer than those it could take.
 
         """
-        wx, wy, wz = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         status = OK
-        speed = math.hypot(wx, wy, wz)
-        if speed <= self._max_wind:
-            wind = self._wind
-            wind[0], wind[1], wind[2] = wx, wy, wz
-        else:
+        if not take_wind(self._wind, wind_mean, self._max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
-            wx, wy, wz = self._wind.tolist()
-            speed = math.hypot(wx, wy, wz)
         if dt != self._dt:
             self._set_step(dt)
-        load = self._pressure(speed, *self.drag_law)
+        wx, wy, wz = self._wind.tolist()
+        load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        if self._gusts is not None:
+            wx, wy, wz = self._gusts.felt(self._wind, dt)
         for _ in range(self._pieces):
             held = self._advance(wx, wy, wz, load)
             if held > 0:
@@ -293,9 +299,16 @@ class SwaySimulator(OneTree, KeepsState):
         """Go on from key rotations and rates, (N,), instead of from rest."""
         self.bank.oscillators.take_over(x, v)
 
+    def follow_wind(self, other: SwaySimulator) -> None:
+        """Go on with the wind that the limbs of the same tree have felt on another model."""
+        if self._gusts is not None and other._gusts is not None:
+            self._gusts.wind.follow(other._gusts.wind)
+
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self.bank.oscillators.reset()
+        if self._gusts is not None:
+            self._gusts.wind.reset()
         self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:
