@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,7 @@ from tree_sway_ros.core.motion.wind_basis import (
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.stand_member import StandMember
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -384,15 +385,29 @@ class Stand(KeepsState):
 
     def rotations(self) -> Floats:
         """Key rotations of all trees, one after another, in [rad], (N,)."""
-        parts = []
-        for number, kind in enumerate(self._standing["kind"].tolist()):
-            if number in self._own:
-                parts.append(self._own[number].rotations())
-            else:
-                bank, here = self._banks[kind], slice(number, number + 1)
-                parts.append(np.zeros(len(bank.shapes)))
-                expand_one(bank.record, self._instances[here], bank.all_shapes, parts[-1])
-        return np.concatenate(parts)
+        return np.concatenate([self._rotations(number) for number in range(len(self.trees))])
+
+    def members(self) -> tuple[StandMember | TreeSimulator, ...]:
+        """Each tree by itself: what it is, and how it bends at any time."""
+        return tuple(
+            self._own.get(number)
+            or StandMember(
+                self.tree_of(number),
+                self._models[self._used.index(told.kind)],
+                told.yaw,
+                partial(self._rotations, number),
+            )
+            for number, told in enumerate(self.trees)
+        )
+
+    def _rotations(self, number: int) -> Floats:
+        """Key rotations of a tree in [rad], (N,)."""
+        if number in self._own:
+            return self._own[number].rotations()
+        bank, here = self._banks[self._standing["kind"][number]], slice(number, number + 1)
+        found = np.zeros(len(bank.shapes))
+        expand_one(bank.record, self._instances[here], bank.all_shapes, found)
+        return found
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
