@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.tools import plot
 from tree_sway_ros.tools.cli import main
 
@@ -40,6 +39,4 @@ def test_a_portrait_leans_away_from_the_wind(monkeypatch, tmp_path):
 @pytest.mark.parametrize("options", [["--from", "400"], ["--from", "90", "--wind", "canopy"]])
 def test_no_direction_and_one_for_a_record_are_refused(options, tmp_path):
     arguments = [*SHORT, *options, "-o", str(tmp_path / "sway.png")]
-    with pytest.raises((ParameterError, SystemExit)):
-        if main(arguments) != 0:
-            raise SystemExit
+    assert main(arguments) != 0

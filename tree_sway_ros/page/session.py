@@ -168,7 +168,7 @@ class Session:
 
     def _made(self, choices: Choices) -> SceneState:
         simulator, leaves = self._build(choices)
-        scene = SceneState(simulator, leaves)
+        scene = SceneState(simulator, leaves, is_running=False)
         tell_demand(simulators_of(simulator), tolerance=self._tolerance)
         simulator.reset()
         return scene

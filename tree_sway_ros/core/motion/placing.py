@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.branch.shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import (
@@ -96,16 +95,16 @@ def place_standing_at(
         _read_parents(branches, head, scratch, work, x, east, north, up, cosine, sine, out)
         _turn_bases(head, scratch, scale)
         is_far = _write_bases(head, scratch, work)
-        if not head.is_plain:
-            is_far = _set_further_turns(branches, head, scratch, x) or is_far
+        if head.n_rows > 2:
+            is_far = _set_further_keys(branches, head, scratch, x) or is_far
         for rank in range(head.n_records):
             segment = segments[head.block + rank]
             if is_far:
-                _bend_far(segment, scratch)
-            elif head.is_plain:
+                _bend_far(segment, scratch, head.n_rows)
+            elif head.n_rows == 2:
                 _bend_in_plane(segment, scratch)
             else:
-                _bend(segment, scratch)
+                _bend(segment, scratch, head.n_rows)
             if head.is_joined:
                 _join(segment, scratch, scale)
             else:
@@ -118,7 +117,7 @@ def place_standing_at(
 
 
 @fused
-def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float, float]:
+def turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
     Rotation of a place on a branch.
 
@@ -126,8 +125,8 @@ def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float,
     ----------
     parent
         Record of `BRANCH`.
-    slope
-        Of its shapes and twists at that place, (c,).
+    turns
+        Rotation vector of that place per unit of each of its coordinates, (c, 3).
     x
         Key rotations, (N,).
 
@@ -137,27 +136,23 @@ def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float,
         Quaternion w x y z, from rest.
 
     """
-    hx, hy, hz = _half_turn_at(parent, slope, x)
+    hx, hy, hz = _half_turn_at(parent, turns, x)
     return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
 
 
 @inlined
-def _half_turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float]:
+def _half_turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float]:
     """Half the rotation vector of a place on a branch, as `turn_at`."""
-    i, pairs, frame = parent.coordinate, parent.n_pairs, parent.frame
-    first = slope[0] * (1.0 + min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew)
-    ux, uy, spin = first * x[i], first * x[i + 1], 0.0
-    for p in range(1, pairs):
-        ux += slope[p] * x[i + 2 * p]
-        uy += slope[p] * x[i + 2 * p + 1]
-    for p in range(parent.n_coordinates - 2 * pairs):
-        spin += slope[N_SHAPES + p] * x[i + 2 * pairs + p]
-    ux, uy, spin = 0.5 * ux, 0.5 * uy, 0.5 * spin
-    return (
-        ux * frame[2, 0] - uy * frame[1, 0] + spin * frame[0, 0],
-        ux * frame[2, 1] - uy * frame[1, 1] + spin * frame[0, 1],
-        ux * frame[2, 2] - uy * frame[1, 2] + spin * frame[0, 2],
-    )
+    i = parent.coordinate
+    half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
+    ux, uy = half * x[i], half * x[i + 1]
+    hx = ux * turns[0, 0] + uy * turns[1, 0]
+    hy = ux * turns[0, 1] + uy * turns[1, 1]
+    hz = ux * turns[0, 2] + uy * turns[1, 2]
+    for c in range(2, parent.n_coordinates):
+        u = 0.5 * x[i + c]
+        hx, hy, hz = hx + u * turns[c, 0], hy + u * turns[c, 1], hz + u * turns[c, 2]
+    return hx, hy, hz
 
 
 @fused
@@ -178,11 +173,13 @@ def _read_parents(
         else:
             below, on = work[head.parent[j]], head.base_segment[j]
             if head.is_parent_plain[j]:
-                slope = head.base_slope[j]
-                hx, hy, hz = slope * below.turn[0], slope * below.turn[1], slope * below.turn[2]
+                ux, uy, per = below.key[0], below.key[1], head.base_turn
+                hx = ux * per[0, 0, j] + uy * per[1, 0, j]
+                hy = ux * per[0, 1, j] + uy * per[1, 1, j]
+                hz = ux * per[0, 2, j] + uy * per[1, 2, j]
             else:
-                slopes = branches[head.branch[j]].base_slope
-                hx, hy, hz = _half_turn_at(branches[head.parent[j]], slopes, x)
+                turns = branches[head.branch[j]].twist[:, 3:]
+                hx, hy, hz = _half_turn_at(branches[head.parent[j]], turns, x)
             bw, bx, by, bz = below.base[0], below.base[1], below.base[2], below.base[3]
             if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:
                 qw, qx, qy, qz = quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
@@ -206,8 +203,9 @@ def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
-    turn, base, half_turn, swing, following = (
-        scratch.turn, scratch.base, scratch.half_turn, scratch.swing, scratch.next,
+    bent, base, half_turn, half_key, swing, following = (
+        scratch.bent, scratch.base, scratch.half_turn, scratch.half_key, scratch.swing,
+        scratch.next,
     )  # fmt: skip
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
@@ -219,9 +217,10 @@ def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
         ux = x * frame[2, 0, j] - y * frame[1, 0, j]
         uy = x * frame[2, 1, j] - y * frame[1, 1, j]
         uz = x * frame[2, 2, j] - y * frame[1, 2, j]
-        turn[0, j], turn[1, j], turn[2, j] = own * ux, own * uy, own * uz
+        bent[0, j], bent[1, j] = own * x, own * y
         wx, wy, wz = half * ux, half * uy, half * uz
-        half_turn[0, 0, j], half_turn[0, 1, j], half_turn[0, 2, j] = wx, wy, wz
+        half_turn[0, j], half_turn[1, j], half_turn[2, j] = wx, wy, wz
+        half_key[0, j], half_key[1, j] = half * x, half * y
         square = half * half * t
         scratch.blend[j], scratch.square[j] = blend, square
         scratch.half_angle[j] = square * head.steepest[j]
@@ -255,52 +254,43 @@ def _write_bases(head: Any, scratch: Any, work: Any) -> bool:
         here = work[head.branch[j]]
         for k in range(4):
             here.base[k] = scratch.base[k, j]
-        for k in range(3):
-            here.turn[k] = scratch.turn[k, j]
+        here.key[0], here.key[1] = scratch.bent[0, j], scratch.bent[1, j]
         is_far |= not scratch.half_angle[j] <= SERIES_LIMIT
     return is_far
 
 
 @fused
-def _set_further_turns(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
+def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
     """
-    Set how further shapes and twists bend; return whether any branch with them bends beyond the
-    series.
+    Set the further coordinates; return whether any branch with them bends beyond the series.
 
     """
-    is_far, half_turn = False, scratch.half_turn
-    half_turn[1:] = 0.0
+    is_far, half_key = False, scratch.half_key
+    half_key[2:] = 0.0
     for j in range(head.n_lanes):
         branch = branches[head.branch[j]]
         if branch.n_coordinates == 2:
             continue
-        i, pairs, frame = branch.coordinate, branch.n_pairs, branch.frame
-        further = 0.0
-        for p in range(1, pairs):
-            ux, uy = 0.5 * x[i + 2 * p], 0.5 * x[i + 2 * p + 1]
-            for k in range(3):
-                half_turn[p, k, j] = ux * frame[2, k] - uy * frame[1, k]
-            further += (ux * ux + uy * uy) * branch.steepest[p]
-        for p in range(branch.n_coordinates - 2 * pairs):
-            spin = 0.5 * x[i + 2 * pairs + p]
-            for k in range(3):
-                half_turn[N_SHAPES + p, k, j] = spin * frame[0, k]
-            further += spin * spin * branch.steepest[N_SHAPES + p]
+        i, further = branch.coordinate, 0.0
+        for c in range(2, branch.n_coordinates):
+            half = 0.5 * x[i + c]
+            half_key[c, j] = half
+            further += half * half * branch.steepest[c]
         # The square of a sum is at most twice the square of its first and twice that of the others.
-        is_far |= not 2.0 * (scratch.half_angle[j] + 5.0 * further) <= SERIES_LIMIT
+        others = branch.n_coordinates - 2
+        is_far |= not 2.0 * (scratch.half_angle[j] + others * further) <= SERIES_LIMIT
     return is_far
 
 
 @inlined
-def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, float]:
-    """Half the rotation vector of a segment of the lane j, of all its shapes and twists."""
-    slope, half_turn = segment.slope, scratch.half_turn
-    first = slope[0, j] + scratch.blend[j] * (segment.tip_slope[j] - slope[0, j])
-    hx, hy, hz = first * half_turn[0, 0, j], first * half_turn[0, 1, j], first * half_turn[0, 2, j]
-    for c in range(1, slope.shape[0]):
-        hx += slope[c, j] * half_turn[c, 0, j]
-        hy += slope[c, j] * half_turn[c, 1, j]
-        hz += slope[c, j] * half_turn[c, 2, j]
+def _half_vector(segment: Any, scratch: Any, n_rows: int, j: int) -> tuple[float, float, float]:
+    """Half the rotation vector of a segment of the lane j, by all its coordinates."""
+    turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
+    far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
+    hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
+    for c in range(n_rows):
+        key = half_key[c, j]
+        hx, hy, hz = hx + key * turn[c, 0, j], hy + key * turn[c, 1, j], hz + key * turn[c, 2, j]
     return hx, hy, hz
 
 
@@ -347,7 +337,7 @@ def _bend_in_plane(segment: Any, scratch: Any) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
     slope, base, swing = segment.slope, scratch.base, scratch.swing
     for j in range(LANES):
-        first = slope[0, j] + scratch.blend[j] * (segment.tip_slope[j] - slope[0, j])
+        first = slope[j] + scratch.blend[j] * (segment.tip_slope[j] - slope[j])
         c, s = half_angle_series(first * first * scratch.square[j])
         s *= first
         _turn(
@@ -358,11 +348,11 @@ def _bend_in_plane(segment: Any, scratch: Any) -> None:
 
 
 @fused
-def _bend(segment: Any, scratch: Any) -> None:
-    """Turn sixteen segments of branches with further shapes or twists."""
+def _bend(segment: Any, scratch: Any, n_rows: int) -> None:
+    """Turn sixteen segments of branches with further coordinates."""
     base = scratch.base
     for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, scratch, j)
+        hx, hy, hz = _half_vector(segment, scratch, n_rows, j)
         c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
@@ -370,11 +360,16 @@ def _bend(segment: Any, scratch: Any) -> None:
 
 
 @fused
-def _bend_far(segment: Any, scratch: Any) -> None:
+def _bend_far(segment: Any, scratch: Any, n_rows: int) -> None:
     """Turn sixteen segments, some of a branch that bends beyond the series."""
-    base = scratch.base
+    base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):
-        hx, hy, hz = _half_vector(segment, scratch, j)
+        if n_rows > 2:
+            hx, hy, hz = _half_vector(segment, scratch, n_rows, j)
+        else:
+            slope = segment.slope[j]
+            slope += scratch.blend[j] * (segment.tip_slope[j] - slope)
+            hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]
         c, s = half_angle(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)

@@ -25,21 +25,16 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.branch.shapes import MAX_COORDINATES, N_SHAPES, N_TWISTS
-
-MAX_SLOPES = N_SHAPES + N_TWISTS
-"""Shapes and twists of an enriched branch."""
+from tree_sway_ros.core.branch.shapes import MAX_COORDINATES
 
 
 @cache
-def branch_layout(
-    n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOPES
-) -> np.dtype[np.void]:
+def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
-    All that a step needs to know of a branch, with room for so many coordinates, shapes and twists.
+    All that a step needs to know of a branch, with room for so many coordinates.
 
-    Where no branch has more than one shape, records have no room for more: a forest is solved no
-    faster than its records come from memory.
+    Where no branch has more than its key rotation, records have no room for more: a forest is
+    solved no faster than its records come from memory.
 
     """
     return np.dtype(
@@ -49,14 +44,13 @@ def branch_layout(
             ("first", "i8"),  # its first segment
             ("end", "i8"),  # one past its last segment
             ("coordinate", "i8"),  # its first coordinate
-            ("n_coordinates", "i8"),  # pairs x, y, then twists
-            ("n_pairs", "i8"),
+            ("n_coordinates", "i8"),  # key rotation x, y, then further ones
             ("source", "i8"),  # branch whose motion it copies, itself if solved
             (
                 "frame",
                 "f8",
                 (3, 3),
-            ),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
+            ),  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
             (
                 "twist",
                 "f8",
@@ -64,6 +58,7 @@ def branch_layout(
             ),  # motion of its base per unit of parent's coordinates
             ("push", "f8", (n_coordinates, 3)),  # displacement under the wind's mean push
             ("flow", "f8", (n_coordinates, 3)),  # displacement at which its drag damps
+            ("spread", "f8"),  # mean square of what pieces move beside that displacement
             ("reach", "f8", (n_coordinates, 3)),  # displacement of its tip
             ("tip", "f8", (3,)),  # tip at rest
             ("turn", "f8", (n_coordinates, 3)),  # rotation of what the wind sees
@@ -75,10 +70,9 @@ def branch_layout(
             ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
             ("block", "i8"),  # record of its first segment
             ("lane", "i8"),  # of all its segments
-            ("steepest", "f8", (n_slopes,)),  # square of the largest slope of each shape and twist
+            ("steepest", "f8", (n_coordinates,)),  # square of the most a unit of each turns it by
             ("skew", "f8"),  # third cumulant of its slope shape, over 6
             ("tip_skew", "f8"),  # the same of the tip-load shape
-            ("base_slope", "f8", (n_slopes,)),  # of the parent's shapes and twists at its base
             ("offset", "f8", (3,)),  # base, from its base segment's start, in that one's frame
         ]
     )
@@ -115,22 +109,28 @@ def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Any:
 
 
 @cache
-def segment_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
-    """All that placing needs to know of one segment of each of sixteen branches."""
+def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+    """
+    All that placing needs to know of one segment of each of sixteen branches; where no branch has
+    more than its key rotation, there is no room for what further coordinates turn it by.
+
+    """
+    rows = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
     return _whole_lines(
         [
-            ("slope", "f8", (n_slopes, LANES)),  # of each shape, then of each twist
+            ("slope", "f8", (LANES,)),  # by which a plain branch is drawn
             ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
             ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
             ("reach", "f8", (3, LANES)),  # the same in its own frame
             ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
+            ("turn", "f8", (*rows, LANES)),  # rotation vector per unit of each coordinate
             ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
         ]
     )
 
 
 @cache
-def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
     What placing needs to know of the sixteen branches of a block, and finds.
 
@@ -142,12 +142,12 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
             ("block", "i8"),  # first record of their segments
             ("n_records", "i8"),
             ("n_lanes", "i8"),
-            ("is_plain", "i8"),  # whether none of them has more than one shape
+            ("n_rows", "i8"),  # most coordinates that one of them has; 2 where all are plain
             ("is_joined", "i8"),  # whether each segment starts where the one before ends
             # As in `BRANCH`:
             ("branch", "i8", (LANES,)),
             ("parent", "i8", (LANES,)),
-            ("is_parent_plain", "i8", (LANES,)),  # whether its parent has one shape
+            ("is_parent_plain", "i8", (LANES,)),  # whether its parent has two coordinates
             ("coordinate", "i8", (LANES,)),
             ("base_segment", "i8", (LANES,)),
             ("first", "i8", (LANES,)),
@@ -155,7 +155,8 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
             ("skew", "f8", (LANES,)),
             ("tip_skew", "f8", (LANES,)),
             ("steepest", "f8", (LANES,)),
-            ("base_slope", "f8", (LANES,)),
+            # Rotation of its base per unit of the first two of its parent's coordinates:
+            ("base_turn", "f8", (2, 3, LANES)),
             ("offset", "f8", (3, LANES)),
             # Scratch:
             ("key", "f8", (2, LANES)),  # key rotation
@@ -166,20 +167,17 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
                 "f8",
                 (3, LANES),
             ),  # half the rotation vector at the base, from the parent's base
-            (
-                "turn",
-                "f8",
-                (3, LANES),
-            ),  # half the rotation vector per unit of slope, as children see it
+            ("bent", "f8", (2, LANES)),  # half the key rotation, stretched, as children see it
             ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
-            ("half_turn", "f8", (n_slopes, 3, LANES)),  # half the rotation vector per unit of slope
-            ("square", "f8", (LANES,)),  # of the length of the first of these
+            ("half_turn", "f8", (3, LANES)),  # half the rotation vector per unit of slope
+            ("half_key", "f8", (n_coordinates, LANES)),  # half of each coordinate, stretched
+            ("square", "f8", (LANES,)),  # of the length of half_turn
             (
                 "swing",
                 "f8",
                 (4, LANES),
-            ),  # the first of these, then the base: what a sine is multiplied by
+            ),  # half_turn, then the base: what a sine is multiplied by
             (
                 "half_angle",
                 "f8",
@@ -193,7 +191,7 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
 
 
 SEGMENT = segment_layout()
-"""With room for every shape and twist."""
+"""With room for every coordinate."""
 
 WORK = np.dtype(
     [
@@ -202,8 +200,7 @@ WORK = np.dtype(
         ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
-        # Half the rotation vector per unit of slope, for who sits on a branch of one shape:
-        ("turn", "f8", (3,)),
+        ("key", "f8", (2,)),  # half the key rotation, stretched, for who sits on a plain branch
     ]
 )
 """What a step computes on the way, kept from one step to the next."""
@@ -223,6 +220,7 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         # As in `BRANCH`:
         ("speed", "f8", (LANES,)),
         ("area", "f8", (LANES,)),
+        ("spread", "f8", (LANES,)),
         ("projector", "f8", (6, LANES)),
         ("centre", "f8", (3, LANES)),
         ("flow", "f8", (n_coordinates, 3, LANES)),

@@ -406,7 +406,7 @@ class CalibratedTree:
         reduction = reduce_tree(
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
-        layout = branch_layout() if enriched else branch_layout(2, 1)
+        layout = branch_layout() if enriched else branch_layout(2)
         return Layer(
             models,
             reduction,
