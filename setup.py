@@ -69,6 +69,7 @@ extras = {
     "plot": ["matplotlib>=3.6"],
     "h5": ["h5py>=3.7"],
     "mujoco": ["mujoco>=3.2"],
+    "dart": ["mujoco>=3.2", "dartpy>=6.20"],
     "battery": ["mpmath>=1.2"],
     "sundials": ["scikit-sundae>=1.0"],
     # colcon runs pytest only where an extra of this name asks for it.

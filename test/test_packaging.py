@@ -70,6 +70,7 @@ OPTIONAL = {
         "mpl_toolkits",
         "mpmath",
         "mujoco",
+        "dartpy",
         "numba",
         "pyarrow",
         "rosbags",

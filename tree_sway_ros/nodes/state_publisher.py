@@ -10,6 +10,7 @@ from typing import Any
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.errors import TreeSwayError
 from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.ros.process.topics import TREE_STATE
 from tree_sway_ros.ros.timing.stepping import Divider
@@ -71,5 +72,7 @@ class StatePublisher:
             self._template = state_template(scene.coordinate_names, frame_id)
             self._node.stream.tell_more({"state": state_entry(scene.description)})
             self._scene = scene
+        except TreeSwayError as error:
+            self._node.get_logger().warning(f"no {TREE_STATE.name}: {error}")
         except Exception as error:
             self._node.slip(error)

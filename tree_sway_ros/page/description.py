@@ -21,11 +21,10 @@ from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.rotation import rotated
-from tree_sway_ros.core.scene.make import simulators_of
-from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.protocol import encode_description
-from tree_sway_ros.page.told_basis import ToldBasis
+from tree_sway_ros.page.told_basis import ToldBasis, ToldTree
 
 RIGID = -1
 """Coordinate of a branch that has none."""
@@ -33,6 +32,7 @@ RIGID = -1
 
 def describe_scene(
     simulator: Simulator,
+    told: Sequence[ToldTree],
     bases: Sequence[ToldBasis],
     *,
     frame_id: str = "map",
@@ -44,9 +44,9 @@ def describe_scene(
     Parameters
     ----------
     simulator
-        Of a tree or a forest, on the model whose state will be sent.
-    bases
-        Per tree.
+        Of a tree, a forest or a stand, on the model whose state will be sent.
+    told, bases
+        Each tree of it, and its basis.
     frame_id
         Frame of the poses.
     leaves
@@ -58,8 +58,7 @@ def describe_scene(
         As `encode_description`.
 
     """
-    simulators = simulators_of(simulator)
-    parts = [_branches(each, basis) for each, basis in zip(simulators, bases, strict=True)]
+    parts = [_branches(each, basis) for each, basis in zip(told, bases, strict=True)]
     arrays: dict[str, Any] = _joined(parts)
     trees: list[dict[str, Any]] = []
     coordinates = key = 0
@@ -67,7 +66,7 @@ def describe_scene(
     # Trees of one shape share a matrix, which is sent once.
     place_of: dict[int, int] = {}
     matrices: list[Any] = []
-    for each, basis in zip(simulators, bases, strict=True):
+    for each, basis in zip(told, bases, strict=True):
         rows, columns = basis.matrix.shape
         if id(basis.matrix) not in place_of:
             place_of[id(basis.matrix)] = sum(len(matrix) for matrix in matrices)
@@ -106,7 +105,7 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: TreeSimulator, told: ToldBasis) -> dict[str, Any]:
+def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
     """
     Arrays of one tree: how each branch of the whole tree is placed, by the told key rotations.
 

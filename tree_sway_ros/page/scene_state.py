@@ -13,7 +13,9 @@ import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.scene.stand import Stand
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.page.description import describe_scene
 from tree_sway_ros.page.protocol import (
     BEYOND_SCALE,
@@ -24,7 +26,10 @@ from tree_sway_ros.page.protocol import (
     encode_frame,
     quantised,
 )
-from tree_sway_ros.page.told_basis import ToldBasis, told_basis
+from tree_sway_ros.page.told_basis import ToldBasis, ToldTree, told_basis
+
+MOST_SEGMENTS = 300_000
+"""Of a scene that is described: some 20 MB, once."""
 
 
 class SceneState:
@@ -36,22 +41,44 @@ class SceneState:
     Parameters
     ----------
     simulator
-        Of a tree or a forest.
+        Of a tree, a forest or a stand.
     leaves
         Clusters that are drawn; None without.
     frame_id
         Frame of the poses.
+    is_running
+        Whether the simulator is stepped meanwhile; one that is not is itself run, and set back.
+
+    Raises
+    ------
+    ParameterError
+        More than `MOST_SEGMENTS`.
 
     """
 
     def __init__(
-        self, simulator: Simulator, leaves: LeafClusters | None = None, frame_id: str = "map"
+        self,
+        simulator: Simulator,
+        leaves: LeafClusters | None = None,
+        frame_id: str = "map",
+        *,
+        is_running: bool = True,
     ) -> None:
         self.simulator = simulator
-        self._parts = simulators_of(simulator)
+        if simulator.tree.n_segments > MOST_SEGMENTS:
+            raise ParameterError(
+                f"a state of {simulator.tree.n_segments} segments",
+                where=simulator.tree.name,
+                cure=f"tell of up to {MOST_SEGMENTS}, and of more by their poses",
+            )
+        self._parts: tuple[ToldTree, ...] = (
+            simulator.members() if isinstance(simulator, Stand) else simulators_of(simulator)
+        )
         found: dict[Any, ToldBasis] = {}
-        self.bases = [told_basis(each, found) for each in self._parts]
-        self.description = describe_scene(simulator, self.bases, frame_id=frame_id, leaves=leaves)
+        self.bases = [told_basis(each, found, is_running=is_running) for each in self._parts]
+        self.description = describe_scene(
+            simulator, self._parts, self.bases, frame_id=frame_id, leaves=leaves
+        )
         described = decode_description(self.description)
         self.identity, self._short = described.identity, described.short_identity
         self._sequence = 0

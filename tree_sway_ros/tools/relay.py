@@ -110,7 +110,7 @@ class _Relay:
         simulator = opened_tree(arguments).simulator(settings, model=arguments.model)
         self._site = Site(simulator, arguments.rate, self._stepped)
         if arguments.page or (arguments.state and arguments.role == "send"):
-            self._scene = SceneState(simulator)
+            self._scene = SceneState(simulator, is_running=False)
             if self._server is not None:
                 self._server.describe(self._scene.description)
         simulator.reset()

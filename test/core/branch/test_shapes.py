@@ -92,6 +92,4 @@ def test_a_carried_crown_bends_the_branch_as_a_tip_load(sketch):
     u = model.beam.place
     assert model.shape.slope == pytest.approx(1.5 * (2 * u - u**2), abs=0.01)
     alone = branch_models(drawn.tree(), 900.0, carries=False)[0]
-    assert alone.shape.slope == pytest.approx(
-        4 / 3 * (3 * u - 3 * u**2 + u**3), abs=1e-9
-    )
+    assert alone.shape.slope == pytest.approx(4 / 3 * (3 * u - 3 * u**2 + u**3), abs=1e-9)

@@ -99,7 +99,7 @@ def main() -> None:
         for each in both.simulators
     ]
     leaves = leaf_clusters(both.simulators[0].tree, np.random.default_rng(0), count=6)
-    data = describe_scene(both, bases, frame_id="map", leaves=leaves)
+    data = describe_scene(both, both.simulators, bases, frame_id="map", leaves=leaves)
     description = decode_description(data)
     (HERE / "description.bin").write_bytes(data)
     scale = np.concatenate([basis.scale for basis in bases]).astype(np.float64)

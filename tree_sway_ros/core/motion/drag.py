@@ -6,10 +6,12 @@ finely it is cut.
 
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
 piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement
-of the loaded pieces; the branch damps itself at the displacement that gives the same damping as the
-sum. Wood keeps the drag of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et
-al. 2005) between 4 and 20 m/s, constant outside. Those are the speeds at which crowns were measured
-in wind tunnels (Rudnicki et al. 2004; Vollsinger et al. 2005).
+of the loaded pieces; in wind the branch damps itself at the displacement that gives the same
+damping as the sum. In still air the pieces' own speeds count, which differ: their mean square
+beside the centre's is added, so that there too it damps itself as the sum does. Wood keeps the drag
+of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4 and
+20 m/s, constant outside. Those are the speeds at which crowns were measured in wind tunnels
+(Rudnicki et al. 2004; Vollsinger et al. 2005).
 
 **Sheltering is assumed, not modelled.** Leaves hide each other as the outline of the crown has it,
 and shelter each other as in the crowns that their law was measured on; twigs clad in needles belong
@@ -121,7 +123,7 @@ def pressure(speed: float, coefficient: float, exponent: float, steady: float = 
 @inlined
 def drag(
     pxx: float, pyy: float, pzz: float, pxy: float, pxz: float, pyz: float,
-    c: float, compliance: float, ux: float, uy: float, uz: float,
+    c: float, compliance: float, ux: float, uy: float, uz: float, spread: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """
     Force on a branch.
@@ -137,6 +139,8 @@ def drag(
     ux, uy, uz
         Air velocity in the branch's own frame, relative to what the branch would do without this
         force, in [m/s].
+    spread
+        Mean square of the velocity of its pieces beside that of the load centre in [m^2/s^2].
 
     Returns
     -------
@@ -147,7 +151,7 @@ def drag(
     nx = pxx * ux + pxy * uy + pxz * uz
     ny = pxy * ux + pyy * uy + pyz * uz
     nz = pxz * ux + pyz * uy + pzz * uz
-    free = math.sqrt(max(ux * nx + uy * ny + uz * nz, 0.0))
+    free = math.sqrt(max(ux * nx + uy * ny + uz * nz, 0.0) + spread)
     relative_over_free = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * compliance * c * free))
     f = c * free * relative_over_free * relative_over_free
     return f * nx, f * ny, f * nz, f

@@ -241,17 +241,23 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     exposed = exposure(beam)
     exposed /= float(share.sum(axis=1) @ exposed)
     into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
-    square = 0.0
+    mean = np.zeros_like(record["push"])
+    square = cube = 0.0
     for i, one in enumerate(model.fields):
         field = one.points
         own = np.einsum("s,sg,sgk->sk", exposed, share, field)
         own -= np.einsum("sk,sk->s", own, beam.tangent)[:, None] * beam.tangent
-        record["push"][i] = into_push @ own.sum(axis=0)
+        mean[i] = own.sum(axis=0)
+        record["push"][i] = into_push @ mean[i]
         record["turn"][i] = np.einsum("sg,sgk->k", share, one.slope)
-        square += float((share[..., None] * field**2).sum()) if i < 2 else 0.0
+        if i < 2:
+            moved = np.square(field).sum(axis=-1)
+            moved -= np.square(np.einsum("sgk,sk->sg", field, beam.tangent))
+            square += float((share * moved).sum())
+            cube += float((share * np.maximum(moved, 0.0) ** 1.5).sum())
     if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
         _fit_load(model, share, record)
-    _fill_flow(record, square)
+    _fill_flow(record, mean, square, cube)
 
 
 def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
@@ -279,16 +285,22 @@ def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
     record["push"][:k] += (fit @ (pushed - force @ record["push"][:k].T)).T
 
 
-def _fill_flow(record: Any, square: float) -> None:
+def _fill_flow(record: Any, mean: Floats, square: float, cube: float) -> None:
     """
-    Scale the displacement at which drag damps, so that push times flow is the mean square of the
-    displacement: both axes of the first shape as one, so that it does not matter how they are laid.
+    Scale the mean displacement across the branch to that at which drag damps, so that what the
+    drag on it does is the mean square of the displacement: both axes of the first shape as one, so
+    that it does not matter how they are laid.
+
+    In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
+    speed of mean cube over mean square: what the flow lacks of that is the spread.
 
     """
-    push = float(np.square(record["push"][:2]).sum())
-    record["flow"] = record["push"]
-    record["flow"][:2] *= square / push if push > 0.0 else 1.0
-    record["lever"] = math.sqrt(0.5 * push)
+    across = float(np.square(mean[:2]).sum())
+    record["flow"] = mean
+    record["flow"][:2] *= square / across if across > 0.0 else 1.0
+    still = (cube / square) ** 2 if square > 0.0 else 0.0
+    record["spread"] = max(still - 0.5 * float(np.square(record["flow"][:2]).sum()), 0.0)
+    record["lever"] = math.sqrt(0.5 * across)
 
 
 def _fill_axial_levers(records: Any) -> None:
@@ -393,9 +405,15 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     record["couple"] = share[0] * own["couple"] + np.tensordot(share[1:], loads["couple"], axes=1)
     record["push"] = share[0] * own["push"] + np.tensordot(share[1:], moved, axes=1)
     record["turn"] = share[0] * own["turn"] + np.tensordot(share[1:], twists[:, :, 3:], axes=1)
-    square = share[0] * (own["push"][:2] * own["flow"][:2]).sum()
-    square += share[1:] @ np.square(moved[:, :2]).sum(axis=(1, 2))
-    _fill_flow(record, float(square))
+    xx, yy, zz, xy, xz, yz = own["projector"]
+    mean = own["push"] @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    damped = float((mean[:2] * own["flow"][:2]).sum())
+    still = math.sqrt(own["spread"] + 0.5 * float(np.square(own["flow"][:2]).sum()))
+    squares = np.square(moved[:, :2]).sum(axis=-1)
+    square = share[0] * damped + share[1:] @ squares.sum(axis=1)
+    cube = share[0] * damped * still + share[1:] @ (squares**1.5).sum(axis=1)
+    mean = share[0] * mean + np.tensordot(share[1:], moved, axes=1)
+    _fill_flow(record, mean, float(square), float(cube))
 
 
 def _squares(directions: Floats) -> Floats:
@@ -480,7 +498,7 @@ def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
         layout = load_layout(branches.dtype["push"].shape[0])
     records = zeros_in_lines(-(-len(branches) // LANES), layout)
     block, lane = np.divmod(np.arange(len(branches)), LANES)
-    for name in ("speed", "area", "projector", "centre"):
+    for name in ("speed", "area", "spread", "projector", "centre"):
         records[name][block, ..., lane] = branches[name]
     for name in ("flow", "turn", "push"):
         rows = records.dtype[name].shape[0]

@@ -36,7 +36,7 @@ class NumpyPasses:
         names = ("parent", "source", "twist", "centre", "flow", "turn", "push", "lever", "speed")
         self._of: dict[str, Any] = {
             name: np.ascontiguousarray(branches[name])
-            for name in (*names, "area", "axial_lever", "frame", "couple")
+            for name in (*names, "spread", "area", "axial_lever", "frame", "couple")
         }
         xx, yy, zz, xy, xz, yz = branches["projector"].T
         self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
@@ -78,7 +78,8 @@ class NumpyPasses:
         free = cayley_turned(-turn, of["speed"][:, None] * wind - motion)
         free += compliance[:, None] * slip
         across = np.einsum("bij,bj->bi", self._projector, free)
-        speed = np.sqrt(np.maximum(np.einsum("bi,bi->b", free, across), 0.0))
+        spread = of["spread"] * np.square(v[:, :2]).sum(axis=1)
+        speed = np.sqrt(np.maximum(np.einsum("bi,bi->b", free, across), 0.0) + spread)
         c = per_speed_squared * of["area"]
         share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * compliance * c * speed))
         per_speed = (c * speed * share**2)[:, None]

@@ -283,9 +283,7 @@ def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> bool
 
 
 @inlined
-def _half_vector(
-    segment: Any, scratch: Any, n_rows: int, j: int
-) -> tuple[float, float, float]:
+def _half_vector(segment: Any, scratch: Any, n_rows: int, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
     far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])

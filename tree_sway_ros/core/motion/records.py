@@ -58,6 +58,7 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ),  # motion of its base per unit of parent's coordinates
             ("push", "f8", (n_coordinates, 3)),  # displacement under the wind's mean push
             ("flow", "f8", (n_coordinates, 3)),  # displacement at which its drag damps
+            ("spread", "f8"),  # mean square of what pieces move beside that displacement
             ("reach", "f8", (n_coordinates, 3)),  # displacement of its tip
             ("tip", "f8", (3,)),  # tip at rest
             ("turn", "f8", (n_coordinates, 3)),  # rotation of what the wind sees
@@ -220,6 +221,7 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         # As in `BRANCH`:
         ("speed", "f8", (LANES,)),
         ("area", "f8", (LANES,)),
+        ("spread", "f8", (LANES,)),
         ("projector", "f8", (6, LANES)),
         ("centre", "f8", (3, LANES)),
         ("flow", "f8", (n_coordinates, 3, LANES)),

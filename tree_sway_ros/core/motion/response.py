@@ -13,6 +13,7 @@ how the error of the lesser one is known without running the greater.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any, Protocol
 
@@ -101,7 +102,7 @@ def _moved(branches: Any, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any
 
 def _sums(ways: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
     """Motion (k, d, ...) of branches by what a unit of each coordinate moves, (k, c, d)."""
-    flat = rotations.reshape(*rotations.shape[:2], -1)
+    flat = rotations.reshape(*rotations.shape[:2], math.prod(rotations.shape[2:]))
     moved = np.swapaxes(ways, 1, 2) @ flat
     return moved.reshape(len(ways), ways.shape[2], *rotations.shape[2:])
 

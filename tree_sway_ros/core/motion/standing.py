@@ -111,10 +111,14 @@ def step_standing(
 @fused
 def place_standing(
     tables: Any, standing: Any, instances: Any, which: Ints, shapes: Floats,
-    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, size: int, out: Floats,
+    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, poses: Floats,
+    out: Floats,
 ) -> None:  # fmt: skip
     """
     Place trees of one kind.
+
+    Each is placed in memory that stays in the cache, then written out in one run: writing branch by
+    branch to memory that does not takes longer than both.
 
     Parameters
     ----------
@@ -126,19 +130,21 @@ def place_standing(
         Of the kind, as of `wind_basis.expand`.
     branches, segments, heads, work
         Of the kind, as of `placing.place`.
-    x
-        To work in, (N,).
-    size
-        Segments of the kind.
+    x, poses
+        To work in, (N,) and (m, 7).
     out
         Pose block of the stand, (n, 7), rows of these trees written.
 
     """
+    block, whole = poses.reshape(-1), out.reshape(-1)
     for row in range(len(which)):
         t, first = which[row, 0], which[row, 1]
         here = standing[t]
         expand(tables[here.kind], instances[t], shapes, x)
         place_standing_at(
             branches, segments, heads, work, x, here.at[0], here.at[1], here.at[2],
-            here.cosine, here.sine, here.scale, out[first : first + size],
+            here.cosine, here.sine, here.scale, poses,
         )  # fmt: skip
+        into = whole[7 * first : 7 * first + len(block)]
+        for i in range(len(block)):
+            into[i] = block[i]

@@ -135,7 +135,7 @@ def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared:
     speed, motion, turn, base, slip, gust = (
         loads.speed, loads.motion, loads.turned, loads.base, loads.slip, loads.gust,
     )  # fmt: skip
-    force, turned_force, p = loads.force, loads.turned_force, loads.projector
+    force, turned_force, p, v = loads.force, loads.turned_force, loads.projector, loads.v
     for j in range(LANES):
         tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
         ux, uy, uz = turned(
@@ -149,6 +149,7 @@ def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared:
         fx, fy, fz, f = drag(
             p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
             per_speed_squared * loads.area[j], beta, ux, uy, uz,
+            loads.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
         )  # fmt: skip
         slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
         fx, fy, fz = turned(tx, ty, tz, fx, fy, fz)

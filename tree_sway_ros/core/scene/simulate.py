@@ -144,12 +144,12 @@ class Rig:
         """
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
         simulator = self._at_rest()
-        rest = tips_of_poses(self.tree, simulator.place())[chosen]
+        rest = tips_of_poses(self.tree, simulator.place(), chosen)
         tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
         poses, every = np.empty((self.tree.n_segments, 7)), max(len(means) // 100, 1)
         for step, mean in enumerate(means):
             simulator.step(mean, 1.0 / rate)
-            tips[step] = tips_of_poses(self.tree, simulator.place(poses))[chosen] - rest
+            tips[step] = tips_of_poses(self.tree, simulator.place(poses), chosen) - rest
             moment[step] = self.base.of(simulator.rotations())
             if progress is not None and step % every == 0:
                 progress(step / len(means))

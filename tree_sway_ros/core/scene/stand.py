@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,8 @@ from tree_sway_ros.core.motion.wind_basis import (
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.stand_member import StandMember
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -302,6 +304,16 @@ class Stand(KeepsState):
         self.counts.restarted += restarted
         return status | (LOAD_HELD if held else OK) | (RESTARTED if restarted else OK)
 
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse: trees of a stand share what they are made of."""
+        raise ParameterError(
+            f"a change of {', '.join(changes)} in a stand", where="tune", cure="make it anew"
+        )
+
+    def tune(self, **changes: float) -> None:
+        """Refuse, as `check_tuning`."""
+        self.check_tuning(**changes)
+
     def place(self, out: Floats | None = None, which: ArrayLike | None = None) -> Floats:
         """
         Place every segment of every tree, or of some trees.
@@ -345,20 +357,20 @@ class Stand(KeepsState):
         for kind, share in enumerate(shares):
             if len(share[thread]):
                 bank, records = self._banks[kind], self._models[kind].bank
-                heads, work, x = self._rooms[thread][kind]
+                heads, work, x, block = self._rooms[thread][kind]
                 place_standing(
                     self._tables, self._standing, self._instances, share[thread], bank.all_shapes,
-                    records.branches, records.segments, heads, work, x,
-                    self._models[kind].tree.n_segments, poses,
+                    records.branches, records.segments, heads, work, x, block, poses,
                 )  # fmt: skip
 
-    def _room(self) -> list[tuple[Any, Any, Floats]]:
+    def _room(self) -> list[tuple[Any, Any, Floats, Floats]]:
         """What placing works in, of each kind."""
         room = []
         for model, bank in zip(self._models, self._banks, strict=True):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
             heads[:] = model.bank.heads
-            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes))))
+            block = np.zeros((model.tree.n_segments, 7))
+            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
         return room
 
     @property
@@ -384,15 +396,29 @@ class Stand(KeepsState):
 
     def rotations(self) -> Floats:
         """Key rotations of all trees, one after another, in [rad], (N,)."""
-        parts = []
-        for number, kind in enumerate(self._standing["kind"].tolist()):
-            if number in self._own:
-                parts.append(self._own[number].rotations())
-            else:
-                bank, here = self._banks[kind], slice(number, number + 1)
-                parts.append(np.zeros(len(bank.shapes)))
-                expand_one(bank.record, self._instances[here], bank.all_shapes, parts[-1])
-        return np.concatenate(parts)
+        return np.concatenate([self._rotations(number) for number in range(len(self.trees))])
+
+    def members(self) -> tuple[StandMember | TreeSimulator, ...]:
+        """Each tree by itself: what it is, and how it bends at any time."""
+        return tuple(
+            self._own.get(number)
+            or StandMember(
+                self.tree_of(number),
+                self._models[self._used.index(told.kind)],
+                told.yaw,
+                partial(self._rotations, number),
+            )
+            for number, told in enumerate(self.trees)
+        )
+
+    def _rotations(self, number: int) -> Floats:
+        """Key rotations of a tree in [rad], (N,)."""
+        if number in self._own:
+            return self._own[number].rotations()
+        bank, here = self._banks[self._standing["kind"][number]], slice(number, number + 1)
+        found = np.zeros(len(bank.shapes))
+        expand_one(bank.record, self._instances[here], bank.all_shapes, found)
+        return found
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
@@ -408,7 +434,7 @@ class Stand(KeepsState):
             if own:
                 own.place_rotations(x, rows)
                 continue
-            heads, work, _ = self._rooms[0][kind]
+            heads, work = self._rooms[0][kind][:2]
             east, north, up = here["at"].tolist()
             place_standing_at(
                 records.branches, records.segments, heads, work, x, east, north, up,

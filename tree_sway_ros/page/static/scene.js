@@ -23,6 +23,8 @@ const WANTED_FPS = 55;
 /** Points per point of the page, and share of the leaves, that are drawn at least. */
 const COARSEST = 0.7;
 const THINNEST = 0.3;
+/** Segments that are drawn at most without a graphics unit. */
+const MOST_SLOW = 6000;
 const POT_HEIGHT = 0.17;
 
 /**
@@ -105,6 +107,9 @@ export class Scene {
     };
     this._texture = gl.createTexture();
     this._rows = 0;
+    /** Segments that are drawn, and the slot of each. */
+    this._drawn = new Int32Array(0);
+    this._slots = new Uint32Array(0);
     /** @type {Float32Array} */
     this._texels = new Float32Array(0);
     /** @type {Record<string, Drawable | null>} */
@@ -141,13 +146,24 @@ export class Scene {
   describe(description) {
     const { gl } = this;
     const rest = restPoses(description);
-    const branches = drawnBranches(description);
+    const branches = drawnBranches(description, this.isSlow ? MOST_SLOW : undefined);
     this.placer = new Placer(description, branches);
     this.placer.poses.set(rest);
     this.description = description;
     const isSame = this._name === description.name;
     this._name = description.name;
-    this._rows = Math.ceil((2 * description.nSegments) / shaders.TEXTURE_WIDTH);
+    // Only what is drawn goes to the graphics unit, each segment in a slot of its own.
+    const { branch_first: first } = description.arrays;
+    const drawn = [];
+    this._slots = new Uint32Array(description.nSegments);
+    for (const branch of branches) {
+      for (let s = first[branch]; s < first[branch + 1]; s++) {
+        this._slots[s] = drawn.length;
+        drawn.push(s);
+      }
+    }
+    this._drawn = Int32Array.from(drawn);
+    this._rows = Math.ceil((2 * drawn.length) / shaders.TEXTURE_WIDTH);
     this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * this._rows);
     gl.bindTexture(gl.TEXTURE_2D, this._texture);
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
@@ -240,7 +256,12 @@ export class Scene {
   /** @param {Float32Array} poses */
   _upload(poses) {
     const { gl } = this;
-    this._texels.set(poses);
+    const { _drawn: drawn, _texels: texels } = this;
+    for (let slot = 0; slot < drawn.length; slot++) {
+      const from = STRIDE * drawn[slot];
+      const to = STRIDE * slot;
+      for (let c = 0; c < STRIDE; c++) texels[to + c] = poses[from + c];
+    }
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this._texture);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, this._rows, gl.RGBA, gl.FLOAT,
@@ -449,7 +470,7 @@ export class Scene {
     const used = this._programs[name];
     const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
     gl.bindVertexArray(vao);
-    const segments = filled(gl, gl.ARRAY_BUFFER, Uint32Array.from(mesh.segments));
+    const segments = filled(gl, gl.ARRAY_BUFFER, Uint32Array.from(mesh.segments, (s) => this._slots[s]));
     const at = gl.getAttribLocation(used.program, "segment");
     gl.enableVertexAttribArray(at);
     gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
