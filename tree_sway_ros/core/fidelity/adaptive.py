@@ -34,6 +34,7 @@ from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
@@ -247,6 +248,16 @@ class AdaptiveSimulator(OneTree, KeepsState):
         theirs.set_state(before)
         self._shown, self._next, self.choice, self._left, self._behind = kept
         return self.place_rotations(rotations, out)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what any model could not take, as `SwaySimulator.check_tuning`."""
+        return [each.check_tuning(**changes) for each in self._built.values()][-1]
+
+    def tune(self, **changes: float) -> None:
+        """Change the tree on every model while it sways, as `SwaySimulator.tune`."""
+        self.check_tuning(**changes)
+        for each in self._built.values():
+            each.tune(**changes)
 
     def review(self) -> Estimate:
         """

@@ -116,7 +116,7 @@ class ArticulatedTree:
         self._wind = np.zeros((n, 3))
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
-        self._gravity = gravity
+        self._gravity, self._damped_modes = gravity, damped_modes
         if rayleigh is None:
             by_mass, by_stiffness, by_mode, momentum = self._even_damping(
                 damping_ratio, damped_modes
@@ -145,6 +145,23 @@ class ArticulatedTree:
             return np.zeros(tree.n_segments * self.subdivisions)
         each = one_of_each("leaves", leaves, tree.n_branches, "branch")
         return np.repeat((each / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
+
+    def tune(self, stiffness: float, damping_ratio: float, weight: float) -> None:
+        """Multiply the springs and the gravity, and damp anew, as `damping_ratio` of the class."""
+        self.bodies.bend[:] *= stiffness
+        self.bodies.twist[:] *= stiffness
+        self.bodies.rest_torque[:] *= weight
+        self._gravity *= weight
+        by_mass, by_stiffness, by_mode, momentum = self._even_damping(
+            damping_ratio, self._damped_modes
+        )
+        self.laws = self.laws._replace(
+            gravity=self._gravity,
+            mass_damping=by_mass,
+            stiffness_damping=by_stiffness,
+            mode_damping=by_mode,
+            mode_momentum=momentum,
+        )
 
     def reset(self) -> None:
         """Go back to rest."""

@@ -22,6 +22,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
@@ -190,6 +191,16 @@ class Forest:
             status |= simulator.step(wind, dt)
         self._steps += 1
         return status
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
+        return [simulator.check_tuning(**changes) for simulator in self.simulators][-1]
+
+    def tune(self, **changes: float) -> None:
+        """Change every tree while it sways, as `SwaySimulator.tune`; all or none."""
+        self.check_tuning(**changes)
+        for simulator in self.simulators:
+            simulator.tune(**changes)
 
     def place(self, out: Floats | None = None) -> Floats:
         """

@@ -39,6 +39,7 @@ from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.scene.stand_member import StandMember
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -302,6 +303,16 @@ class Stand(KeepsState):
         self.counts.held += held
         self.counts.restarted += restarted
         return status | (LOAD_HELD if held else OK) | (RESTARTED if restarted else OK)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse: trees of a stand share what they are made of."""
+        raise ParameterError(
+            f"a change of {', '.join(changes)} in a stand", where="tune", cure="make it anew"
+        )
+
+    def tune(self, **changes: float) -> None:
+        """Refuse, as `check_tuning`."""
+        self.check_tuning(**changes)
 
     def place(self, out: Floats | None = None, which: ArrayLike | None = None) -> Floats:
         """

@@ -24,6 +24,7 @@ from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -81,6 +82,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         damping = settings.damping_ratio
         if damping is None:
             damping = species.damping(bool(settings.in_leaf))
+        self._tuning = Tuning.of(settings, damping)
         law = calibrated.drag_law
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
@@ -129,6 +131,27 @@ class SegmentsSimulator(OneTree, KeepsState):
                 status |= RESTARTED
         self.counts.steps += 1
         return status
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what `tune` would refuse; returns all values as they would be."""
+        goal = self._tuning.changed(**changes)
+        if (goal.volume_stiffness, goal.volume_damping) != (
+            self._tuning.volume_stiffness,
+            self._tuning.volume_damping,
+        ):
+            raise ParameterError("the volume rule on model 'segments'", where="tune")
+        if goal.gravity > 0.0 and not self._tuning.gravity > 0.0:
+            raise ParameterError(
+                f"gravity {goal.gravity:g} m/s^2 on a tree without weight", where="gravity"
+            )
+        return goal
+
+    def tune(self, **changes: float) -> None:
+        """Change the tree while it sways, as `SwaySimulator.tune`."""
+        goal, now = self.check_tuning(**changes), self._tuning
+        weight = goal.gravity / now.gravity if now.gravity > 0.0 else 1.0
+        self._model.tune(goal.stiffness_factor / now.stiffness_factor, goal.damping_ratio, weight)
+        self._tuning = goal
 
     def _blow(self, dt: float) -> None:
         """Give every segment the wind of its limb."""

@@ -19,8 +19,9 @@ from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
-from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
 from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
+from tree_sway_ros.core.simulator.live_tuning import LiveTuning, Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
@@ -122,6 +123,8 @@ class SwaySimulator(OneTree, KeepsState):
                 self.settings.crown_coherence,
                 self.bank.oscillators.loads,
             )
+        self._calibrated = calibrated
+        self._tuning: LiveTuning | None = None
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
         self._wind = np.zeros(3)
         self._expected = self.bank.oscillators.rotations().shape
@@ -220,7 +223,7 @@ class SwaySimulator(OneTree, KeepsState):
         if not take_wind(self._wind, wind_mean, self._max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
-        if dt != self._dt:
+        if dt != self._dt or (self._tuning is not None and self._tuning.step(dt)):
             self._set_step(dt)
         wx, wy, wz = self._wind.tolist()
         load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
@@ -298,6 +301,44 @@ class SwaySimulator(OneTree, KeepsState):
     def take_over(self, x: Floats, v: Floats) -> None:
         """Go on from key rotations and rates, (N,), instead of from rest."""
         self.bank.oscillators.take_over(x, v)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what `tune` would refuse; returns all values as they would be."""
+        of = self.bank.oscillators
+        if isinstance(of, Frozen):
+            return Tuning.of(self.settings, 0.0).changed(**changes)
+        if self._tuning is None:
+            calibrated = self._calibrated
+            self._tuning = LiveTuning(
+                of.modal if of.is_tabled else of,  # type: ignore[attr-defined, arg-type]
+                calibrated.layer(self.model).reduction,
+                self.settings,
+                calibrated.damping_ratio,
+                of.is_tabled,
+            )
+        goal = self._tuning.goal.changed(**changes)
+        self._tuning.check(goal)
+        return goal
+
+    def tune(self, **changes: float) -> None:
+        """
+        Change the tree while it sways; poses go over to the change within half a second.
+
+        Parameters
+        ----------
+        **changes
+            ``damping_ratio``, ``stiffness_factor``, ``gravity``, ``volume_stiffness`` or
+            ``volume_damping``, as of `Tuning`. What is not named stays.
+
+        Raises
+        ------
+        ParameterError
+            A value that is out of range or that this tree cannot take; nothing changes.
+
+        """
+        goal = self.check_tuning(**changes)
+        if self._tuning is not None:
+            self._tuning.go_to(goal)
 
     def follow_wind(self, other: SwaySimulator) -> None:
         """Go on with the wind that the limbs of the same tree have felt on another model."""
