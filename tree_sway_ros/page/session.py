@@ -28,6 +28,8 @@ from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
 
 _MOST_LATE = 0.25
 _NEWEST = 0.05
+_BUSY = 0.2
+"""Share of a period from which on only every second step is told."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ class Session:
         self._server: PageServer | None = None
         self._stop = threading.Event()
         self._is_paused = self._resets = False
-        self._time = 0.0
+        self._time, self._steps = 0.0, 0
         self._work, self._spacing, self._late = 0.0, self._period, 0
         self._last = time.perf_counter()
         self._builder: threading.Thread | None = None
@@ -220,10 +222,12 @@ class Session:
             wind = self.wind.mean(self._time, self._time + self._period)
             simulator.step(wind, self._period)
             self._time += self._period
-        frame = self._scene.frame(
-            time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
-        )
-        self._server.publish(frame)
+        self._steps += 1
+        if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
+            frame = self._scene.frame(
+                time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
+            )
+            self._server.publish(frame)
         now = time.perf_counter()
         self._work += _NEWEST * (now - begin - self._work)
         self._spacing += _NEWEST * (begin - self._last - self._spacing)

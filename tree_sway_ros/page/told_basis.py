@@ -23,9 +23,6 @@ from tree_sway_ros.core.state.state_basis import BasisError
 ToldTree = TreeSimulator | StandMember
 """A tree whose state is told."""
 
-MOST_COORDINATES = 32
-"""Of one tree: a frame then takes 92 bytes."""
-
 
 @dataclass(frozen=True)
 class ToldBasis:
@@ -111,8 +108,6 @@ def _axes(simulator: TreeSimulator) -> tuple[Floats, list[Floats]]:
 def _told(runner: SwaySimulator, frames: Floats, turns: list[Floats]) -> ToldBasis:
     """Basis that a simulator finds, for a tree of these axes."""
     basis = state_basis(runner)
-    if len(basis.scale) > MOST_COORDINATES:
-        basis = state_basis(runner, MOST_COORDINATES)
     same = [np.eye(2 + each.shape[1]) for each in turns]
     return ToldBasis(basis.matrix, basis.projection, basis.scale, basis.error, frames, turns, same)
 
