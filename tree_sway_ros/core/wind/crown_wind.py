@@ -39,10 +39,10 @@ DECAY = 8.0
 
 USUAL_COHERENCE = 0.7
 """
-Share of a gust that reaches the whole crown at once where gusts are met limb by limb.
+Share of a gust that reaches the whole crown at once, where gusts are met limb by limb.
 
-With it the response spectra of grown trees fall above their first frequency with powers that were
-measured on real ones (``tree-sway chart slopes``).
+With it the response spectra of grown conifers fall above their first frequency with powers of -4 to
+-6, and those of most broadleaved trees less steeply than in one wind (``tree-sway chart slopes``).
 
 """
 
