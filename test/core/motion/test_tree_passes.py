@@ -164,4 +164,5 @@ def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
             centred[b] = np.cross(record["centre"], force.sum(axis=(0, 1)))
         error = np.linalg.norm(fitted - true) / np.linalg.norm(true)
         assert error < 0.01
-        assert error < 0.5 * np.linalg.norm(centred - true) / np.linalg.norm(true)
+        # Nearer than the true force would be, were it to act at one place in all winds.
+        assert error < np.linalg.norm(centred - true) / np.linalg.norm(true)

@@ -263,7 +263,7 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
 def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
     """
     Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
-    all winds, push and couple in those along the ground (least squares).
+    all winds, push and couple (least squares).
 
     """
     tangent = model.beam.tangent
@@ -271,10 +271,10 @@ def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
     drag = np.maximum(_WINDS @ outer[:, [0, 4, 8, 1, 2, 5]].T, 0.0) ** 1.5 @ share.sum(axis=1)
     record["projector"] = _NEAREST @ drag ** (2.0 / 3.0)
     projector = record["projector"][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
-    across = _LEVEL @ projector
-    force = np.sqrt(np.maximum((_LEVEL * across).sum(axis=1), 0.0))[:, None] * across
+    across = _ASLANT @ projector
+    force = np.sqrt(np.maximum((_ASLANT * across).sum(axis=1), 0.0))[:, None] * across
     fit = np.linalg.pinv(force, rcond=_STRAIGHT)
-    pieces = _LEVEL[:, None] - (_LEVEL @ tangent.T)[..., None] * tangent
+    pieces = _ASLANT[:, None] - (_ASLANT @ tangent.T)[..., None] * tangent
     pieces *= np.linalg.norm(pieces, axis=-1, keepdims=True)
     point = (share[..., None] * model.beam.point).sum(axis=1)
     moment = cross(point, pieces).sum(axis=1)
@@ -431,10 +431,8 @@ def _sides(rise: float) -> Floats:
     return np.stack([np.cos(up) * np.cos(bearing), np.cos(up) * np.sin(bearing), np.sin(up)], 1)
 
 
-_LEVEL = _sides(0.0)
-"""Winds along the ground."""
-
-_WINDS = _squares(np.concatenate([_sides(-20.0), _LEVEL, _sides(20.0)]))
+_ASLANT = np.concatenate([_sides(-20.0), _sides(0.0), _sides(20.0)])
+_WINDS = _squares(_ASLANT)
 """Winds from all sides, along the ground and, as branches bend, aslant."""
 
 _NEAREST = np.linalg.pinv(_WINDS)

@@ -179,17 +179,17 @@ def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
     Returns
     -------
     Floats
-        Per 1 m/s along x and y in winds of 1 m/s and 1 kg/m^3, in [N m], (N, 2).
+        Per 1 m/s along x, y and z in level winds of 1 m/s and 1 kg/m^3, in [N m], (N, 3).
 
     """
-    xx, yy, _, xy, xz, yz = branches["projector"].T
+    xx, yy, zz, xy, xz, yz = branches["projector"].T
     level, slant = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
     sides = np.cos((np.arange(8) + 0.5) * np.pi / 8.0)
     across = np.sqrt(np.maximum(level[:, None] + slant[:, None] * sides, 0.0)).mean(axis=1)
-    force = np.stack([[xx, xy, xz], [xy, yy, yz]]).transpose(2, 1, 0)
+    force = np.stack([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 1, 0)
     force = force * (branches["area"] * branches["speed"] ** 2 * across)[:, None, None]
     wrench = np.concatenate([force, branches["couple"] @ force], axis=1)
-    moments = np.zeros((n_coordinates, 2))
+    moments = np.zeros((n_coordinates, 3))
     for b in range(len(branches) - 1, -1, -1):
         i, k = int(branches["coordinate"][b]), int(branches["n_coordinates"][b])
         moments[i : i + k] += branches["push"][b, :k] @ force[b]

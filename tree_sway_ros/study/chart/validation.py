@@ -21,6 +21,7 @@ def chart_validation(
     out_dir: str | Path,
     *,
     wind: tuple[Floats, Floats] | None = None,
+    source: str = "a record",
     seeds: Iterable[int] = SEEDS,
     seconds: float = 8.0,
 ) -> list[Verdict]:
@@ -34,6 +35,8 @@ def chart_validation(
     wind
         Times in [s], (m,), and velocities in [m/s], (m, 3), of a record, taken once and thrice as
         strong; simulated winds alone if None.
+    source
+        What the record is called.
     seeds
         Of the trees.
     seconds
@@ -45,7 +48,7 @@ def chart_validation(
         judge = Judge(crooked_tree(seed))
         winds = {f"{mean:g} m/s": turbulent(mean, seconds, seed) for mean in (3.0, 9.0)}
         if wind is not None:
-            winds |= {f"record x{k:g}": from_record(*wind, seconds, k) for k in (1.0, 3.0)}
+            winds |= {f"{source} x{k:g}": from_record(*wind, seconds, k) for k in (1.0, 3.0)}
         verdicts += judge.verdicts(winds | hard_cases(seconds, judge.first_frequency))
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
