@@ -23,8 +23,10 @@ _SLACK = 100_000_000
 """The clock may be so much ahead of the frames of an exact replay [ns]."""
 _BACK, _HOLD = 300_000_000, 0.5
 """So much [ns] the clock is set back before an exact replay, for so long [s]."""
-_PATIENCE = 10.0
+_PATIENCE = 15.0
 """With a solver that shows no frame of that time [s]."""
+_MEETING = 2.0
+"""From the solver's frame to the first sample [s]: wind node and solver must have met as well."""
 
 
 class PlayerNode(TreeSwayNode):
@@ -70,7 +72,7 @@ class PlayerNode(TreeSwayNode):
             ahead=is_exact,
         )
         self._answers: Answers | None = None
-        self._is_waiting, self._deadline = True, 0.0
+        self._is_waiting, self._deadline, self._met = True, 0.0, 0.0
         self._has_begun = self._has_blown = False
         if is_exact:
             self._answers = Answers(_SLACK)
@@ -142,7 +144,7 @@ class PlayerNode(TreeSwayNode):
     def _may_start(self) -> bool:
         now = time.monotonic()
         if not self._audience.is_there():
-            self._deadline = now + _PATIENCE
+            self._deadline, self._met = now + _PATIENCE, now + _MEETING
             return False
         if self._answers is None or (self._has_begun and self._has_blown):
             self._is_waiting = False
@@ -151,8 +153,10 @@ class PlayerNode(TreeSwayNode):
             self.get_logger().warning("no frames come back: this replay will not be exact")
             self._is_waiting = False
             return True
+        if not self._has_begun:
+            self._met = now + _MEETING
         self._is_waiting = not self._has_begun
-        if self._has_begun:  # the first sample is sent until it has come through
+        if now > self._met:  # the first sample is sent until it has come through
             self._publish(self._playback.first_row, self._playback.epoch)
         return False
 
