@@ -80,7 +80,8 @@ def poses_of(compose, observer, wind_file, tree_file, speed):
             (pose.position.x, pose.position.y, pose.orientation.w) for pose in frame.poses
         ]
         for frame in frames
-        if stamp_to_ns(frame.header.stamp) >= 10**9  # the record begins at 1 s
+        # From the first sample, at 1 s, to the last; what follows is cut by the player's end.
+        if 10**9 <= stamp_to_ns(frame.header.stamp) <= 495 * 10**7
     }
     return found, missed
 
