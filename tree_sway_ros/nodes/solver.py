@@ -75,6 +75,8 @@ class SolverNode(TreeSwayNode):
         """Sway, from rest."""
         self.pacer = self._make_pacer()
         self.on_close(self.pacer.stop)
+        self._reach = Reach()
+        self.on_close(self._reach.end)
         self.pacer.start()
 
     def _make_pacer(self) -> Pacer:

@@ -94,3 +94,12 @@ def test_a_sample_that_never_comes_is_waited_for_once(patience, clock):
     reach.wait(2000 * MS, lambda: None, lambda: clock * MS)
     reach.wait(2000 * MS, lambda: taken.append(1), lambda: 0)
     assert taken == [1]
+
+
+def test_a_wait_ends_with_the_node():
+    reach = Reach(patience=30.0)
+    for stamp in (1000, 1050):
+        reach.add(stamp * MS)
+    threading.Timer(0.02, reach.end).start()
+    reach.wait(2000 * MS, lambda: None, lambda: 0)
+    assert reach._newest == 1050 * MS

@@ -150,11 +150,11 @@ class Reach:
 
     """
 
-    def __init__(self, patience: float = 10.0) -> None:
+    def __init__(self, patience: float = 3.0) -> None:
         self._patience = patience
         self._newest = 0
         self._is_ahead = False
-        self._tick = threading.Event()
+        self._is_over = threading.Event()
 
     def add(self, stamp: int) -> None:
         """Note a sample's stamp in [ns]; after a long gap it was not sent with the one before."""
@@ -170,11 +170,14 @@ class Reach:
         """
         end = time.monotonic() + self._patience
         take()
-        while self._is_ahead and self._newest < time_ns:
-            self._tick.wait(_POLL)
+        while self._is_ahead and self._newest < time_ns and not self._is_over.wait(_POLL):
             take()
             if now() > time_ns + _GIVE_UP or time.monotonic() > end:
                 self._is_ahead = False
+
+    def end(self) -> None:
+        """Wait no more; another thread calls this."""
+        self._is_over.set()
 
     def forget(self) -> None:
         """Begin anew, at another time."""
