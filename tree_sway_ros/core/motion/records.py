@@ -67,6 +67,7 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("area", "f8"),  # drag area [m^2]
             ("speed", "f8"),  # wind here over wind at the anemometer
             ("centre", "f8", (3,)),  # centre of the wind load
+            ("couple", "f8", (3, 3)),  # its moment about the root of the tree per force [m]
             ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
             ("block", "i8"),  # record of its first segment
             ("lane", "i8"),  # of all its segments
