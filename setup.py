@@ -65,9 +65,11 @@ extras = {
     ],
     "serial": ["pyserial>=3.5"],
     "bag": ["rosbags>=0.10"],
+    "relay": ["eclipse-zenoh>=1.0"],
     "plot": ["matplotlib>=3.6"],
     "h5": ["h5py>=3.7"],
     "mujoco": ["mujoco>=3.2"],
+    "dart": ["mujoco>=3.2", "dartpy>=6.20"],
     "battery": ["mpmath>=1.2"],
     "sundials": ["scikit-sundae>=1.0"],
     # colcon runs pytest only where an extra of this name asks for it.

@@ -41,10 +41,12 @@ NEEDS = {
     ),
     **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
     **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
+    "tree-sway record": ("ros", "bag"),
+    "tree-sway relay": ("relay",),
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
     **dict.fromkeys(
-        ("pytest", "py.test"), ("ros", "bag", "plot", "h5", "mujoco", "cluster", "test")
+        ("pytest", "py.test"), ("ros", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test")
     ),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),

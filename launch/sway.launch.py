@@ -5,7 +5,8 @@ Launch a tree that sways: a source of wind, the wind node, the solver, and RViz 
 
     ros2 launch tree_sway_ros sway.launch.py tree:=goldcrest source:=player file:=wind.csv
 
-Every name is relative: two launches with different ``namespace`` are two trees side by side.
+Every name is relative: two launches with different ``namespace`` are two trees side by side. With
+``shards`` the trees of a stand are dealt over so many solvers, on this host or on several.
 
 """
 
@@ -18,12 +19,14 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 PACKAGE = "tree_sway_ros"
-CHAIN = "wind wind/filtered"
+WIND = "wind/filtered"
+CHAIN = f"wind {WIND}"
 SOURCES = {
     "simulated": ["anemometer"],
     "player": ["player"],
     "sensor": ["sensor"],
     "live": [],
+    "elsewhere": [],
 }
 ARGUMENTS = (
     ("tree", "", "benjamina, goldcrest, broadleaf, or a file of trees; as configured if empty"),
@@ -43,6 +46,8 @@ ARGUMENTS = (
     ("params_file", "", "ROS parameter file whose values override those of config/"),
     ("use_sim_time", "", "follow /clock; with source:=player the player publishes it"),
     ("lifecycle", "", "nodes wait for a lifecycle manager; as configured if empty"),
+    ("shards", "1", "solvers that the trees of a stand are dealt over; each in 'shard<n>'"),
+    ("here", "", "which shards run on this host, such as 0,1; all if empty"),
     ("page", "false", "serve a page for the browser: start the viewer"),
     ("rviz", "false", "start RViz"),
 )
@@ -65,7 +70,15 @@ def start_nodes(context):
     config = os.path.join(get_package_share_directory(PACKAGE), "config")
     source = SOURCES[given["source"]]
     viewer = ["viewer"] if is_true("page", given["page"]) else []
-    nodes = [make_node(name, given, config) for name in (*source, "wind", "solver", *viewer)]
+    wind = ["wind"] if given["source"] != "elsewhere" else []
+    nodes = [make_node(name, given, config) for name in (*source, *wind)]
+    if given["shards"] in ("", "1"):
+        nodes += [make_node(name, given, config) for name in ("solver", *viewer)]
+    elif viewer:
+        raise ValueError("launch argument 'page': start a viewer in the namespace of each shard")
+    else:
+        around = context.launch_configurations.get("ros_namespace", "")
+        nodes += [make_shard(shard, given, config, around) for shard in shards_here(given)]
     if is_true("rviz", given["rviz"]):
         sim_time = {}
         if given["use_sim_time"]:
@@ -116,7 +129,30 @@ def overrides_of(name, given):
     return overrides
 
 
-def make_node(name, given, config):
+def shards_here(given):
+    """Return the numbers of the shards that run on this host."""
+    shards = int(given["shards"])
+    here = [int(each) for each in given["here"].split(",")] if given["here"] else range(shards)
+    if shards < 1 or not all(0 <= each < shards for each in here):
+        raise ValueError(f"launch argument 'here': '{given['here']}' of {shards} shards")
+    return list(here)
+
+
+def make_shard(shard, given, config, around):
+    """Make the solver of one shard: it hears the one wind of all, and comes back if it ends."""
+    wind = "/" + "/".join(filter(None, (around.strip("/"), given["namespace"].strip("/"), WIND)))
+    return make_node(
+        "solver",
+        {**given, "namespace": "/".join(filter(None, (given["namespace"], f"shard{shard}")))},
+        config,
+        more={"shard": shard, "shards": int(given["shards"])},
+        remappings=[(WIND, wind)],
+        respawn=True,
+        respawn_delay=0.2,
+    )
+
+
+def make_node(name, given, config, more=None, **options):
     """Make one node: its file in config/, then the user's file, then the arguments."""
     files = [os.path.join(config, f"{name}.yaml")]
     if given["params_file"]:
@@ -132,7 +168,7 @@ def make_node(name, given, config):
         executable=name,
         name=name,
         namespace=given["namespace"],
-        parameters=[*chain, *files, overrides_of(name, given)],
-        remappings=[("wind", given["wind_topic"])] if is_live else [],
+        parameters=[*chain, *files, overrides_of(name, given) | (more or {})],
+        **{"remappings": [("wind", given["wind_topic"])] if is_live else []} | options,
         output="screen",
     )

@@ -24,8 +24,8 @@ TEST_FILES = sorted((ROOT / "test").rglob("*.py"))
 
 #: Layer of each top room; a room imports only from lower layers and from itself.
 LAYERS = {
-    "errors": 0, "kernel_cache": 0, "core": 1, "files": 2, "ros": 3, "page": 3, "view": 3,
-    "nodes": 4, "tools": 4, "study": 5,
+    "errors": 0, "kernel_cache": 0, "core": 1, "files": 2, "ros": 3, "page": 3, "relay": 3,
+    "view": 3, "nodes": 4, "tools": 4, "study": 5,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {

@@ -70,10 +70,12 @@ OPTIONAL = {
         "mpl_toolkits",
         "mpmath",
         "mujoco",
+        "dartpy",
         "numba",
         "pyarrow",
         "rosbags",
         "sksundae",
+        "zenoh",
     ),
 }
 

@@ -44,10 +44,30 @@ def start(launch_file, monkeypatch, **given):
         ("player", {"player", "wind", "solver"}),
         ("live", {"wind", "solver"}),
         ("sensor", {"sensor", "wind", "solver"}),
+        ("elsewhere", {"solver"}),
     ],
 )
 def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executables):
     assert set(start(launch_file, monkeypatch, source=source)) == executables
+
+
+def test_shards_hear_one_wind_and_speak_in_namespaces_of_their_own(launch_file):
+    given = {name: default for name, default, *_ in launch_file.ARGUMENTS}
+    given |= {"shards": "3", "namespace": "wood"}
+    assert launch_file.shards_here(given) == [0, 1, 2]
+    assert launch_file.shards_here(given | {"here": "2,0"}) == [2, 0]
+    node = launch_file.make_shard(2, given, str(ROOT / "config"), "/north")
+    assert node.expanded_node_namespace in ("wood/shard2", node.UNSPECIFIED_NODE_NAMESPACE)
+    for wrong in ({"here": "3"}, {"here": "-1"}, {"shards": "0"}):
+        with pytest.raises(ValueError, match="'here'"):
+            launch_file.shards_here(given | wrong)
+
+
+def test_a_host_that_hears_the_wind_of_another_starts_solvers_alone(launch_file, monkeypatch):
+    nodes = start(launch_file, monkeypatch, source="elsewhere", shards="2", here="1")
+    assert set(nodes) == {"solver"}
+    with pytest.raises(ValueError, match="page"):
+        start(launch_file, monkeypatch, shards="2", page="true")
 
 
 def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):

@@ -172,6 +172,35 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
     assert np.median(steps) == pytest.approx(4e9 / 60, rel=1e-6)
 
 
+def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):
+    nodes = compose(solver={"tree": tree_file, "fidelity": "subtree", "gravity": 0.0})
+    solver = nodes["solver"]
+
+    def change(name, value):
+        request = SetParameters.Request(
+            parameters=[Parameter(name, value=value).to_parameter_msg()]
+        )
+        return observer.call(SetParameters, "solver/set_parameters", request).results[0]
+
+    frames = observer.listen(SEGMENT_POSES)
+    Breeze(observer, (8.0, 0.0, 0.0))
+    observer.until(lambda: frames and block(frames[-1])[2, 0] > 1e-3, "the tree to bend")
+    assert change("damping_ratio", 0.9).successful
+    observer.until(lambda: solver.simulator.check_tuning().damping_ratio == 0.9, "the damping")
+    n = len(frames)
+    still = lambda: np.ptp([block(frame)[2, 0] for frame in frames[-30:]]) < 1e-5  # noqa: E731
+    observer.until(lambda: len(frames) > n + 60 and still(), "a steady bend")
+    lean = block(frames[-1])[2, 0]
+    assert change("stiffness_factor", 8.0).successful
+    observer.until(lambda: block(frames[-1])[2, 0] < 0.5 * lean, "less bend")
+    assert "out of range" in change("stiffness_factor", 11.0).reason
+    assert "without weight" in change("gravity", 9.81).reason
+    assert "volume rule" in change("volume_stiffness", 1.0e5).reason
+    assert "for the start" in change("damping_ratio", 0.0).reason
+    assert solver.values["gravity"] == 0.0
+    assert solver.simulator.check_tuning().stiffness_factor == 8.0
+
+
 def test_pause_holds_the_pose_and_reset_goes_to_rest(compose, observer, tree_file):
     compose(solver={"tree": tree_file})
     frames = observer.listen(SEGMENT_POSES)

@@ -17,10 +17,13 @@ from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.page import scene_state
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.protocol import decode_description, decode_frame
 from tree_sway_ros.page.scene_state import SceneState
@@ -107,7 +110,7 @@ def test_a_frame_of_any_tree_of_the_package_is_small(name: str) -> None:
     assert len(state.frame(0)) <= 96
 
 
-@pytest.mark.parametrize("fidelity", ["branch", "auto", "segments"])
+@pytest.mark.parametrize("fidelity", ["branch", "wind_basis", "auto", "segments"])
 def test_every_model_can_be_told(fidelity: str) -> None:
     source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
     simulator = source.simulator(model=fidelity)
@@ -132,3 +135,45 @@ def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
     rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
     assert json.dumps(state.coordinate_names).startswith('["t0/c0"')
+
+
+def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
+    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
+    simulator = source.simulator(model="modes")
+    for _ in range(30):
+        simulator.step((6.0, 1.0, 0.0), 1.0 / 60.0)
+    before = simulator.state().values
+    own = SceneState(simulator, is_running=False)
+    np.testing.assert_array_equal(simulator.state().values, before)
+    assert own.description == SceneState(simulator).description
+
+
+def test_a_stand_is_told_on_a_basis_per_kind() -> None:
+    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
+    kinds = {"seedling": StandKind(source.tree, source.species)}
+    standing = [
+        StandTree("one", "seedling"),
+        StandTree("two", "seedling", x=3.0, yaw=0.7, scale=1.4),
+        StandTree("own", "seedling", y=2.0, yaw=2.0, fidelity="modes"),
+        StandTree("still", "seedling", y=4.0, yaw=1.0, fidelity="frozen"),
+    ]
+    stand = Stand(standing, kinds)
+    state = SceneState(stand)
+    assert state.bases[0].matrix is state.bases[1].matrix is state.bases[3].matrix
+    frames, exact = swayed(stand, state, 5.0)
+    placer = Placer(decode_description(state.description))
+    rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
+    moved = np.ptp(np.array(exact)[:, :, :3], axis=0).max(axis=1)
+    for told in standing[:3]:
+        rows = stand.segments_of(told.name)
+        each = gaps([poses[rows] for poses in rebuilt], [poses[rows] for poses in exact])
+        assert np.quantile(each, 0.99) < 0.02 * moved[rows].max()
+    assert moved[stand.segments_of("still")].max() == 0.0
+    assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-4
+    assert json.dumps(state.coordinate_names).startswith('["one/c0"')
+
+
+def test_a_scene_too_large_to_describe_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scene_state, "MOST_SEGMENTS", 5)
+    with pytest.raises(ParameterError, match="by their poses"):
+        SceneState(open_tree("goldcrest").simulator(model="frozen"))

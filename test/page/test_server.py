@@ -200,6 +200,9 @@ def test_a_token_is_asked_for_elsewhere_than_here() -> None:
     assert "token" in str(refusal({"Host": "tree.example"}, "", **asked))
     assert "token" in str(refusal({"Host": "tree.example"}, "lóng", **asked))
     assert refusal({"Host": "tree.example"}, "long enough", **asked) is None
+    other = {"Host": "tree.example", "Origin": "https://scene.example"}
+    assert "origin" in str(refusal(other, "long enough", **asked))
+    assert refusal(other, "long enough", **asked, origins=("https://scene.example",)) is None
     assert is_loopback("::1")
     assert is_loopback("localhost")
     assert not is_loopback("10.0.0.1")

@@ -1,22 +1,37 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The player node: a recorded wind, as it was, faster, or around and around."""
+"""The player node: a recorded wind or state, as it was, faster, or around and around."""
 
 from __future__ import annotations
 
+<<<<<<< HEAD
 import time
+=======
+from collections.abc import Callable
+from pathlib import Path
+>>>>>>> main
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.recording.state_record import StateRecord, read_state_record, restamped
 from tree_sway_ros.files.wind.reader_options import reader_options
+from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND, WIND_FILTERED
+from tree_sway_ros.ros.process.topics import (
+    CLOCK,
+    SEGMENT_POSES,
+    TREE_DESCRIPTION,
+    TREE_STATE,
+    WIND,
+    WIND_FILTERED,
+)
 from tree_sway_ros.ros.reports.diagnostics import OK, Status
 from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
 from tree_sway_ros.ros.timing.playback import LONGEST_CLOCK_STEP, Playback, is_ros_time
 from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
 from tree_sway_ros.ros.wire.cdr import stamp_of
+from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD
 from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
 
 _SLACK = 100_000_000
@@ -31,7 +46,7 @@ _MEETING = 2.0
 
 class PlayerNode(TreeSwayNode):
     """
-    Publishes `wind` from a record, and `/clock` if asked to.
+    Publishes `wind` or the state of a tree from a record, and `/clock` if asked to.
 
     Parameters
     ----------
@@ -47,11 +62,12 @@ class PlayerNode(TreeSwayNode):
         """Read the record."""
         if not self.values["file"]:
             raise ParameterError("no file to play", cure="give -p file:=wind.csv")
-        self._record = read_wind(self.values["file"], **self._reader_options())
+        if self.values["play"] == "state":
+            self._open_state()
+        else:
+            self._open_wind()
         for note in self._record.notes:
             self.get_logger().info(note)
-        self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
-        self._wind = self.publisher(WIND, self._writer.message_class, alone=True)
         has_clock = self.values["publish_clock"]
         self._clock_publisher: Any = self.publisher(CLOCK) if has_clock else None
         epoch = self._record.epoch
@@ -61,7 +77,8 @@ class PlayerNode(TreeSwayNode):
                 "it starts at 1 s"
             )
             epoch = None
-        wanted = required(self.values["wait_for"]) if self.values["wait_for_subscriber"] else {}
+        wait_for = TREE_STATE.name if self.values["play"] == "state" else self.values["wait_for"]
+        wanted = required(wait_for) if self.values["wait_for_subscriber"] else {}
         self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
         is_exact = has_clock and WIND_FILTERED.name in wanted
         self._playback = Playback(
@@ -82,6 +99,24 @@ class PlayerNode(TreeSwayNode):
                 wanted[topic] += 1  # our own
         self._thread = self._make_thread()
         self.report_with(self._record.source, self._report)
+
+    def _open_wind(self) -> None:
+        record = read_wind(self.values["file"], **self._reader_options())
+        writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
+        wind = self.publisher(WIND, writer.message_class, alone=True)
+        self._record: WindRecord | StateRecord = record
+        self._send: Callable[[int, int], None] = lambda row, stamp: wind.publish(
+            writer.message(stamp, record.velocity[row])
+        )
+
+    def _open_state(self) -> None:
+        record = read_state_record(Path(self.values["file"]), self.values["topic"] or "tree_state")
+        description = self.publisher(TREE_DESCRIPTION, alone=True)
+        state = self.publisher(TREE_STATE, alone=True)
+        description.publish(record.description)
+        self.create_timer(REPEAT_PERIOD, lambda: description.publish(record.description))
+        self._record = record
+        self._send = lambda row, stamp: state.publish(restamped(record.states[row], stamp))
 
     def activate(self) -> None:
         """Play from the start, once those who must listen do."""
@@ -122,7 +157,7 @@ class PlayerNode(TreeSwayNode):
 
     def _publish(self, row: int, stamp: int) -> None:
         if row >= 0:
-            self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
+            self._send(row, stamp)
             return
         if self._answers is not None and self._is_waiting:
             # Time goes back again and again, until the solver has begun anew there.

@@ -10,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.live_tuning import LIVE
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
@@ -17,6 +18,8 @@ from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.gate import LARGEST_LEAD
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.intake import WindIntake
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.stands.shard import dealt
 from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -86,15 +89,18 @@ class SolverNode(TreeSwayNode):
         source = open_scene(self.values["tree"])
         if self.values["species"]:
             source = source.of_species(open_species(self.values["species"])).checked()
-        return placed_scene(source, **self.values("x", "y", "z", "yaw"))
+        placed = placed_scene(source, **self.values("x", "y", "z", "yaw"))
+        return dealt(placed, **self.values("shard", "shards"))
 
     def _make(self, source: Any) -> None:
         settings = Settings(
             n_modes=self.values["modes"] or None,
-            **self.values("stiffness", "integrator", "gravity"),
+            **self.values("stiffness", "integrator", "gravity", "crown_coherence"),
+            **self.values("volume_stiffness", "volume_damping"),
             model=self.values["fidelity"],
             in_leaf=LEAVES[self.values["leaves"]],
             damping_ratio=self.values["damping_ratio"] or None,
+            root_stiffness=self.values["root_stiffness"] or None,
             profile=WindProfile(
                 self.values["profile"],
                 self.values["anemometer_height"],
@@ -104,6 +110,8 @@ class SolverNode(TreeSwayNode):
             ),
         )
         self.simulator: Simulator = source.simulator(settings, **self.values("tolerance"))
+        if self.values["stiffness_factor"] != 1.0:
+            self.simulator.tune(**self.values("stiffness_factor"))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = self._make_pacer()
@@ -146,8 +154,25 @@ class SolverNode(TreeSwayNode):
         self._camera = camera
         self.on_change({})
 
+    def check_values(self, values: dict[str, Any]) -> None:
+        """Refuse a change that the trees could not take while they sway."""
+        if not self.is_active:
+            return
+        changes = {k: values[k] for k in LIVE if k in values and values[k] != self.values[k]}
+        if changes.get("damping_ratio") == 0.0:
+            raise ParameterError(
+                "the species' own damping while the tree sways",
+                where="damping_ratio",
+                cure="give the ratio itself; 0 is for the start",
+            )
+        if changes:
+            self.simulator.check_tuning(**changes)
+
     def on_change(self, values: dict[str, Any]) -> None:
-        """Take a new tolerance or budget before the next step."""
+        """Take new values before the next step."""
+        changes = {k: v for k, v in values.items() if k in LIVE}
+        if changes and self.is_active:
+            self._stepper.request(lambda: self.simulator.tune(**changes))
         if self.values["fidelity"] == "auto":
             self._stepper.request(self._tell_demand)
 

@@ -10,7 +10,8 @@ from typing import Any
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.simulator.protocol import Simulator
-from tree_sway_ros.page.scene_state import SceneState, wind_of
+from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.ros.process.topics import TREE_STATE
 from tree_sway_ros.ros.timing.stepping import Divider
 from tree_sway_ros.ros.wire.tree_state import state_entry, state_template
@@ -56,7 +57,7 @@ class StatePublisher:
                 self._finder.start()
             return
         block = self._template.blocks[0]
-        block[:3] = wind_of(self._simulator)
+        block[:3] = self._simulator.wind
         block[3:] = self._scene.coordinates()
         self._publisher.publish(self._template.to_bytes(stamp))
 
@@ -71,5 +72,7 @@ class StatePublisher:
             self._template = state_template(scene.coordinate_names, frame_id)
             self._node.stream.tell_more({"state": state_entry(scene.description)})
             self._scene = scene
+        except TreeSwayError as error:
+            self._node.get_logger().warning(f"no {TREE_STATE.name}: {error}")
         except Exception as error:
             self._node.slip(error)

@@ -55,7 +55,8 @@ class ViewerNode(TreeSwayNode):
     def __init__(self, **options: Any) -> None:
         super().__init__("viewer", **options)
         settings = PageSettings(
-            **self.values("address", "port", "token", "certificate", "private_key", "max_clients")
+            **self.values("address", "port", "token", "certificate", "private_key", "max_clients"),
+            origins=tuple(self.values["origins"].split()),
         )
         self._description: Description | None = None
         self._told = ""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from urllib.parse import urlsplit
 
 from tree_sway_ros.errors import ParameterError
@@ -49,7 +49,12 @@ def require_token(address: str, token: str) -> None:
 
 
 def refusal(
-    headers: Mapping[str, str], given_token: str, *, address: str, token: str
+    headers: Mapping[str, str],
+    given_token: str,
+    *,
+    address: str,
+    token: str,
+    origins: Sequence[str] = (),
 ) -> str | None:
     """
     Why a request is refused; None if it is not.
@@ -62,13 +67,15 @@ def refusal(
         The token that came with it; may be empty.
     address, token
         What the server is bound to and asks for.
+    origins
+        Other origins whose pages may follow the stream.
 
     """
     host = headers.get("Host", "")
     if is_loopback(address) and not is_loopback(_name_of(host)):
         return f"host '{host}' is not this machine"
     origin = headers.get("Origin")
-    if origin is not None and urlsplit(origin).netloc != host:
+    if origin is not None and origin not in origins and urlsplit(origin).netloc != host:
         return f"origin '{origin}' is not this server"
     if token and not hmac.compare_digest(given_token.encode(), token.encode()):
         return "the token is missing or wrong"

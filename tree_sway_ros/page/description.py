@@ -19,18 +19,21 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.rotation import rotated
-from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.protocol import encode_description
+from tree_sway_ros.page.told_basis import ToldBasis, ToldTree
 
 RIGID = -1
 """Coordinate of a branch that has none."""
 
 
 def describe_scene(
-    simulator: Any,
-    bases: Sequence[Any],
+    simulator: Simulator,
+    told: Sequence[ToldTree],
+    bases: Sequence[ToldBasis],
     *,
     frame_id: str = "map",
     leaves: LeafClusters | None = None,
@@ -41,9 +44,9 @@ def describe_scene(
     Parameters
     ----------
     simulator
-        Of a tree or a forest, on the model whose state will be sent.
-    bases
-        Per tree, with `frames` of its moving branches, as `ToldBasis`.
+        Of a tree, a forest or a stand, on the model whose state will be sent.
+    told, bases
+        Each tree of it, and its basis.
     frame_id
         Frame of the poses.
     leaves
@@ -55,8 +58,7 @@ def describe_scene(
         As `encode_description`.
 
     """
-    simulators = simulators_of(simulator)
-    parts = [_branches(each, basis.frames) for each, basis in zip(simulators, bases, strict=True)]
+    parts = [_branches(each, basis) for each, basis in zip(told, bases, strict=True)]
     arrays: dict[str, Any] = _joined(parts)
     trees: list[dict[str, Any]] = []
     coordinates = key = 0
@@ -64,7 +66,7 @@ def describe_scene(
     # Trees of one shape share a matrix, which is sent once.
     place_of: dict[int, int] = {}
     matrices: list[Any] = []
-    for each, basis in zip(simulators, bases, strict=True):
+    for each, basis in zip(told, bases, strict=True):
         rows, columns = basis.matrix.shape
         if id(basis.matrix) not in place_of:
             place_of[id(basis.matrix)] = sum(len(matrix) for matrix in matrices)
@@ -103,39 +105,53 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: Any, frames: Floats) -> dict[str, Any]:
+def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
     """
-    Arrays of one tree: how each branch of the whole tree is placed, by frames per moving branch.
+    Arrays of one tree: how each branch of the whole tree is placed, by the told key rotations.
 
     """
     bank, tree = simulator.bank, simulator.tree
-    n_columns = bank.segments["slope"].shape[1]
-    arrays = _at_rest(tree, n_columns)
+    arrays = _at_rest(tree)
     record_at = {int(first): i for i, first in enumerate(bank.branches["first"])}
-    for branch, first in enumerate(tree.branch_first[:-1].tolist()):
-        if first not in record_at:
-            continue
-        record = bank.branches[record_at[first]]
-        arrays["branch_frame"][branch] = frames[record_at[first]]
-        here = tree.segments_of(branch)
-        rows = slice(record["block"], record["block"] + here.stop - here.start)
-        arrays["branch_coordinate"][branch] = record["coordinate"]
-        arrays["branch_pairs"][branch] = record["n_pairs"]
-        arrays["branch_twists"][branch] = record["n_coordinates"] - 2 * record["n_pairs"]
-        arrays["branch_skew"][branch] = record["skew"], record["tip_skew"]
-        arrays["branch_base_slope"][branch] = record["base_slope"]
-        arrays["segment_slope"][here] = bank.segments["slope"][rows, :, record["lane"]]
-        arrays["segment_tip_slope"][here] = bank.segments["tip_slope"][rows, record["lane"]]
+    top_at: dict[int, int] = {}
     if bank.frozen is not None:
         top_at = {int(first): t for t, first in enumerate(bank.frozen.rows[:, 1])}
-        for branch, first in enumerate(tree.branch_first[:-1].tolist()):
-            if first in top_at:
-                slopes = bank.frozen.base_slope[top_at[first]]
-                arrays["branch_base_slope"][branch] = slopes[:n_columns]
+    turns: list[Floats] = []
+    count = 0
+    for branch, first in enumerate(tree.branch_first[:-1].tolist()):
+        parent = int(tree.branch_parent[branch])
+        carrier = record_at.get(int(tree.branch_first[parent])) if parent >= 0 else None
+        if carrier is not None:
+            moving = first in record_at
+            base = (
+                bank.branches[record_at[first]]["twist"][:, 3:]
+                if moving
+                else bank.frozen.base_turn[top_at[first]]
+            )
+            turns.append(told.per_key(carrier, base[: bank.branches[carrier]["n_coordinates"]]))
+            arrays["branch_base_turn"][branch] = count
+            count += len(turns[-1])
+        if first not in record_at:
+            continue
+        at = record_at[first]
+        record, here = bank.branches[at], tree.segments_of(branch)
+        arrays["branch_frame"][branch] = told.frames[at]
+        rows = slice(record["block"], record["block"] + here.stop - here.start)
+        arrays["branch_coordinate"][branch] = record["coordinate"]
+        arrays["branch_keys"][branch] = record["n_coordinates"]
+        arrays["branch_skew"][branch] = record["skew"], record["tip_skew"]
+        arrays["segment_slope"][here] = bank.segments["slope"][rows, record["lane"]]
+        arrays["segment_tip_slope"][here] = bank.segments["tip_slope"][rows, record["lane"]]
+        if record["n_coordinates"] > 2:
+            arrays["branch_turn"][branch] = count
+            for turn in turns_of_segments(record, bank.segments):
+                turns.append(told.per_key(at, turn))
+                count += len(turn)
+    arrays["turn"] = _float32(np.concatenate([np.zeros((0, 3)), *turns]))
     return arrays
 
 
-def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
+def _at_rest(tree: Tree) -> dict[str, Any]:
     """
     Arrays of a tree none of whose branches bends.
 
@@ -157,13 +173,13 @@ def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
         "branch_base_segment": under.astype(np.int32),
         "branch_first": tree.branch_first[:-1].astype(np.int32),
         "branch_coordinate": np.full(b, RIGID, dtype=np.int32),
-        "branch_pairs": np.zeros(b, dtype=np.uint8),
-        "branch_twists": np.zeros(b, dtype=np.uint8),
+        "branch_keys": np.zeros(b, dtype=np.uint8),
         "branch_frame": np.zeros((b, 3, 3), dtype=np.float32),
         "branch_skew": np.zeros((b, 2), dtype=np.float32),
-        "branch_base_slope": np.zeros((b, n_columns), dtype=np.float32),
+        "branch_base_turn": np.full(b, RIGID, dtype=np.int32),
+        "branch_turn": np.full(b, RIGID, dtype=np.int32),
         "branch_offset": _float32(offset),
-        "segment_slope": np.zeros((n, n_columns), dtype=np.float32),
+        "segment_slope": np.zeros(n, dtype=np.float32),
         "segment_tip_slope": np.zeros(n, dtype=np.float32),
         "segment_chord": _float32(chord),
         "segment_rest": _float32(rest),
@@ -174,26 +190,24 @@ def _at_rest(tree: Tree, n_columns: int) -> dict[str, Any]:
 
 def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     """
-    Arrays of trees one after another, indices shifted; narrow slopes are widened.
+    Arrays of trees one after another, indices shifted.
 
     """
-    columns = max(part["segment_slope"].shape[1] for part in parts)
-    branch = segment = coordinate = 0
+    branch = segment = coordinate = turn = 0
     for part in parts:
-        for name in ("branch_base_slope", "segment_slope"):
-            missing = columns - part[name].shape[1]
-            part[name] = np.pad(part[name], ((0, 0), (0, missing)))
-        counts = 2 * part["branch_pairs"].astype(int) + part["branch_twists"]
         for name, shift in (
             ("branch_parent", branch),
             ("branch_base_segment", segment),
             ("branch_coordinate", coordinate),
+            ("branch_base_turn", turn),
+            ("branch_turn", turn),
         ):
             part[name] = np.where(part[name] >= 0, part[name] + shift, part[name]).astype(np.int32)
         part["branch_first"] = part["branch_first"] + np.int32(segment)
         branch += len(part["branch_parent"])
         segment += len(part["segment_length"])
-        coordinate += int(counts.sum())
+        coordinate += int(part["branch_keys"].sum(dtype=np.int64))
+        turn += len(part["turn"])
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     arrays["branch_first"] = np.append(arrays["branch_first"], np.int32(segment)).astype(np.int32)
     return arrays

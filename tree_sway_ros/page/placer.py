@@ -16,8 +16,9 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import head_records, lanes
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import BRANCH, SEGMENT, WORK
+from tree_sway_ros.core.state.state_basis import FULL_SCALE
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.page.protocol import FULL_SCALE, Description, Frame
+from tree_sway_ros.page.protocol import Description, Frame
 
 
 class Placer:
@@ -71,7 +72,10 @@ class Placer:
             )
         if len(frame.coordinates) != len(self._scale):
             raise FormatError(f"{len(frame.coordinates)} coordinates", where="tree state")
-        values = frame.coordinates * (self._scale / FULL_SCALE)
+        return self._expanded(frame.coordinates * (self._scale / FULL_SCALE))
+
+    def _expanded(self, values: Floats) -> Floats:
+        """Key rotations (N,) of coordinates (m,)."""
         out = np.zeros(self._n_keys + 2)  # the last two are what rigid branches turn by
         for (key, key_end, first, end), matrix in self._blocks:
             out[key:key_end] = matrix @ values[first:end]
@@ -80,6 +84,10 @@ class Placer:
     def place(self, frame: Frame) -> Floats:
         """Poses of a frame, (n, 7): x y z in [m] and the quaternion's x y z w."""
         return self.place_rotations(self.rotations(frame))
+
+    def place_coordinates(self, coordinates: Floats) -> Floats:
+        """Poses of coordinates in their own unit (m,), (n, 7)."""
+        return self.place_rotations(self._expanded(coordinates))
 
     def place_rotations(self, rotations: Floats) -> Floats:
         """Poses of key rotations (N,) in [rad], (n, 7)."""
@@ -128,28 +136,34 @@ class Placer:
         branches["first"], branches["end"] = shape.branch_first[:-1], shape.branch_first[1:]
         is_rigid = arrays["branch_coordinate"][own] < 0
         branches["coordinate"] = np.where(is_rigid, self._n_keys, arrays["branch_coordinate"][own])
-        branches["n_pairs"] = np.maximum(arrays["branch_pairs"][own], 1)
-        branches["n_coordinates"] = 2 * branches["n_pairs"] + arrays["branch_twists"][own]
-        columns = arrays["segment_slope"].shape[1]
+        branches["n_coordinates"] = np.maximum(arrays["branch_keys"][own], 2)
         branches["frame"] = arrays["branch_frame"][own]
         branches["skew"], branches["tip_skew"] = arrays["branch_skew"][own].T
-        branches["base_slope"][:, :columns] = arrays["branch_base_slope"][own]
         branches["offset"] = arrays["branch_offset"][own]
         segments = np.zeros(n_records, dtype=SEGMENT)
         segments["rest"][:, 0] = 1.0
         slopes, tips = arrays["segment_slope"][rows], arrays["segment_tip_slope"][rows]
-        for record in branches:
+        keys, turns = arrays["branch_keys"][own], arrays["turn"]
+        base_turn, own_turn = arrays["branch_base_turn"][own], arrays["branch_turn"][own]
+        for branch, record in enumerate(branches):
+            if base_turn[branch] >= 0:
+                k = int(keys[record["parent"]])
+                record["twist"][:k, 3:] = turns[base_turn[branch] :][:k]
             here = slice(record["first"], record["end"])
             at, lane = record["block"], record["lane"]
             to = slice(at, at + here.stop - here.start)
-            segments["slope"][to, :columns, lane] = slopes[here]
+            segments["slope"][to, lane] = slopes[here]
             segments["tip_slope"][to, lane] = tips[here]
             segments["chord"][to, :, lane] = arrays["segment_chord"][rows][here]
             segments["rest"][to, :, lane] = arrays["segment_rest"][rows][here]
             segments["n_lanes"][to] = np.maximum(segments["n_lanes"][to], lane + 1)
-            steepest = np.square(slopes[here]).max(axis=0)
-            record["steepest"][:columns] = steepest
-            record["steepest"][0] = max(steepest[0], np.square(tips[here]).max())
+            count, k = here.stop - here.start, int(record["n_coordinates"])
+            drawn = np.multiply.outer(slopes[here], [record["frame"][2], -record["frame"][1]])
+            if own_turn[branch] >= 0:
+                drawn = turns[own_turn[branch] :][: count * k].reshape(count, k, 3)
+            segments["turn"][to, :k, :, lane] = drawn
+            record["steepest"][:k] = np.square(drawn).sum(axis=2).max(axis=0)
+            record["steepest"][0] = max(record["steepest"][0], np.square(tips[here]).max())
         heads = head_records(branches, segments)
         work = np.zeros(n_branches, dtype=WORK)
         return start, rows.stop, branches, segments, heads, work

@@ -22,14 +22,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.state.state_basis import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 
 VERSION = 1
 MAGIC = b"TSWD"
 FRAME_KIND = 0x46
-FULL_SCALE = 32767
-"""Value of an int16 coordinate that stands for the coordinate's scale."""
-
 WIND_UNIT = 0.005
 """Wind of one unit of its int16 in [m/s]."""
 

@@ -66,6 +66,8 @@ class PageSettings:
         PEM files for TLS; none if empty.
     max_clients
         Most pages at once.
+    origins
+        Other origins, as ``https://example.org``, whose pages may follow the stream.
 
     """
 
@@ -75,6 +77,7 @@ class PageSettings:
     certificate: str = ""
     private_key: str = ""
     max_clients: int = 64
+    origins: tuple[str, ...] = ()
 
 
 class _Client:
@@ -283,8 +286,13 @@ class PageServer:
             return answer
         if request.path not in ("/healthz",) and not request.path.startswith("/static/"):
             given = request.query.get("token", "")
+            settings = self.settings
             why = refusal(
-                request.headers, given, address=self.settings.address, token=self.settings.token
+                request.headers,
+                given,
+                address=settings.address,
+                token=settings.token,
+                origins=settings.origins,
             )
             if why is not None:
                 self._counts["refused"] += 1

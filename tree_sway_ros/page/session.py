@@ -16,8 +16,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.demand import tell_demand
 from tree_sway_ros.core.scene.make import simulators_of
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 from tree_sway_ros.page.scene_state import SceneState
@@ -26,6 +28,8 @@ from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
 
 _MOST_LATE = 0.25
 _NEWEST = 0.05
+_BUSY = 0.2
+"""Share of a period from which on only every second step is told."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,7 @@ class Choices:
     damping_ratio: float = 0.0
 
 
-Build = Callable[[Choices], tuple[Any, Any]]
+Build = Callable[[Choices], tuple[Simulator, LeafClusters | None]]
 """Makes the simulator and the leaves, or none, of some choices."""
 
 
@@ -96,7 +100,7 @@ class Session:
         self._server: PageServer | None = None
         self._stop = threading.Event()
         self._is_paused = self._resets = False
-        self._time = 0.0
+        self._time, self._steps = 0.0, 0
         self._work, self._spacing, self._late = 0.0, self._period, 0
         self._last = time.perf_counter()
         self._builder: threading.Thread | None = None
@@ -110,6 +114,10 @@ class Session:
         self._server = server
         if not self._thread.is_alive():
             self._thread.start()
+
+    def wait(self, seconds: float) -> None:
+        """Wait so long [s], or until the session has failed."""
+        self._thread.join(max(0.0, seconds))
 
     def stop(self) -> None:
         """Stop stepping; may be called twice."""
@@ -162,7 +170,7 @@ class Session:
 
     def _made(self, choices: Choices) -> SceneState:
         simulator, leaves = self._build(choices)
-        scene = SceneState(simulator, leaves)
+        scene = SceneState(simulator, leaves, is_running=False)
         tell_demand(simulators_of(simulator), tolerance=self._tolerance)
         simulator.reset()
         return scene
@@ -214,10 +222,12 @@ class Session:
             wind = self.wind.mean(self._time, self._time + self._period)
             simulator.step(wind, self._period)
             self._time += self._period
-        frame = self._scene.frame(
-            time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
-        )
-        self._server.publish(frame)
+        self._steps += 1
+        if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
+            frame = self._scene.frame(
+                time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
+            )
+            self._server.publish(frame)
         now = time.perf_counter()
         self._work += _NEWEST * (now - begin - self._work)
         self._spacing += _NEWEST * (begin - self._last - self._spacing)

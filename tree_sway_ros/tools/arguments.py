@@ -21,6 +21,7 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.tools.progress import waiting
 
 OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
 _TREE = "benjamina, goldcrest, broadleaf, or a file"
@@ -79,9 +80,9 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
         positive.
 
     """
-    return _of_wood(
-        open_tree(arguments.tree, arguments.seed, **_options(arguments.option)), arguments
-    )
+    with waiting(f"opening {arguments.tree}"):
+        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
+    return _of_wood(opened, arguments)
 
 
 def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
@@ -94,7 +95,8 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
         As `opened_tree`; values for one tree where there are several.
 
     """
-    scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
+    with waiting(f"opening {arguments.tree}"):
+        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
     if isinstance(scene, TreeFile):
         return _of_wood(scene, arguments)
     if _wood(arguments):
@@ -209,16 +211,22 @@ def output_path(arguments: argparse.Namespace, default: str = "") -> str:
 
     """
     if arguments.output is not None:
-        if Path(arguments.output).is_file() and not arguments.force:
-            raise ParameterError(
-                f"'{arguments.output}' is there already",
-                where="--output",
-                cure="name another file, or write over it with --force",
-            )
+        if not arguments.force:
+            refuse_overwriting(arguments.output, "--output")
         return str(arguments.output)
     path = Path(default)
     names = (path.with_stem(f"{path.stem}_{n}") for n in itertools.count(2))
     return str(next(name for name in itertools.chain([path], names) if not name.exists()))
+
+
+def refuse_overwriting(path: str | Path, option: str) -> None:
+    """Raise a `ParameterError` if a file that an option names is there already."""
+    if Path(path).is_file():
+        raise ParameterError(
+            f"'{path}' is there already",
+            where=option,
+            cure="name another file, or write over it with --force",
+        )
 
 
 def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:

@@ -48,6 +48,13 @@ COMMANDS: dict[str, Command] = {
     "listen": Command(
         "count the poses that a solver in another process streams", "listen --seconds 10"
     ),
+    "record": Command(
+        "wind, state and description of a running tree as a bag", "record -o bag --seconds 10"
+    ),
+    "relay": Command(
+        "one tree at several sites: send the wind, and receive it",
+        "relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1",
+    ),
     "info": Command("what a tree is: size, masses, natural frequencies", "info benjamina"),
     "plot": Command(
         "pictures of a tree, and of the wind and the motion of its tip",
@@ -91,7 +98,7 @@ _STUDIES = {
 }
 
 #: Commands that watch a stream.
-_STREAMS = ("listen", "soak")
+_STREAMS = ("listen", "record", "soak")
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")

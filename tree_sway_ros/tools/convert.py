@@ -26,6 +26,7 @@ from tree_sway_ros.tools.arguments import (
     told_leaves,
     what_was_written,
 )
+from tree_sway_ros.tools.progress import waiting
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,8 +74,9 @@ def _write_morphing(scene: TreeFile | ForestFile, arguments: argparse.Namespace)
             "a forest by morph targets", where="--sway", cure="convert its trees one by one"
         )
     settings = Settings(model="modes", in_leaf=told_leaves(arguments))
-    simulator = SwaySimulator(scene.tree, scene.species, settings)
-    document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
+    with waiting("finding what sways"):
+        simulator = SwaySimulator(scene.tree, scene.species, settings)
+        document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
     write_gltf(arguments.output, document)
     print(
         f"  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} mm "

@@ -16,6 +16,7 @@ import webbrowser
 from pathlib import Path
 
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -40,6 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True, default="benjamina")
     add_wind_arguments(parser)
+    parser.add_argument(
+        "--sensor",
+        metavar="ADDRESS",
+        help="of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, "
+        "udp://:port",
+    )
     parser.add_argument(
         "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
     )
@@ -94,7 +101,9 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
 
 def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
     """Add the viewer, tell where its page is, and open it if asked to."""
-    url = nodes.add("viewer", {**vars(page_settings(arguments)), "control": True}).server.url
+    told = {**vars(page_settings(arguments)), "control": True}
+    told["origins"] = " ".join(arguments.origin)
+    url = nodes.add("viewer", told).server.url
     print(f"page: {url}", flush=True)
     if arguments.open:
         webbrowser.open(url)
@@ -127,6 +136,10 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
     solver["leaves"] = arguments.leaves
     if arguments.gravity == "off":
         solver["gravity"] = 0.0
+    if arguments.sensor is not None:
+        if arguments.wind is not None:
+            raise ParameterError("both --sensor and --wind", cure="give one of the two")
+        return {"sensor": {"address": arguments.sensor}, "wind": {}, "solver": solver}
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
     return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}

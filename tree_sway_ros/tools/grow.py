@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
+from dataclasses import replace
 
 import numpy as np
 
 from tree_sway_ros.core.growth.grow import HABITS, grow
-from tree_sway_ros.core.tree.species import species_keys
+from tree_sway_ros.core.tree.species import species_keys, typical_root_stiffness
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
@@ -54,6 +56,11 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.habit,
         rng=np.random.default_rng(arguments.seed),
     )
+    if species.habit != "pot" and math.isinf(species.root_stiffness):
+        stem = species.density * float(tree.volume[tree.segments_of(0)].sum())
+        # Three figures are more than is known of any soil.
+        roots = float(f"{typical_root_stiffness(stem):.3g}")
+        species = replace(species, root_stiffness=roots)
     grown = TreeFile(tree, species, tree.name).checked()
     for doubt in grown.warnings:
         print(f"warning: {doubt}", file=sys.stderr)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -16,6 +17,8 @@ from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.tree.plausibility import doubt_of_sway
+from tree_sway_ros.core.tree.species import Species
+from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -27,6 +30,7 @@ from tree_sway_ros.tools.arguments import (
 )
 from tree_sway_ros.tools.info_forest import forest_facts, forest_text
 from tree_sway_ros.tools.mode_table import ModeRow, mode_table
+from tree_sway_ros.tools.progress import waiting
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 
@@ -38,6 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--model", choices=MODELS, default="modes", help="model (%(default)s)")
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
+    )
+    parser.add_argument(
+        "--root-stiffness",
+        type=float,
+        metavar="K",
+        help="of its roots against tilting [N m/rad], inf for rigid ones; its own if left out",
     )
     parser.add_argument(
         "--count", type=int, default=10, metavar="N", help="how many frequencies (%(default)s)"
@@ -53,10 +63,12 @@ def run(arguments: argparse.Namespace) -> int:
         )
     scene = opened_scene(arguments)
     if isinstance(scene, ForestFile):
-        facts = forest_facts(scene, partial(_facts, arguments), told_leaves(arguments))
+        with waiting("setting up every tree"):
+            facts = forest_facts(scene, partial(_facts, arguments), told_leaves(arguments))
         print(json.dumps(facts, indent=2) if arguments.json else forest_text(facts))
         return 0
-    facts = _facts(arguments, scene, told_leaves(arguments))
+    with waiting("working out the modes"):
+        facts = _facts(arguments, scene, told_leaves(arguments))
     print(json.dumps(facts, indent=2) if arguments.json else _text(facts, scene))
     return 0
 
@@ -67,38 +79,17 @@ def _facts(
     settings = Settings(
         model=arguments.model,
         gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
+        root_stiffness=arguments.root_stiffness,
         # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
         n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
         mode_choice="slowest",
         in_leaf=in_leaf,
     )
-    return tree_facts(tree_file, settings, arguments.count)
+    return _tree_facts(tree_file, settings, arguments.count)
 
 
-def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
-    """
-    Gather what there is to say about a tree.
-
-    Parameters
-    ----------
-    tree_file
-        The tree and its wood.
-    settings
-        How it is modelled.
-    count
-        How many natural frequencies.
-
-    Returns
-    -------
-    dict
-        SI units throughout; fit for JSON.
-
-    Raises
-    ------
-    TreeSwayError
-        A tree that cannot be modelled.
-
-    """
+def _tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
+    """What there is to say about a tree, in SI units, fit for JSON."""
     tree, species = tree_file.tree, tree_file.species
     settings = in_season(tree, species, settings)
     notes = list(tree_file.notes)
@@ -115,6 +106,7 @@ def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str,
     warnings = list(tree_file.warnings)
     if rows and (doubt := doubt_of_sway(tree, min(row.frequency for row in rows))):
         warnings.append(doubt)
+    breast = _diameter_at(tree_file, _BREAST_HEIGHT)
     return {
         "name": tree.name,
         "source": tree_file.source,
@@ -126,12 +118,15 @@ def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str,
         "length": float(tree.length.sum()),
         "volume": float(tree.volume.sum()),
         "base_diameter": float(tree.base_diameter[0]),
-        "breast_height_diameter": _diameter_at(tree_file, _BREAST_HEIGHT),
+        "breast_height_diameter": breast,
+        "form_factor": _form_factor(tree, breast),
+        "measured_conifers": _measured_conifers(tree, species, breast),
         "species": species.key,
         "species_is_estimate": species.is_estimate,
         "modulus": species.modulus,
         "density": species.density,
         "mass": bank.mass,
+        "root_stiffness": _roots(species, settings),
         "stem_mass": float(species.density * tree.volume[tree.segments_of(0)].sum()),
         "gravity": settings.gravity,
         "model": settings.model,
@@ -141,6 +136,27 @@ def tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str,
         "frequencies": [row.frequency for row in rows],
         "modes": [_mode(row) for row in rows],
     }
+
+
+def _form_factor(tree: Tree, breast: float | None) -> float | None:
+    """Volume of the stem over that of a cylinder of its height and breast-height diameter [-]."""
+    if breast is None:
+        return None
+    return float(tree.volume[tree.segments_of(0)].sum() / (np.pi / 4.0 * breast**2 * tree.height))
+
+
+def _measured_conifers(tree: Tree, species: Species, breast: float | None) -> float | None:
+    """Sway of measured conifers of that size in needles in [Hz] (Moore & Maguire 2004)."""
+    if breast is None or species.habit != "conifer":
+        return None
+    return float(0.0766 + 312.19 * breast / tree.height**2)
+
+
+def _roots(species: Species, settings: Settings) -> float | None:
+    """Stiffness against tilting in [N m/rad], None for rigid roots."""
+    told = settings.root_stiffness
+    stiffness = species.root_stiffness if told is None else told
+    return None if math.isinf(stiffness) else stiffness
 
 
 def _mode(row: ModeRow) -> dict[str, Any]:
@@ -184,6 +200,15 @@ def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
         f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} "
         f"copied",
     ]
+    roots, form = facts["root_stiffness"], facts["form_factor"]
+    lines.append(f"  roots      {'rigid' if roots is None else f'{roots:.3g} N m/rad'}")
+    if form is not None:
+        lines.append(f"  form       the stem fills {form:.2f} of its cylinder at breast height")
+    if facts["measured_conifers"] is not None:
+        lines.append(
+            f"  compare    measured conifers of this size, in needles, sway at "
+            f"{facts['measured_conifers']:.3f} Hz"
+        )
     lines += [f"  note       {note}" for note in facts["notes"]]
     lines += [f"  warning    {doubt}" for doubt in facts["warnings"]]
     if facts["modes"]:

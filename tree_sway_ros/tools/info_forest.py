@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What there is to say about a forest: a line per tree, and the sums.
-
-"""
+"""What there is to say about a forest: a line per tree, and the sums."""
 
 from __future__ import annotations
 

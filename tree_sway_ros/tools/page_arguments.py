@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Where and to whom a command serves the page: the same arguments in every command that does.
-
-"""
+"""Where and to whom a command serves the page: the same arguments in every command that does."""
 
 from __future__ import annotations
 
@@ -29,6 +26,13 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--token", default="", help="what viewers must know")
     parser.add_argument("--certificate", default="", metavar="PEM", help="for https")
+    parser.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        metavar="URL",
+        help="of other pages that may follow the stream, as http://127.0.0.1:8000",
+    )
     parser.add_argument("--private-key", default="", metavar="PEM", help="of the certificate")
 
 
@@ -53,6 +57,7 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
         arguments.token,
         arguments.certificate,
         arguments.private_key,
+        origins=tuple(arguments.origin),
     )
 
 

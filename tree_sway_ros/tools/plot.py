@@ -9,14 +9,17 @@ itself.
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
@@ -33,7 +36,7 @@ from tree_sway_ros.tools.arguments import (
     output_path,
     told_leaves,
 )
-from tree_sway_ros.tools.progress import bar
+from tree_sway_ros.tools.progress import bar, waiting
 from tree_sway_ros.tools.sway_in_wind import Samples, recorded, simulated, sway_in_wind
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
@@ -47,11 +50,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--portrait",
         action="store_true",
-        help="draw the tree at rest and, beside it, in a steady westerly",
+        help="draw the tree at rest and, beside it, in a steady wind",
     )
     add_leaves_argument(parser)
     add_wind_arguments(parser)
     parser.set_defaults(speed=None)
+    parser.add_argument(
+        "--from",
+        dest="bearing",
+        type=float,
+        metavar="DEGREES",
+        help="where the steady or simulated wind comes from, clockwise from north: 90 is from the "
+        "east, at the right of a picture (270, a westerly)",
+    )
     parser.add_argument(
         "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
     )
@@ -64,6 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
     if not 0.0 < arguments.seconds <= 3600.0:
         raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0 to 3600")
+    _refuse_bearing(arguments)
     output = output_path(arguments, "sway.png")
     scene = opened_scene(arguments)
     draw = _portrait if arguments.portrait else _motion
@@ -72,10 +84,19 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _refuse_bearing(arguments: argparse.Namespace) -> None:
+    """Refuse a direction that is none, or one for a record, which has its own."""
+    if arguments.bearing is None:
+        arguments.bearing = 270.0
+    elif arguments.wind is not None and not arguments.portrait:
+        raise ParameterError("a direction for a record, which has its own", where="--from")
+    within("--from", arguments.bearing, -360.0, 360.0, "degrees")
+
+
 def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output: str) -> None:
     speed = 10.0 if arguments.speed is None else arguments.speed
     simulator = _simulator(scene, arguments)
-    wind = np.array([speed, 0.0, 0.0])
+    wind = np.array(velocity_of_bearing(speed, math.radians(arguments.bearing)))
     for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), "settling in the wind"):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
@@ -91,7 +112,8 @@ def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> S
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
     model: dict[str, Any] = {"model": arguments.model, "in_leaf": told_leaves(arguments)}
     try:
-        return scene.simulator(**model)
+        with waiting("setting up the tree"):
+            return scene.simulator(**model)
     except TreeError as error:
         light = scene.simulator(**model, gravity=0.0)
         print(f"note: without its own weight, as it cannot stand: {error}", file=sys.stderr)
@@ -103,7 +125,10 @@ def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output:
     source = f"simulated wind, mean {speed:g} m/s"
     samples: Samples
     if arguments.wind is None:
-        samples = simulated(AnemometerModel(speed))
+        bearing_to = math.radians(arguments.bearing + 180.0)
+        samples = simulated(AnemometerModel(speed, bearing_to=bearing_to))
+        if arguments.bearing != 270.0:
+            source += f" from {arguments.bearing:g} degrees"
     else:
         record = read_wind(arguments.wind)
         samples, source = recorded(record), Path(record.source).name

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway render``: a tree in wind as a moving picture, without a screen.
-
-"""
+"""``tree-sway render``: a tree in wind as a moving picture, without a screen."""
 
 from __future__ import annotations
 
@@ -28,12 +25,12 @@ from tree_sway_ros.tools.arguments import (
     output_path,
     told_leaves,
 )
-from tree_sway_ros.tools.progress import bar
+from tree_sway_ros.tools.progress import bar, waiting
 
 _STEPS_PER_SECOND = 120.0
 _RUN_IN = 20.0
-_LEAVES = 700
-"""Clusters, half as many as in a still picture: a frame must take less time than it shows."""
+_BLADES = 2800
+"""Of all leaves: a frame must take less time than it shows."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -62,6 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
         if not low <= value <= high:
             raise ParameterError(f"{value:g}", where=f"--{name}", cure=f"give {low:g} .. {high:g}")
     from tree_sway_ros.view.animation import animate_poses
+    from tree_sway_ros.view.leaf_drawing import blades_per_cluster
 
     target = output_path(arguments)
     scene = opened_scene(arguments)
@@ -72,7 +70,9 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         record = read_wind(arguments.wind)
         wind = RecordedWind(record.time, record.velocity)
-    simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
+    with waiting("setting up the tree"):
+        simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
+    clusters = _BLADES // blades_per_cluster(scene.tree.species)
     began = time.monotonic()
     frames, winds = _swayed(simulator, wind, arguments)
     animate_poses(
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
         winds,
         target,
         rate=arguments.rate,
-        leaves=scene.leaves(told_leaves(arguments), _LEAVES),
+        leaves=scene.leaves(told_leaves(arguments), clusters),
         pixels=arguments.pixels,
         watched=_watched,
     )
@@ -104,7 +104,7 @@ def _swayed(
         simulator.step(wind.mean(now, now + dt), dt)
         now += dt
     frames, winds = [], []
-    for _ in range(max(1, round(arguments.seconds * arguments.rate))):
+    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), "swaying"):
         for _ in range(steps):
             blowing = wind.mean(now, now + dt)
             simulator.step(blowing, dt)

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway show``: a tree in wind on a page of the browser, without ROS.
-
-"""
+"""``tree-sway show``: a tree in wind on a page of the browser, without ROS."""
 
 from __future__ import annotations
 
@@ -16,9 +13,12 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
-from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.scene.stand import StandKind, StandTree
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -28,6 +28,7 @@ from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.session import Choices, Session
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.parameters.parameter import Parameter
 from tree_sway_ros.tools.arguments import (
     add_leaves_argument,
     add_model_argument,
@@ -40,6 +41,9 @@ from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 
 _SPACING = 1.2
 """Between the trees of a stand over the greater of height and spread of one."""
+
+_BY_TABLE = ("auto", "modes", "wind_basis")
+"""Models that a stand has one table per kind for, wherever its trees stand."""
 
 _LEAVES = 1000
 _COUNTS = ("1", "9", "100")
@@ -89,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
             while session.failure is None and time.monotonic() < end:
-                time.sleep(0.1)
+                session.wait(min(0.1, end - time.monotonic()))
         except KeyboardInterrupt:
             print("", file=sys.stderr)
         finally:
@@ -99,23 +103,17 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def build_scene(choices: Choices, arguments: argparse.Namespace) -> tuple[Any, Any]:
-    """
-    Make simulator and leaves of what was chosen.
-
-    Raises
-    ------
-    TreeSwayError
-        As `open_scene` and `TreeFile.simulator`.
-
-    """
+def build_scene(
+    choices: Choices, arguments: argparse.Namespace
+) -> tuple[Simulator, LeafClusters | None]:
+    """Make simulator and leaves of what was chosen."""
     is_first = choices.tree == arguments.tree
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
     count = int(choices.count)
     if count > 1:
         if isinstance(scene, ForestFile):
             raise ParameterError("a stand of a forest", where="--stand", cure="name one tree")
-        scene = stand(scene, count)
+        scene = stand(scene, count, choices.fidelity)
     in_leaf = told_leaves(arguments)
     settings = replace(Settings(), damping_ratio=choices.damping_ratio or None, in_leaf=in_leaf)
     simulator = scene.simulator(settings, model=choices.fidelity)
@@ -129,24 +127,25 @@ def _wind(arguments: argparse.Namespace) -> WindSource:
     return RecordedWind(record.time, record.velocity)
 
 
-def stand(scene: TreeFile, count: int) -> ForestFile:
-    """Trees of one kind on a grid, each turned another way."""
+def stand(scene: TreeFile, count: int, fidelity: str) -> StandFile:
+    """Trees of one kind on a grid, each turned another way; on their table where it will do."""
     tree = scene.tree
     low, high = tree.start.min(axis=0), tree.end.max(axis=0)
     spacing = _SPACING * float(max(*(high - low)[:2], 0.5 * tree.height))
     across = math.ceil(math.sqrt(count))
-    trees = tuple(
-        PlacedTree(
+    standing = tuple(
+        StandTree(
             f"{tree.name}{i + 1}",
-            tree,
+            tree.name,
             x=spacing * (i % across - 0.5 * (across - 1)),
             y=spacing * (i // across - 0.5 * (across - 1)),
             yaw=2.4 * i,
-            species=scene.species,
+            fidelity="wind_basis" if fidelity in _BY_TABLE else fidelity,
         )
         for i in range(count)
     )
-    return ForestFile(f"{count} of {tree.name}", trees, scene.source)
+    kinds = {tree.name: StandKind(tree, scene.species)}
+    return stand_file(f"{count} of {tree.name}", standing, kinds, source=scene.source)
 
 
 def _controls(choices: Choices, wind: WindSource) -> tuple[Control, ...]:
@@ -182,5 +181,5 @@ def _control(node: str, name: str, value: Any = None) -> Control:
     )
 
 
-def _parameter(node: str, name: str) -> Any:
+def _parameter(node: str, name: str) -> Parameter:
     return next(p for p in NODE_PARAMETERS[node] if p.name == name)

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A tree taken through a wind without ROS, as fast as the machine can.
-
-"""
+"""A tree taken through a wind without ROS, as fast as the machine can."""
 
 from __future__ import annotations
 

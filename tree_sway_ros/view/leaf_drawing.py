@@ -57,6 +57,15 @@ _SUN = np.array([-0.35, -0.5, 0.8])
 _BLADE = np.array([[0.0, 0.0], [0.3, 0.19], [0.6, 0.2], [1.0, 0.0], [0.6, -0.2], [0.3, -0.19]])
 
 
+def blades_per_cluster(species: str) -> int:
+    """Blades that a cluster of a species is drawn by."""
+    return len(_spray_of(species).seats)
+
+
+def _spray_of(species: str) -> _Spray:
+    return _NEEDLES if leaf_traits(species).are_needles else _LEAVES
+
+
 def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floats]:
     """
     Blades of every cluster.
@@ -76,7 +85,7 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
         Corners of each blade in [m], (k m, 6, 3), and the unit vector across it, (k m, 3).
 
     """
-    spray = _NEEDLES if leaf_traits(species).are_needles else _LEAVES
+    spray = _spray_of(species)
     m, k = len(poses), len(spray.seats)
     cluster = Rotation.from_quat(np.repeat(poses[:, 3:], k, axis=0))
     turn = np.column_stack([np.tile(spray.fans, m), np.tile(spray.tilts, m)])

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A tree painted into an image by Pillow alone: frames of a film, many in a second.
-
-"""
+"""A tree painted into an image by Pillow alone: frames of a film, many in a second."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.tree.species import species_keys, species_named
+from tree_sway_ros.core.tree.species import bark_color, species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.leaf_drawing import leaf_blades, leaf_colors
 from tree_sway_ros.view.projection import Camera
@@ -18,8 +18,13 @@ from tree_sway_ros.view.projection import Camera
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_NEAR_BARK = np.array([0.22, 0.15, 0.10])
-_FAR_BARK = np.array([0.72, 0.67, 0.62])
+_SHADE, _HAZE = 0.68, 0.62
+"""Near bark is so much darker than bark in the sun; far bark fades by so much to white."""
+_TWIG = np.array([0.36, 0.28, 0.22])
+_THICK = 0.004
+"""Diameter over the height of the picture from which joints are closed by discs."""
+_FLARE, _FLARE_HIGH = 0.45, 1.6
+"""How much wider a stem is at the ground, and how high that goes, in diameters."""
 _POT = "#b5694a"
 _POT_RIM = "#c67f60"
 _GROUND = "#8d8d86"
@@ -141,9 +146,18 @@ def painted_shapes(
     base, tip = camera.project(start), camera.project(end)
     depth = _depth(camera, 0.5 * (start + end), frame)
     polygons = list(_tapered(base, tip, tree.base_diameter, tree.tip_diameter))
-    colors = _NEAR_BARK + depth[:, None] * (_FAR_BARK - _NEAR_BARK)
+    # Twigs are brown, whatever the colour of the bark that old wood has.
+    old = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
+    near = _SHADE * (_TWIG + old * (np.array(bark_color(tree.species)) - _TWIG))
+    colors = near + _HAZE * depth[:, None] * (1.0 - near)
     away = 0.5 * (base[:, 2] + tip[:, 2])
-    # Edges in the same colour close the joints and keep thin twigs visible.
+    # Discs close the joints of thick wood, edges in the same colour those of the rest.
+    thick = np.flatnonzero(tree.base_diameter > _THICK * (frame.top - frame.bottom))
+    polygons += list(_discs(base[thick, :2], tree.base_diameter[thick]))
+    if len(thick) and not _is_potted(tree):
+        polygons.append(_flare(base[0, :2], float(tree.base_diameter[0])))
+        thick = np.append(thick, 0)
+    colors, away = np.vstack([colors, colors[thick]]), np.append(away, away[thick])
     edges = np.full(len(away), 0.45)
     if leaves is not None and len(leaves[1]):
         corners, normal = leaf_blades(tree.species, *leaves)
@@ -206,6 +220,26 @@ def _tapered(base: Floats, tip: Floats, base_diameter: Floats, tip_diameter: Flo
     return np.stack([a - at_base, a + at_base, b + at_tip, b - at_tip], axis=1)
 
 
+def _discs(middle: Floats, diameter: Floats) -> Floats:
+    """Twelve corners of a disc at each point of the picture plane, (n, 12, 2)."""
+    angle = np.arange(12) * np.pi / 6.0
+    round_it = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return np.asarray(middle[:, None] + 0.5 * diameter[:, None, None] * round_it)
+
+
+def _flare(foot: Floats, diameter: float) -> Floats:
+    """Outline of the root flare round the foot of a stem on the picture plane, (k, 2)."""
+    up = np.linspace(0.0, 1.0, 8)
+    half = 0.5 * diameter * (1.0 + _FLARE * (1.0 - up) ** 2.5)
+    high = _FLARE_HIGH * diameter * up
+    left, right = np.stack([-half, high], axis=1), np.stack([half, high], axis=1)
+    return np.asarray(foot + np.vstack([left, right[::-1]]))
+
+
+def _is_potted(tree: Tree) -> bool:
+    return tree.species in species_keys() and species_named(tree.species).habit == "pot"
+
+
 def _depth(camera: Camera, points: Floats, frame: Frame) -> Floats:
     """How far back each point stands, from 0 to 1; little in a tree that has no depth."""
     away = camera.distance(points)
@@ -230,8 +264,7 @@ def ground_shapes(
     x, y = camera.project(tree.start[0])[:2].tolist()
     width = 0.5 * (frame.right - frame.left)
     shadow = (x, y), width, width * max(float(np.sin(camera.elevation)), 0.03)
-    is_known = tree.species in species_keys()
-    if not (is_known and species_named(tree.species).habit == "pot"):
+    if not _is_potted(tree):
         return [], shadow
     # As deep as the margin below the root allows.
     deep = 0.85 * (y - frame.bottom)

@@ -57,7 +57,7 @@ def test_tip_and_frequency_agree_with_the_closed_forms(stem, taper):
     length, base, modulus, density = 2.0, 0.02, 9e9, 900.0
     tree = stem(length, base, base * (1 - taper), cuts=6)
     (model,) = branch_models(tree, density, carries=False)
-    shape = model.coordinates[0].shape
+    shape = model.shape
     stiffness = shape.stiffness(shape, modulus)
     rigidity = modulus * closed_form.second_moment(base)
     load = model.beam.integral(model.drag_area * shape.deflection)

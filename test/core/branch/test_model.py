@@ -72,8 +72,8 @@ def test_the_model_does_not_care_where_the_tree_stands(fork):
         strict=True,
     ):
         assert one.beam.point == pytest.approx(other.beam.point, abs=1e-11)
-        slope = one.coordinates[0].shape.slope
-        assert slope == pytest.approx(other.coordinates[0].shape.slope, rel=1e-9)
+        slope = one.shape.slope
+        assert slope == pytest.approx(other.shape.slope, rel=1e-9)
 
 
 def test_what_is_enriched():

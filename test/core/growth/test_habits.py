@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
-from tree_sway_ros.core.growth.conifer import grow_conifer
+from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
@@ -78,12 +78,103 @@ def test_broadleaf_has_a_bare_trunk_and_a_rounded_crown(seed: int) -> None:
     assert share.min() > 0.05
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_conifer_tapers_to_a_point(seed: int) -> None:
-    tree = grow_conifer(np.random.default_rng(seed))
-    width = width_by_height(tree, 6)
-    assert np.all(np.diff(width[1:]) < 0.0)
-    assert width[-1] < 0.3 * width.max()
+def grown(species: str, height: float = 14.0, seed: int = 0) -> Tree:
+    return grow(species, height, rng=np.random.default_rng(seed))
+
+
+def rise_of(tree: Tree, order: int, *, at_tip: bool) -> np.ndarray:
+    """Sine of the elevation of each branch of an order, of its first or last segment."""
+    first = tree.branch_first[:-1][tree.branch_order == order]
+    return steepness(tree)[tips(tree, order) if at_tip else first]
+
+
+def twigs_of(tree: Tree) -> np.ndarray:
+    return tree.branch_first[:-1][np.diff(tree.branch_first) == 1]
+
+
+def lowest_limb(tree: Tree) -> float:
+    limbs = tree.branch_first[:-1][tree.branch_order == 1]
+    return float(tree.start[limbs][:, 2].min()) / tree.height
+
+
+@pytest.mark.parametrize("species", ["spruce", "sitka", "douglas_fir"])
+def test_crowns_of_conifers_come_to_a_point(species: str) -> None:
+    width = width_by_height(grown(species), 6)
+    widest = int(np.argmax(width))
+    assert 1 <= widest <= 3
+    assert np.all(np.diff(width[widest:]) < 0.0)
+    assert width[-1] < 0.65 * width.max()
+
+
+def test_each_species_keeps_its_habit() -> None:
+    trees = {s: grown(s) for s in ("oak", "birch", "beech", "ash", "sycamore", "walnut")}
+    trees |= {s: grown(s) for s in ("spruce", "sitka", "pine")}
+    width = {s: 2.0 * width_by_height(tree).max() / tree.height for s, tree in trees.items()}
+    tip = {s: np.median(rise_of(tree, 1, at_tip=True)) for s, tree in trees.items()}
+    twig = {s: np.median(steepness(tree)[twigs_of(tree)]) for s, tree in trees.items()}
+    stem = {s: tree.end[tree.segments_of(0)][-1, 2] / tree.height for s, tree in trees.items()}
+    # Birch: narrow, led by one stem, limbs start steeply and end low, twigs hang.
+    assert width["birch"] < 0.55
+    assert stem["birch"] > 0.9
+    assert np.median(rise_of(trees["birch"], 1, at_tip=False)) > 0.6
+    assert tip["birch"] < 0.5
+    assert twig["birch"] < -0.7
+    # Oak and walnut spread wide and lose their stem in the crown; oak is crooked.
+    for key in ("oak", "walnut"):
+        assert width[key] > 0.65
+        assert stem[key] < 0.75
+    assert bend(trees["oak"]) > 2.0 * bend(trees["beech"])
+    # Ash has a long bole, and turns its twigs up.
+    assert lowest_limb(trees["ash"]) > 0.25
+    assert twig["ash"] > 0.6
+    # Twigs of a spruce hang, those of a Sitka spruce stand level on level branches.
+    assert twig["spruce"] < -0.5
+    assert abs(twig["sitka"]) < 0.35
+    assert np.median(rise_of(trees["spruce"], 1, at_tip=False)) < tip["spruce"] - 0.3
+    assert lowest_limb(trees["pine"]) > 0.45
+
+
+def bend(tree: Tree) -> float:
+    """Mean angle between successive segments of the limbs in [rad]."""
+    angles = []
+    for branch in np.flatnonzero(tree.branch_order == 1):
+        way = (tree.end - tree.start)[tree.segments_of(int(branch))]
+        way /= np.linalg.norm(way, axis=1)[:, None]
+        angles.append(np.arccos(np.clip((way[1:] * way[:-1]).sum(axis=1), -1.0, 1.0)).mean())
+    return float(np.mean(angles))
+
+
+@pytest.mark.parametrize("species", ["ash", "sycamore"])
+def test_limbs_stand_in_pairs(species: str) -> None:
+    tree = grown(species)
+    limbs = tree.branch_first[:-1][tree.branch_order == 1]
+    _, together = np.unique(tree.segment_parent[limbs], return_counts=True)
+    assert np.all(together % 2 == 0)
+
+
+@pytest.mark.parametrize("height", [10.0, 20.0, 30.0])
+@pytest.mark.parametrize("species", ["spruce", "sitka", "pine", "douglas_fir"])
+def test_stems_of_conifers_have_the_form_factor_of_yield_tables(
+    species: str, height: float
+) -> None:
+    tree = grown(species, height)
+    stem = tree.segments_of(0)
+    diameter = np.interp(1.3, tree.start[stem][:, 2], tree.base_diameter[stem])
+    cylinder = 0.25 * np.pi * diameter**2 * height
+    assert 0.42 <= tree.volume[stem].sum() / cylinder <= 0.52
+
+
+@pytest.mark.parametrize("height", [6.0, 12.0, 24.0])
+@pytest.mark.parametrize(
+    "species", ["broadleaf", "oak", "birch", "beech", "ash", "sycamore", "walnut"]
+)
+def test_wood_of_broadleaves_weighs_what_allometry_says(species: str, height: float) -> None:
+    """Chave et al. (2014, eq. 4): dry mass 0.0673 (rho D^2 H)^0.976 in kg, g/cm^3, cm and m."""
+    tree, basic = grown(species, height), 0.55
+    stem = tree.segments_of(0)
+    diameter = 100.0 * np.interp(1.3, tree.start[stem][:, 2], tree.base_diameter[stem])
+    dry = 0.0673 * (basic * diameter**2 * height) ** 0.976
+    assert tree.volume.sum() * 1000.0 * basic == pytest.approx(dry, rel=0.3)
 
 
 def test_every_built_in_name_gives_that_tree() -> None:

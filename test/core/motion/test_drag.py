@@ -26,9 +26,9 @@ DENSITY_AND_DRAG = 0.5 * 1.225 * 1.2
 
 
 def drag(record, per_speed_squared, *wind, compliance=0.0):
-    """Force alone."""
+    """Force alone, on a branch that does not turn."""
     c = per_speed_squared * record["area"]
-    return drag_and_slip(*record["projector"], c, compliance, *wind)[:3]
+    return drag_and_slip(*record["projector"], c, compliance, *wind, 0.0)[:3]
 
 
 def record_of(tree, **changes):
@@ -135,3 +135,36 @@ def test_levers_are_those_of_the_load(stem):
     # The branch damps itself at the root mean square: 104/405 of the tip's square.
     push, flow = (np.linalg.norm(record[k][0]) for k in ("push", "flow"))
     assert push * flow == pytest.approx(4.0 * 104.0 / 405.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes"])
+def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
+    """
+    A cantilever that swings freely: one over the amplitude grows in every cycle by 8/3 of the drag
+    of all pieces over the inertia, ``8/3 c int psi^3 ds / int mu psi^2 ds``, psi the displacement
+    per unit of the tip's (energy balance over a cycle).
+
+    """
+    length, width = 2.0, 0.02
+    tree, wood = stem(length=length, base=width, cuts=8), species_named("broadleaf")
+    sim = SwaySimulator(
+        tree, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich="none"
+    )
+    s = np.linspace(0.0, 1.0, 2001)
+    psi = (6.0 * s**2 - 4.0 * s**3 + s**4) / 3.0
+    drag_of_pieces = DENSITY_AND_DRAG * width * np.trapezoid(psi**3, s)
+    inertia = wood.density * np.pi / 4.0 * width**2 * np.trapezoid(psi**2, s)
+    x, v = sim.motion()
+    x[0] = 0.1
+    sim.take_over(x, v)
+    rate = 2000
+    per_cycle = rate / sim.frequencies(1)[0]
+    tip = []
+    for _ in range(round(12.2 * per_cycle)):
+        sim.step((0.0, 0.0, 0.0), 1.0 / rate)
+        sim.place()
+        tip.append(np.hypot(*sim.tip_displacement[:2]))
+    tip = np.array(tip)
+    tops = np.flatnonzero((tip[1:-1] > tip[:-2]) & (tip[1:-1] >= tip[2:])) + 1
+    growth = np.polyfit(0.5 * np.arange(len(tops)), 1.0 / tip[tops], 1)[0]
+    assert growth == pytest.approx(8.0 / 3.0 * drag_of_pieces / inertia, rel=0.03)

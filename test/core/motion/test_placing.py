@@ -223,15 +223,17 @@ def test_a_whole_turn_of_the_heading_is_even(stem):
 def test_a_twist_turns_children_and_leaves_the_stem(sketch):
     drawn = sketch()
     drawn.add(None, 0, (0, 0, 1), 2.0, 0.02, 0.02, 4)
-    drawn.add(0, 4, (1, 0, 0), 0.5, 0.01, 0.01, 2)
+    for side in (1.0, -1.0):
+        drawn.add(0, 4, (side, 0, 0), 0.5, 0.01, 0.01, 2)
     tree = drawn.tree()
     doll = Puppet(tree, enrich="stem")
     x = np.zeros(doll.n)
-    stem = doll.bank.branches[0]
-    last = stem["coordinate"] + stem["n_coordinates"] - 1
-    x[last] = 0.5
+    per_key = doll.bank.branches[1]["twist"][: doll.bank.branches[0]["n_coordinates"], 3:]
+    last = int(np.argmax(np.abs(per_key[:, 2])))
+    assert per_key[last, :2] == pytest.approx(0.0, abs=1e-9)
+    x[last] = 0.5 / per_key[last, 2]
     start, end = doll.nodes(x)
-    assert end[:4] == pytest.approx(tree.end[:4], abs=1e-12)
-    assert end[-1] - start[4] == pytest.approx(
+    assert end[:4] == pytest.approx(tree.end[:4], abs=1e-9)
+    assert end[5] - start[4] == pytest.approx(
         0.5 * np.array([np.cos(0.5), np.sin(0.5), 0]), abs=1e-9
     )

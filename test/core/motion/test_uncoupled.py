@@ -48,7 +48,9 @@ def test_a_planar_sway_is_the_papers_equation(stem):
         # pushes.
         seen = 2.0 * np.arctan(turn * angle / 2.0)
         across = (wind(t) - flow * speed) * np.cos(seen)
-        force = DRAG * branch["area"] * abs(across) * across
+        # Pieces move faster and slower than their mean.
+        beside = branch["spread"] * speed**2
+        force = DRAG * branch["area"] * np.sqrt(across**2 + beside) * across
         px, pz = force * np.cos(seen), -force * np.sin(seen)
         moment = push * (px * np.cos(angle) - pz * np.sin(angle))
         return speed, (moment - damping * speed - stiffness * angle) / inertia

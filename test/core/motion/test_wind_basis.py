@@ -16,8 +16,8 @@ from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.wind_basis import step_instance
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.study.bench.sizes import against, gusts_and_turns
 
 DT = 1.0 / 60.0
 
@@ -54,30 +54,13 @@ def crooked(seed, n_branches=40, cuts=6):
     return tree_from_segments(start, end, thick, parent=np.array(parent), branch=np.array(number))
 
 
-def gusty(speed, seconds=20.0, seed=5):
-    """Turbulence, a gust of 1.6 times, a slow turn and a sudden one by 90 degrees."""
-    n = round(seconds / DT)
-    wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=np.random.default_rng(seed))
-    at = np.arange(n) * DT
-    wind *= (1.0 + 0.6 * np.exp(-0.5 * ((at - 10.0) / 0.4) ** 2))[:, None]
-    turn = 0.65 + 0.03 * at + np.where(at > 14.0, 0.5 * np.pi, 0.0)
-    x, y, z = wind.T
-    cosine, sine = np.cos(turn), np.sin(turn)
-    return np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=1)
+gusty = gusts_and_turns
 
 
 def against_modes(tree, winds):
     """Error over motion of all segments, root mean squares; and the simulator on the table."""
     one, other = (SwaySimulator(tree, model=model) for model in ("wind_basis", "modes"))
-    placed, gaps = [], []
-    for number, wind in enumerate(winds):
-        one.step(wind, DT), other.step(wind, DT)
-        if number >= 60 and number % 6 == 0:
-            placed.append(other.place()[:, :3].copy())
-            gaps.append(one.place()[:, :3] - placed[-1])
-    motion = np.array(placed) - np.mean(placed, axis=0)
-    share = np.sqrt(np.square(gaps).sum(axis=2).mean() / np.square(motion).sum(axis=2).mean())
-    return share, one
+    return against(one, other, winds), one
 
 
 TREES = {

@@ -12,7 +12,8 @@ import pytest
 from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import LOAD_HELD, RESTARTED, WIND_REFUSED, SwaySimulator
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.core.state.tree_state import TreeState
+from tree_sway_ros.errors import ParameterError, StateError
 
 DT = 1.0 / 60.0
 EVEN = {"convection_ratio": np.inf}
@@ -97,6 +98,70 @@ def test_only_what_is_asked_for_is_placed(kinds):
             stand.place(which=wrong)
 
 
+@pytest.fixture
+def mixed(kinds):
+    """A stand of every sort of tree."""
+
+    def make(**changes):
+        trees = [
+            StandTree(f"t{i}", ("fork", "twin")[i % 2], 3.0 * i, scale=0.8 + 0.1 * i, yaw=0.5 * i)
+            for i in range(5)
+        ]
+        trees += [
+            StandTree("own", "fork", y=5.0, fidelity="subtree"),
+            StandTree("still", "twin", y=9.0, fidelity="frozen"),
+        ]
+        stand = Stand(trees, kinds, **changes)
+        for wind in winds(40):
+            stand.step(wind, DT)
+        return stand
+
+    return make
+
+
+def test_threads_place_the_same_poses(mixed):
+    one, many = mixed(), mixed(threads=3)
+    assert (one.place() == many.place()).all()
+    assert (one.place(which=[1, 5]) == many.place(which=[1, 5])).all()
+    with pytest.raises(ParameterError, match="threads"):
+        mixed(threads=0)
+
+
+def test_the_poses_follow_from_the_rotations(mixed):
+    stand = mixed()
+    rotations = stand.rotations()
+    assert stand.place_rotations(rotations) == pytest.approx(stand.place(), abs=1e-12)
+    assert np.abs(rotations).max() > 1e-3
+
+
+def test_a_stand_goes_on_from_its_state_bit_for_bit(mixed):
+    stand = mixed()
+    other, kept = mixed(), TreeState.from_bytes(stand.state().to_bytes())
+    for wind in winds(20, seed=8):
+        other.step(wind, DT)
+    assert other.expand(kept) == pytest.approx(stand.place(), abs=1e-12)
+    other.set_state(kept)
+    for wind in winds(20, seed=9):
+        stand.step(wind, DT)
+        other.step(wind, DT)
+    assert (stand.place() == other.place()).all()
+
+
+def test_a_state_of_another_stand_is_refused_and_the_old_one_kept(mixed, kinds):
+    stand = mixed()
+    before, kept = stand.place(), stand.state()
+    another = Stand([StandTree("t0", "fork")], kinds).state()
+    for wrong in (
+        another,
+        replace(kept, version=99),
+        replace(kept, values=kept.values[:-1]),
+        replace(kept, values=np.full_like(kept.values, np.nan)),
+    ):
+        with pytest.raises(StateError):
+            stand.set_state(wrong)
+        assert (stand.place() == before).all()
+
+
 def test_every_tree_has_its_own_fidelity(kinds):
     stand = Stand(
         [
@@ -124,9 +189,11 @@ def test_a_wind_beyond_the_table_is_held_and_counted(kinds):
     stand = Stand([StandTree(f"t{i}", "fork", x=i) for i in range(3)], kinds, **EVEN)
     assert stand.step((60.0, 0.0, 0.0), DT) == LOAD_HELD
     assert stand.counts.held == 3
+    assert stand.held == ("t0", "t1", "t2")
     assert stand.step((1.0, 0.0, 9.0), DT) == LOAD_HELD
     assert stand.step((0.0, 0.0, 9.0), DT) == LOAD_HELD
     assert stand.step((2.0, 0.0, 0.0), DT) == 0
+    assert stand.held == ()
     for _ in range(600):
         stand.step((60.0, 20.0, 5.0), DT)
     assert np.isfinite(stand.place()).all()

@@ -146,6 +146,6 @@ def test_constants_are_plain_numbers_outside_compiled_code():
 def test_records_of_plain_branches_have_room_for_no_more(fork):
     for model in ("branch", "subtree"):
         bank = bank_of(fork(), model=model)
-        assert bank.branches.dtype == branch_layout(2, 1)
-        assert bank.segments.dtype == segment_layout(1)
+        assert bank.branches.dtype == branch_layout(2)
+        assert bank.segments.dtype == segment_layout(2)
         assert bank.branches.dtype.itemsize < 0.5 * BRANCH.itemsize

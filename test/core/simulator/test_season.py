@@ -17,7 +17,6 @@ import pytest
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.leaves.foliage import foliage_of
-from tree_sway_ros.core.motion.drag import STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
@@ -30,7 +29,7 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
 OAK = species_named("oak")
-SPEEDS = np.geomspace(STREAMLINING_FROM, STREAMLINING_TO, 7)
+SPEEDS = np.geomspace(2.0, 20.0, 10)
 GROWN = {"oak": 12.0, "birch": 9.0, "spruce": 12.0, "pine": 14.0}
 _long = pytest.mark.long
 
@@ -130,23 +129,24 @@ def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():
 
 #: What is missed, and by how much, is in the reason.
 _too_heavy = pytest.mark.xfail(
-    strict=True, reason="leaves at 60 % of the branches' mass bring it to .69"
+    strict=True, reason="leaves at 60 % of the branches' mass bring it to 0.50 to 0.69"
 )
 _too_light = pytest.mark.xfail(
-    strict=True, reason="leaves at 15 % of the branches' mass leave it at .9504"
+    strict=True, reason="leaves at 15 % of the branches' mass leave it at 0.9504"
 )
 
 
 @pytest.mark.parametrize(
     ("name", "shares"),
     [
-        ("pine", (0.20, 0.60)),
+        ("pine", (0.15, 0.60)),
         ("benjamina", (0.15, 0.45)),
-        pytest.param("spruce", (0.15, 0.60), marks=_long),
-        pytest.param("pine", (0.15, 0.60), marks=[_long, _too_light]),
+        pytest.param("spruce", (0.20, 0.60), marks=_long),
+        pytest.param("spruce", (0.15, 0.60), marks=[_long, _too_light]),
         pytest.param("goldcrest", (0.15, 0.60), marks=_long),
-        pytest.param("broadleaf", (0.15, 0.60), marks=_long),
-        pytest.param("oak", (0.15, 0.45), marks=_long),
+        pytest.param("broadleaf", (0.15, 0.33), marks=_long),
+        pytest.param("broadleaf", (0.15, 0.60), marks=[_long, _too_heavy]),
+        pytest.param("oak", (0.08, 0.22), marks=_long),
         pytest.param("oak", (0.15, 0.60), marks=[_long, _too_heavy]),
         pytest.param("benjamina", (0.15, 0.60), marks=[_long, _too_heavy]),
     ],
@@ -166,6 +166,20 @@ def test_leaves_lower_the_first_frequency(name, shares):
     assert 0.70 <= least < most <= 0.95
 
 
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(key, marks=[] if key in ("oak", "birch") else [_long])
+        for key in species_keys()
+        if species_named(key).habit == "broadleaf"
+    ],
+)
+def test_broadleaves_in_leaf_sway_as_much_slower_as_measured_ones(name):
+    tree = grow(name, 12.0, rng=np.random.default_rng(0))
+    bare, leafy = (first_frequency(tree, Settings(in_leaf=each)) for each in (False, True))
+    assert 0.76 <= leafy / bare <= 0.94
+
+
 def test_leaves_damp():
     for key in species_keys():
         wood = species_named(key)
@@ -173,7 +187,7 @@ def test_leaves_damp():
 
 
 def growth_of_load(tree, settings):
-    """Exponent p of the moment at the base, U^p, in winds that crowns were measured in."""
+    """Exponent p of the moment at the base, U^p."""
     sim = SwaySimulator(tree, settings=replace(settings, damping_ratio=0.7))
     moment = []
     for speed in SPEEDS:
@@ -194,7 +208,7 @@ def growth_of_load(tree, settings):
 def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
     tree, usual = tree_named(name), Settings(model="subtree")
     assert 1.90 <= growth_of_load(tree, replace(usual, in_leaf=False)) <= 2.05
-    assert 1.05 <= growth_of_load(tree, replace(usual, in_leaf=True)) <= 1.70
+    assert 1.50 <= growth_of_load(tree, replace(usual, in_leaf=True)) <= 1.70
 
 
 def test_the_base_moment_is_that_of_drag(stem):

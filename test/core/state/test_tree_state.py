@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+import hashlib
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +18,7 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.tree_state import TreeState, digest_of
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import StateError
+from tree_sway_ros.study.bench.bench_tree import bench_tree
 
 DT = 1.0 / 60.0
 
@@ -129,3 +133,26 @@ def test_the_digest_tells_trees_and_settings_apart(fork, stem):
     leaves = np.ones(tree.n_branches)
     in_leaf = replace(sim.settings, in_leaf=True)
     assert digest_of(tree, in_leaf) != digest_of(tree, replace(in_leaf, leaf_mass=leaves))
+
+
+ELSEWHERE = """
+import hashlib, sys
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.state.tree_state import TreeState
+from tree_sway_ros.study.bench.bench_tree import bench_tree
+state = TreeState.from_bytes(sys.stdin.buffer.read())
+poses = SwaySimulator(bench_tree(), model=state.model).expand(state)
+print(hashlib.sha256(poses.tobytes()).hexdigest())
+"""
+
+
+@pytest.mark.parametrize("model", ["wind_basis", "modes"])
+def test_another_process_places_a_state_bit_for_bit(model):
+    sim = SwaySimulator(bench_tree(), model=model)
+    for wind in winds(60):
+        sim.step(wind, DT)
+    state, poses = sim.state(), sim.place()
+    told = subprocess.run(
+        [sys.executable, "-c", ELSEWHERE], input=state.to_bytes(), capture_output=True, check=True
+    )
+    assert told.stdout.decode().strip() == hashlib.sha256(poses.tobytes()).hexdigest()

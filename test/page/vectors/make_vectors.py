@@ -94,11 +94,12 @@ def main() -> None:
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
             error=SimpleNamespace(greatest=0.001),
             frames=each.joints["frame"],
+            per_key=lambda branch, turns: turns,
         )
         for each in both.simulators
     ]
     leaves = leaf_clusters(both.simulators[0].tree, np.random.default_rng(0), count=6)
-    data = describe_scene(both, bases, frame_id="map", leaves=leaves)
+    data = describe_scene(both, both.simulators, bases, frame_id="map", leaves=leaves)
     description = decode_description(data)
     (HERE / "description.bin").write_bytes(data)
     scale = np.concatenate([basis.scale for basis in bases]).astype(np.float64)

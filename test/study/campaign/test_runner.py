@@ -15,6 +15,7 @@ from tree_sway_ros.errors import FormatError, TreeSwayError
 from tree_sway_ros.study.campaign.plan import Case
 from tree_sway_ros.study.campaign.runner import batches, compute_to_file, result_path, run_study
 from tree_sway_ros.study.campaign.table import write_table
+from tree_sway_ros.tools import cli
 
 SEEDLING = Path(__file__).parents[2] / "files" / "data" / "seedling.yaml"
 
@@ -134,3 +135,18 @@ def test_tables_are_csv_or_parquet(alone, tmp_path):
     assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == alone
     with pytest.raises(FormatError, match=r"end it with \.csv or \.parquet"):
         write_table(alone, tmp_path / "rows.xlsx")
+
+
+def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, capsys):
+    study, table = tmp_path / "study.yaml", tmp_path / "study.csv"
+    study.write_text(
+        f"trees: [{SEEDLING}]\nwinds: [{{speed: 4}}]\nsettings: {{model: branch}}\nseconds: 1\n"
+    )
+    words = ["study", str(study), "-o", str(table), "--workers", "1"]
+    table.write_text("of another kind")
+    assert cli.main(words) == 2
+    assert "is there already; name another file, or write over it" in capsys.readouterr().err
+    assert table.read_text() == "of another kind"
+    assert cli.main([*words, "--force"]) == 0
+    assert cli.main(words) == 0
+    assert len(table.read_text().splitlines()) == 2

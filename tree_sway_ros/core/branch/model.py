@@ -21,13 +21,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import Attachments, BranchBeam, SlopeShape
+from tree_sway_ros.core.branch.beam import Attachments, BranchBeam, RotationField, SlopeShape, cross
 from tree_sway_ros.core.branch.shapes import (
-    FEWER,
-    N_SHAPES,
-    N_TWISTS,
+    FEWER_TURNS,
+    N_PAIRS,
+    N_TURNS,
     Carried,
-    Coordinate,
     ways_to_move,
     wind_load,
 )
@@ -48,8 +47,10 @@ class BranchModel:
         Area that the wind meets per length at each point in [m], (m, 5).
     mass
         Mass per length at each point in [kg/m], (m, 5).
-    coordinates
-        Its key rotation x, y; an enriched branch has further pairs and twists after it.
+    shape
+        Slope per unit of its key rotation, as a plain branch is drawn.
+    fields
+        How it moves per unit of its key rotation x, y and of what an enriched branch has beyond.
     children
         The branches it carries, in the order of ``beam.children``.
 
@@ -58,7 +59,8 @@ class BranchModel:
     beam: BranchBeam
     drag_area: Floats
     mass: Floats
-    coordinates: tuple[Coordinate, ...]
+    shape: SlopeShape
+    fields: tuple[RotationField, ...]
     children: Ints
 
     @property
@@ -70,7 +72,7 @@ class BranchModel:
         Inverse iteration from the static shape: each turn bends the branch by its own inertia.
 
         """
-        beam, shape = self.beam, self.coordinates[0].shape
+        beam, shape = self.beam, self.shape
         static = _square_frequency(beam, shape, self.mass)
         none = np.zeros(0)
         for _ in range(4):
@@ -89,6 +91,7 @@ def branch_models(
     speed_profile: Floats | None = None,
     leaf_mass: Floats | None = None,
     leaf_area: Floats | None = None,
+    root_compliance: float = 0.0,
 ) -> list[BranchModel]:
     """
     Model each branch of a tree.
@@ -109,6 +112,8 @@ def branch_models(
         Wind speed over that at the anemometer at each segment's middle [-], (n,); 1 if None.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
+    root_compliance
+        Of the stem, as of `BranchBeam`.
 
     Returns
     -------
@@ -138,6 +143,7 @@ def branch_models(
             tree.base_diameter[here],
             tree.tip_diameter[here],
             _places(tree, branch, children),
+            root_compliance if branch == 0 else 0.0,
         )
         length = float(beam.node[-1])
         mass = density * beam.area
@@ -150,8 +156,8 @@ def branch_models(
             drag_area *= (speed_profile[here] ** 2)[:, None]
         carried = sums[children if carries else children[:0]]
         richness = _richness(tree, branch, enriched)
-        ways = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)
-        models.append(BranchModel(beam, drag_area, mass, ways, children))
+        shape, fields = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)
+        models.append(BranchModel(beam, drag_area, mass, shape, fields, children))
         point, dm = beam.point, beam.weight * mass
         area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
         area_moment[branch] = np.einsum("sg,sgk->k", beam.weight * drag_area, point)
@@ -159,7 +165,7 @@ def branch_models(
         for case, wind in enumerate(np.eye(3)):
             pushed = beam.weight[..., None] * wind_load(beam, drag_area, wind)
             force[branch, case] = pushed.sum(axis=(0, 1))
-            torque[branch, case] = np.cross(point, pushed).sum(axis=(0, 1))
+            torque[branch, case] = cross(point, pushed).sum(axis=(0, 1))
         force[branch] += force[children].sum(axis=0)
         torque[branch] += torque[children].sum(axis=0)
         weight[branch] = dm.sum() + weight[children].sum()
@@ -170,12 +176,11 @@ def branch_models(
     return models[::-1]
 
 
-def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int, int]:
-    """Shapes and twists of a branch, and how many of these are by the wind."""
+def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
+    """Pairs of a branch, and further ways by what turns about its chord."""
     if branch not in enriched:
-        return 1, 0, 0
-    is_stem = tree.branch_parent[branch] < 0
-    return (N_SHAPES, N_TWISTS, 1) if is_stem else (FEWER, N_TWISTS, 2)
+        return 1, 0
+    return N_PAIRS, N_TURNS if tree.branch_parent[branch] < 0 else FEWER_TURNS
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

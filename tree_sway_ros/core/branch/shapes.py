@@ -1,65 +1,46 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The ways a branch bends and twists: its static shape, and for an enriched branch the shapes that
-follow from it.
+The ways a branch bends and twists in space.
 
-The first shape is the static one under the wind. Each further one is bent by the inertia of the one
-before it, with all that the branch carries (load-dependent Ritz vectors: Wilson, Yuan & Dickens,
-1982), and made orthogonal in bending energy to those before; so do the twists, from the torque of
-what it carries when it turns as one. Three and three bring the slowest modes of a crown within
-about a percent of the beam frame's, where one shape alone misses the twist of the stem altogether.
+A plain branch has two: those in which winds bend and twist it with all that it carries, so that its
+chord turns about one axis or the other. An enriched branch has further ones: what the inertia of
+these bends it into, and so on; and how it is twisted by all it carries when that turns about the
+chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its
+flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and twists
+in one: no coordinate of its own is spent on twist.
 
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import BranchBeam, RotationField, SlopeShape, cross_matrix
+from tree_sway_ros.core.branch.beam import (
+    BranchBeam,
+    RotationField,
+    SlopeShape,
+    cross,
+    cross_matrix,
+)
 
-N_SHAPES = 3
-"""Bending shapes of an enriched stem, each about two axes."""
+N_PAIRS = 3
+"""Pairs of ways of an enriched branch: the static ones, then by inertia."""
 
-N_TWISTS = 3
-"""Twists of an enriched branch: of a stem one by the wind, of any other two."""
+N_TURNS, FEWER_TURNS = 3, 1
+"""Further ways by what turns about the chord: of a stem, and of any other branch."""
 
-FEWER = 2
-"""Shapes of any other enriched branch: a third gains 0.5 % of the motion and costs a half more."""
+MAX_COORDINATES = 2 * N_PAIRS + N_TURNS
 
-MAX_COORDINATES = 2 * N_SHAPES + N_TWISTS
+_NEGLIGIBLE = 1e-4
+"""Share of a way that must be new."""
 
-_NEGLIGIBLE = 1e-8
-
-_NO_TWIST = 1e-6
-"""Share of the wind's bending energy below which a branch counts as straight."""
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """
-    One way for a branch to move.
-
-    Parameters
-    ----------
-    shape
-        Slope along the branch per unit of the coordinate, as it is drawn.
-    axis
-        Direction of its rotation vector, (3,).
-    field
-        How it moves in space; a crooked branch that bends also twists.
-    is_twist
-        Whether it turns the branch about its chord.
-
-    """
-
-    shape: SlopeShape
-    axis: Floats
-    field: RotationField
-    is_twist: bool = False
+_UPWARD = 0.3
+_WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 
 @dataclass(frozen=True)
@@ -99,14 +80,6 @@ class Carried:
             self.mass_second[children],
         )
 
-    def spin(self, places: Floats, axis: Floats) -> Floats:
-        """Moment of inertia about an axis through each place (c, 3), in [kg m^2], (c,)."""
-        cross = places[:, :, None] * self.mass_moment[:, None, :]
-        second = self.mass_second - cross - cross.transpose(0, 2, 1)
-        second += (self.mass[:, None] * places)[:, :, None] * places[:, None, :]
-        spin: Floats = np.trace(second, axis1=1, axis2=2) - second @ axis @ axis
-        return spin
-
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
@@ -135,12 +108,11 @@ def ways_to_move(
     mass: Floats,
     carried: Carried,
     shear_ratio: float,
-    n_shapes: int = 1,
-    n_twists: int = 0,
-    n_by_wind: int = 0,
-) -> tuple[Coordinate, ...]:
+    n_pairs: int = 1,
+    n_turns: int = 0,
+) -> tuple[SlopeShape, tuple[RotationField, ...]]:
     """
-    Find the coordinates of a branch.
+    Find the ways a branch moves.
 
     Parameters
     ----------
@@ -152,15 +124,14 @@ def ways_to_move(
         What its children hand down; none for a branch that is taken alone.
     shear_ratio
         Shear modulus over Young's in [-].
-    n_shapes, n_twists
-        Shapes it bends in, each about two axes, and twists; fewer where there are no more.
-    n_by_wind
-        How many of the twists are those by the wind.
+    n_pairs, n_turns
+        How many, of either kind; fewer where there are no more.
 
     Returns
     -------
-    tuple of Coordinate
-        The key rotation x, y; further pairs; twists.
+    tuple
+        The slope that a plain branch is drawn by, and what a unit of each coordinate does: of the
+        key rotation x, y, then of further ones.
 
     """
     e1, e2 = across(beam.chord)
@@ -171,26 +142,17 @@ def ways_to_move(
         for i, wind in enumerate(np.eye(3))
     ]
     curvatures = np.stack([beam.curvature_in_space(m, shear_ratio) for m in moments])
-    first, fields = _static_pair(beam, curvatures, e1, e2)
-    if first is None:
-        first = _static_shape(beam, drag_area, carried)
-    shapes, twists = [first], list[SlopeShape]()
-    if n_shapes > 1:
-        inertia = 0.5 * (carried.spin(beam.child_point, e1) + carried.spin(beam.child_point, e2))
-        while len(shapes) < n_shapes:
-            bending = _inertia_moment(beam, mass, carried, inertia, shapes[-1])
-            if not _extend(shapes, beam, bending / beam.second_moment):
-                break
-    if n_twists > 0:
-        twists = _twists(beam, carried, curvatures[:2], n_twists, n_by_wind)
-    if len(shapes) > 1 or twists or fields is None or len(beam.child_place):
-        fields = [RotationField.about(first, e2), RotationField.about(first, -e1)]
-    ways = [Coordinate(first, axis, one) for axis, one in zip((e2, -e1), fields, strict=True)]
-    for shape in shapes[1:]:
-        ways += [Coordinate(shape, axis, RotationField.about(shape, axis)) for axis in (e2, -e1)]
-    for twist in twists:
-        ways.append(Coordinate(twist, beam.chord, RotationField.about(twist, beam.chord), True))
-    return tuple(ways)
+    pair = _static_pair(beam, curvatures, e1, e2)
+    if pair is None:
+        drawn = _static_shape(beam, drag_area, carried)
+        fields = [RotationField.about(drawn, e2), RotationField.about(drawn, -e1)]
+    else:
+        mean = 0.5 * (pair[0] @ e2 - pair[1] @ e1)
+        drawn = beam.slope_shape(mean * beam.second_moment)
+        fields = [RotationField(beam, each) for each in pair]
+    if n_pairs > 1 or n_turns > 0:
+        fields += _further(beam, mass, carried, shear_ratio, fields, n_pairs, n_turns)
+    return drawn, tuple(fields)
 
 
 def wind_load(beam: BranchBeam, drag_area: Floats, wind: Floats) -> Floats:
@@ -214,58 +176,103 @@ def exposure(beam: BranchBeam) -> Floats:
 _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 
-def _static_pair(
-    beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats
-) -> tuple[SlopeShape | None, list[RotationField] | None]:
+def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
-    Fields that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do.
+    Curvatures that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do, (2, m,
+    5, 3).
 
-    Of all fields that do, these come nearest to what the three winds make of the branch (least
-    squares). A single slope about both axes, for drawing, is their mean; None for a branch whose
-    chord no wind turns.
+    Of all that do, these come nearest to what the three winds make of the branch (least squares, an
+    upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both ways, what
+    they do is exact, and so is the static sway of a tree. None for a branch whose chord no wind
+    turns.
 
     """
-    fields = [RotationField(beam, each) for each in curvatures]
-    turns = np.array([[f.nodes[-1] @ e1, f.nodes[-1] @ e2] for f in fields]) / beam.chord_length
+    ends = np.stack([RotationField(beam, each).nodes[-1] for each in curvatures])
+    turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
     largest = np.linalg.svd(turns, compute_uv=False)
     if not largest[-1] > 0.02 * largest[0]:
-        return None, None
-    pair = np.einsum("cw,wsgk->csgk", np.linalg.pinv(turns), curvatures)
-    return _drawn(beam, 0.5 * (pair[0] @ e2 - pair[1] @ e1)), [RotationField(beam, k) for k in pair]
+        return None
+    mix = np.linalg.pinv(turns) * _WIND_WEIGHTS
+    pair: Floats = np.einsum("cw,wsgk->csgk", mix, curvatures)
+    return pair
 
 
-def _drawn(beam: BranchBeam, curvature: Floats) -> SlopeShape:
-    """Slope shape of a curvature, scaled to turn the chord by 1."""
-    return beam.slope_shape(curvature * beam.second_moment)
+def _further(
+    beam: BranchBeam,
+    mass: Floats,
+    carried: Carried,
+    shear_ratio: float,
+    pair: list[RotationField],
+    n_pairs: int,
+    n_turns: int,
+) -> list[RotationField]:
+    """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
+    along = beam.tangent[:, None, :]
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    stiff = math.sqrt(2.0 * shear_ratio)
+
+    def scaled(curvature: Floats, twist: float) -> Floats:
+        about = (curvature * along).sum(axis=-1, keepdims=True) * along
+        out: Floats = curvature + (twist - 1.0) * about
+        return out
+
+    basis: list[Floats] = []
+
+    def rest_of(curvature: Floats) -> RotationField | None:
+        """What is new in a curvature; it joins the basis."""
+        vector = (measure * scaled(curvature, stiff)).ravel()
+        whole = float(np.linalg.norm(vector))
+        for _ in range(2):
+            for other in basis:
+                vector = vector - (other @ vector) * other
+        size = float(np.linalg.norm(vector))
+        if not size > _NEGLIGIBLE * whole:
+            return None
+        basis.append(vector / size)
+        new = scaled(vector.reshape(curvature.shape) / measure, 1.0 / stiff)
+        slope, nodes, _ = beam.from_base(new)
+        return RotationField(beam, new / max(np.abs(slope).max(), np.abs(nodes).max()))
+
+    for one in pair:
+        rest_of(one.curvature)
+    found: list[RotationField] = []
+    sources: list[RotationField | None] = list(pair)
+    turning: list[RotationField | None] = [None] if len(carried.area) else []
+    for block in range(1, max(n_pairs, n_turns + 1)):
+        ways = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
+        bent = [
+            [rest_of(beam.curvature_in_space(
+                inertial_moment(beam, mass, carried, one), shear_ratio
+            )) for one in part]
+            for part in ways
+        ]  # fmt: skip
+        new = [[one for one in part if one is not None] for part in bent]
+        found += [*new[0], *new[1]]
+        sources, turning = [*new[0]], [*new[1]]
+    return found
 
 
-def _twists(
-    beam: BranchBeam, carried: Carried, curvatures: Floats, n_twists: int, n_by_wind: int
-) -> list[SlopeShape]:
+def inertial_moment(
+    beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
+) -> Floats:
     """
-    Twists by what it carries turning as one, then by the wind on a crooked branch, then by what
-    the one before carries.
+    Internal moment by the inertia of a field and of all that rides on it, (m, 5, 3); of all that is
+    carried turning about the chord as one where there is no field.
 
     """
-    twists: list[SlopeShape] = []
-    spin = carried.spin(beam.child_point, beam.chord)
-    turn = np.ones(len(spin))
-    if len(spin):
-        _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment)
-    along = np.einsum("wsgk,sk->wsg", curvatures, beam.tangent)
-    along *= (beam.tangent @ beam.chord)[:, None]
-    left = [_rest(twists, beam, each) for each in along]
-    gram = np.array([[one.stiffness(other, 1.0) for other in left] for one in left])
-    whole = float(beam.integral(beam.second_moment * np.square(curvatures).sum(axis=(0, -1))))
-    energies, mixes = np.linalg.eigh(gram)
-    for energy, mix in zip(energies[::-1], mixes.T[::-1], strict=True):
-        if len(twists) < n_twists and n_by_wind > 0 and energy > _NO_TWIST * whole:
-            n_by_wind -= _extend(twists, beam, np.einsum("w,wsg->sg", mix, along))
-    while 0 < len(twists) < n_twists and len(spin):
-        turn = twists[-1].child_slope
-        if not _extend(twists, beam, beam.child_lever[1] @ (spin * turn) / beam.second_moment):
-            break
-    return twists
+    places = beam.child_point[: len(carried.area)]
+    if field is None:
+        load = np.zeros((*mass.shape, 3))
+        turn = np.broadcast_to(beam.chord, places.shape)
+        moved = np.zeros(places.shape)
+    else:
+        load = mass[..., None] * field.points
+        turn, moved = field.child_slope[: len(places)], field.children[: len(places)]
+    at_root = moved - cross(turn, places)
+    force = carried.mass[:, None] * at_root + cross(turn, carried.mass_moment)
+    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None]
+    spin = trace * turn - np.einsum("cij,cj->ci", carried.mass_second, turn)
+    return beam.moment_in_space(load, force, cross(carried.mass_moment, at_root) + spin)
 
 
 def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:
@@ -274,36 +281,3 @@ def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> Slop
     lever = (carried.area_moment - carried.area[:, None] * places) @ beam.chord
     bending = beam.bending_moment(drag_area, carried.area, np.maximum(lever, 0.0))
     return beam.slope_shape(bending)
-
-
-def _inertia_moment(
-    beam: BranchBeam, mass: Floats, carried: Carried, inertia: Floats, shape: SlopeShape
-) -> Floats:
-    """
-    Bending moment of the masses that ride on a moving shape, per unit of acceleration, (m, 5).
-
-    """
-    lever = (carried.mass_moment - carried.mass[:, None] * beam.child_point) @ beam.chord
-    lift, turn = shape.child_deflection, shape.child_slope
-    return beam.bending_moment(
-        mass * shape.deflection, carried.mass * lift + lever * turn, lever * lift + inertia * turn
-    )
-
-
-def _rest(shapes: list[SlopeShape], beam: BranchBeam, curvature: Floats) -> SlopeShape:
-    """What a curvature has that the shapes have not, in bending energy."""
-    raw = SlopeShape(beam, curvature)
-    for shape in shapes:
-        share = raw.stiffness(shape, 1.0) / shape.stiffness(shape, 1.0)
-        raw = SlopeShape(beam, raw.curvature - share * shape.curvature)
-    return raw
-
-
-def _extend(shapes: list[SlopeShape], beam: BranchBeam, curvature: Floats) -> bool:
-    """Add what a curvature has that the shapes have not; tell whether there was any."""
-    whole = SlopeShape(beam, curvature)
-    rest = _rest(shapes, beam, curvature)
-    if not rest.stiffness(rest, 1.0) > _NEGLIGIBLE * whole.stiffness(whole, 1.0):
-        return False
-    shapes.append(beam.unit_shape(rest.curvature))
-    return True

@@ -34,6 +34,7 @@ from tree_sway_ros.core.fidelity.estimate import Estimate, choose
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
@@ -42,6 +43,7 @@ from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
+from tree_sway_ros.core.wind.limits import is_wind
 from tree_sway_ros.errors import StateError
 
 RUN_IN = 10.0
@@ -247,6 +249,16 @@ class AdaptiveSimulator(OneTree, KeepsState):
         self._shown, self._next, self.choice, self._left, self._behind = kept
         return self.place_rotations(rotations, out)
 
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what any model could not take, as `SwaySimulator.check_tuning`."""
+        return [each.check_tuning(**changes) for each in self._built.values()][-1]
+
+    def tune(self, **changes: float) -> None:
+        """Change the tree on every model while it sways, as `SwaySimulator.tune`."""
+        self.check_tuning(**changes)
+        for each in self._built.values():
+            each.tune(**changes)
+
     def review(self) -> Estimate:
         """
         Look at the choice again: call it when the tolerance has changed. Returns what is chosen.
@@ -263,6 +275,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         elif self._next is None:
             self._next, self._next_age = self._simulator(wanted), 0.0
             self._next.reset()
+            self._next.follow_wind(self._shown)
             self.choice = wanted
         return self.choice
 
@@ -297,7 +310,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
-        if self._gust < load <= self.settings.max_wind**2:
+        if self._gust < load and is_wind(x, y, z, self.settings.max_wind):
             self._gust, self._bearing = load, (x, y)
             if load > SURPRISE * self._judged:
                 self.review()
@@ -316,6 +329,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
             x, v = shown.motion()
             into_whole = self._into_whole(shown)
             here = self._among(better)
+            better.follow_wind(shown)
             better.take_over((into_whole @ x)[here], (into_whole @ v)[here])
             self._left, self._shown = shown, better
         self._next, self.choice = None, wanted

@@ -3,9 +3,11 @@
 """
 A plausible tree of any size for a user who has no scan of one.
 
-Without a measured diameter the stem is as slender as open-grown stems are: 45 lengths of its
-diameter, as first-order axes of scanned broadleaves (allometry of 4,824 scanned branches), or 60
-for a conifer, below the 70 that foresters hold for a stable stem (Wang, Titus & LeMay 1998).
+Without a measured diameter a broadleaf is 45 of its diameters high, as first-order axes of scanned
+trees (allometry of 4,824 branches). The diameter of a conifer goes with the height to the power
+1.5, so that trees of all sizes keep the same reserve against bending over (elastic similarity:
+McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters hold for a stable stem
+(Wang, Titus & LeMay 1998), and never more than 90.
 
 """
 
@@ -20,6 +22,7 @@ from tree_sway_ros.core.branch.closed_forms import greenhill_length
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer
+from tree_sway_ros.core.growth.forms import broadleaf_form
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
@@ -29,7 +32,7 @@ Habit = Literal["conifer", "broadleaf", "pot"]
 HABITS: tuple[Habit, ...] = get_args(Habit)
 """Habits that `grow` knows."""
 
-_SLENDERNESS: dict[Habit, float] = {"conifer": 60.0, "broadleaf": 45.0, "pot": 58.0}
+_POT_SLENDERNESS = 58.0
 _HEIGHTS: dict[Habit, tuple[float, float]] = {
     "conifer": (1.0, 60.0),
     "broadleaf": (1.0, 50.0),
@@ -93,7 +96,7 @@ def grow(
             cure=f"give {low:g} to {high:g} m",
         )
     if diameter is None:
-        diameter = height / _SLENDERNESS[kind]
+        diameter = height / _slenderness(kind, species, height)
     _check_stem(wood, height, diameter)
     called = name if name is not None else species
     if kind == "conifer":
@@ -101,7 +104,6 @@ def grow(
             rng,
             height=height,
             diameter=diameter,
-            crown_base=wood.clear_bole,
             name=called,
             species=species,
         )
@@ -110,6 +112,12 @@ def grow(
     else:
         generator = grow_goldcrest if species == "goldcrest" else grow_benjamina
     return generator(rng, height=height, diameter=diameter, name=called, species=species)
+
+
+def _slenderness(kind: Habit, species: str, height: float) -> float:
+    if kind == "conifer":
+        return min(60.0 * (20.0 / height) ** 0.5, 90.0)
+    return broadleaf_form(species).slenderness if kind == "broadleaf" else _POT_SLENDERNESS
 
 
 def _check_stem(wood: Species, height: float, diameter: float) -> None:

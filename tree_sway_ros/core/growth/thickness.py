@@ -47,6 +47,7 @@ def node_diameters(
     at_height: float,
     tip_diameter: float,
     exponent: float = 2.5,
+    stem_taper: float | None = None,
 ) -> list[Floats]:
     """
     Diameter of every node by the pipe model.
@@ -63,6 +64,9 @@ def node_diameters(
         Diameter of a shoot's tip in [m].
     exponent
         p above in [-].
+    stem_taper
+        Power of the distance from the top that the stem's diameter goes with, if it does not follow
+        the pipe model.
 
     Returns
     -------
@@ -86,6 +90,10 @@ def node_diameters(
     carried = _at_height(stem, beyond[0], at_height)
     w = carried / ((diameter / tip_diameter) ** exponent - 1.0)
     diameters = [tip_diameter * (1.0 + each / w) ** (1.0 / exponent) for each in beyond]
+    if stem_taper is not None:
+        z = stem.nodes[:, 2] - stem.nodes[0, 2]
+        own = diameter * ((1.0 - z / z[-1]) / (1.0 - at_height / z[-1])) ** stem_taper
+        diameters[0] = np.maximum(own, tip_diameter)
     _support(skeleton, diameters)
     # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)

@@ -114,7 +114,9 @@ def calibrate(
             where=tree.name,
             cure="check the measured frequency, the density and the diameters",
         )
+    roots = species.root_stiffness if settings.root_stiffness is None else settings.root_stiffness
     changes: dict[str, float] = {"modulus": found.scale * species.modulus}
+    changes["root_stiffness"] = found.scale * roots
     if damping_ratio is not None:
         within("damping ratio", damping_ratio, 0.0, 1.0)
         changes["damping_in_leaf" if settings.in_leaf else "damping_bare"] = damping_ratio
@@ -150,6 +152,8 @@ class _ScaledTree:
     """A coupled tree whose modulus is scaled."""
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
+        calibrated = CalibratedTree(tree, species, settings)
+        species = calibrated.species
         models = branch_models(
             tree,
             species.density,
@@ -160,7 +164,8 @@ class _ScaledTree:
                 0.5 * (tree.start[:, 2] + tree.end[:, 2])
             ),
             leaf_mass=settings.leaf_mass,
-            leaf_area=CalibratedTree(tree, species, settings).leaf_load_area,
+            leaf_area=calibrated.leaf_load_area,
+            root_compliance=species.modulus / species.root_stiffness,
         )
         shear = species.shear_ratio * species.modulus
         self.tree = tree

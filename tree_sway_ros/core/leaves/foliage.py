@@ -123,6 +123,17 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
     return Foliage(leaf.fresh_mass * total * share, total * share, met * share)
 
 
+def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
+    """
+    Area of wood on each branch that is clad in needles, which stand all round it, in [m^2], (b,).
+
+    """
+    if not traits.are_needles:
+        return np.zeros(tree.n_branches)
+    area = 0.5 * (tree.base_diameter + tree.tip_diameter) * leafy_length(tree)
+    return np.add.reduceat(area, tree.branch_first[:-1])
+
+
 def leaf_clusters(
     tree: Tree,
     rng: np.random.Generator,

@@ -18,15 +18,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import SlopeShape, cross_matrix
+from tree_sway_ros.core.branch.beam import cross, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
-from tree_sway_ros.core.branch.shapes import N_SHAPES, exposure
+from tree_sway_ros.core.branch.shapes import across, exposure
 from tree_sway_ros.core.motion.records import (
     LANES,
     branch_layout,
     head_layout,
     load_layout,
     segment_layout,
+    zeros_in_lines,
 )
 from tree_sway_ros.core.reduction.matrices import Reduction
 from tree_sway_ros.core.rotation import rotated
@@ -47,8 +48,8 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
 
     """
     block, lane, n_records = lanes(tree, models)
-    is_plain = all(len(model.coordinates) == 2 for model in models)
-    records = np.zeros(n_records, dtype=segment_layout(1) if is_plain else segment_layout())
+    is_plain = all(len(model.fields) == 2 for model in models)
+    records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
     records["rest"][:, 0] = 1.0
     rest = tree.rest_frame
     for branch, model in enumerate(models):
@@ -58,11 +59,35 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
         start = tree.start[here]
         records["chord"][rows, :, own] = np.vstack([start[1:], tree.end[here][-1:]]) - start
         records["rest"][rows, :, own] = rest[here]
-        for column, shape in _distinct_shapes(model):
-            records["slope"][rows, column, own] = shape.segment_slope
+        records["slope"][rows, own] = model.shape.segment_slope
+        if not is_plain:
+            for c, turn in enumerate(_drawn_turns(model)):
+                records["turn"][rows, c, :, own] = turn
         records["tip_slope"][rows, own] = _tip_load_slope(model)
         records["n_lanes"][rows] = np.maximum(records["n_lanes"][rows], own + 1)
     return records
+
+
+def turns_of_segments(branch: Any, segments: Any) -> Floats:
+    """
+    Rotation vector of each segment of a branch per unit of each coordinate, as placing draws it,
+    (m, k, 3).
+
+    Parameters
+    ----------
+    branch
+        A record of `BRANCH`.
+    segments
+        Records of `segment_layout` of its tree.
+
+    """
+    first, count = int(branch["block"]), int(branch["n_coordinates"])
+    rows = slice(first, first + int(branch["end"] - branch["first"]))
+    if branch["push"].shape[0] > 2:
+        turns: Floats = segments["turn"][rows, :count, :, branch["lane"]]
+        return turns
+    slope, (_, e1, e2) = segments["slope"][rows, branch["lane"]], branch["frame"]
+    return np.multiply.outer(slope, np.stack([e2, -e1]))
 
 
 def head_records(branches: Any, segments: Any) -> Any:
@@ -77,21 +102,33 @@ def head_records(branches: Any, segments: Any) -> Any:
     """
     first, block = np.unique(branches["block"], return_inverse=True)
     lane, parent = branches["lane"], branches["parent"]
-    heads = np.zeros(len(first) + 1, dtype=head_layout(segments["slope"].shape[1]))
+    heads = zeros_in_lines(len(first) + 1, head_layout(branches.dtype["push"].shape[0]))
     heads["block"] = [*first, len(segments)]
     heads["n_records"][:-1] = np.diff(heads["block"])
     heads["n_lanes"][:-1] = segments["n_lanes"][first]
-    heads["is_plain"] = 1
-    heads["is_plain"][block[branches["n_coordinates"] > 2]] = 0
+    np.maximum.at(heads["n_rows"], block, branches["n_coordinates"])
     heads["branch"][block, lane] = np.arange(len(branches))
+    heads["is_joined"][:-1] = np.logical_and.reduceat(_joined(segments), first)
     heads["is_parent_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
     for name in ("parent", "coordinate", "base_segment", "first"):
         heads[name][block, lane] = branches[name]
     for name in ("frame", "skew", "tip_skew", "offset"):
         heads[name][block, ..., lane] = branches[name]
-    for name in ("steepest", "base_slope"):
-        heads[name][block, lane] = branches[name][:, 0]
+    heads["steepest"][block, lane] = branches["steepest"][:, 0]
+    heads["base_turn"][block, ..., lane] = branches["twist"][:, :2, 3:]
     return heads
+
+
+_AS_ONE = 1e-12
+"""Share of a chord by which a segment may miss it and still reach from its start to its end."""
+
+
+def _joined(segments: Any) -> Any:
+    """Tell chords in each segment's own frame, and of which records they run along its x axis."""
+    w, x, y, z = np.moveaxis(segments["rest"], 1, 0)
+    reach = rotated.py_func(w, -x, -y, -z, *np.moveaxis(segments["chord"], 1, 0))  # type: ignore[attr-defined]
+    segments["reach"] = np.stack(reach, axis=1)
+    return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
 
 
 def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
@@ -158,8 +195,6 @@ def branch_records(
     for branch, model in enumerate(models):
         here = tree.segments_of(branch)
         _fill_shapes(model, records[branch])
-        for column, shape in _distinct_shapes(model):
-            records["base_slope"][model.children, column] = shape.child_slope
         records["tip"][branch] = tree.end[here.stop - 1] - tree.start[0]
         base = int(tree.segment_parent[here.start])
         if base >= 0:
@@ -173,17 +208,15 @@ def branch_records(
 
 def _fill_shapes(model: BranchModel, record: Any) -> None:
     """Fill what bends."""
-    record["n_coordinates"] = len(model.coordinates)
-    record["n_pairs"] = sum(not one.is_twist for one in model.coordinates) // 2
-    for i, one in enumerate(model.coordinates):
-        record["reach"][i] = one.field.nodes[-1]
-    record["frame"] = model.beam.chord, -model.coordinates[1].axis, model.coordinates[0].axis
-    for column, shape in _distinct_shapes(model):
-        record["steepest"][column] = np.square(shape.segment_slope).max()
+    record["n_coordinates"] = len(model.fields)
+    for i, (field, turn) in enumerate(zip(model.fields, _drawn_turns(model), strict=True)):
+        record["reach"][i] = field.nodes[-1]
+        record["steepest"][i] = np.square(turn).sum(axis=1).max()
+    record["frame"] = model.beam.chord, *across(model.beam.chord)
     tip_load = _tip_load_slope(model)
     record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
     length = model.beam.length
-    record["skew"] = _skew(model.coordinates[0].shape.segment_slope, length)
+    record["skew"] = _skew(model.shape.segment_slope, length)
     record["tip_skew"] = _skew(tip_load, length)
 
 
@@ -198,6 +231,7 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     total = weight.sum()
     share = weight / total
     record["centre"] = np.einsum("sg,sgk->k", share, beam.point)
+    record["couple"] = cross_matrix(record["centre"])
     speed = float((share * speed_profile[:, None]).sum())
     record["speed"] = speed
     record["area"] = total / speed**2 if speed > 0.0 else 0.0
@@ -207,27 +241,66 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     exposed = exposure(beam)
     exposed /= float(share.sum(axis=1) @ exposed)
     into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
-    square = 0.0
-    for i, one in enumerate(model.coordinates):
-        field = one.field.points
+    mean = np.zeros_like(record["push"])
+    square = cube = 0.0
+    for i, one in enumerate(model.fields):
+        field = one.points
         own = np.einsum("s,sg,sgk->sk", exposed, share, field)
         own -= np.einsum("sk,sk->s", own, beam.tangent)[:, None] * beam.tangent
-        record["push"][i] = into_push @ own.sum(axis=0)
-        record["turn"][i] = np.einsum("sg,sgk->k", share, one.field.slope)
-        square += float((share[..., None] * field**2).sum()) if i < 2 else 0.0
-    _fill_flow(record, square)
+        mean[i] = own.sum(axis=0)
+        record["push"][i] = into_push @ mean[i]
+        record["turn"][i] = np.einsum("sg,sgk->k", share, one.slope)
+        if i < 2:
+            moved = np.square(field).sum(axis=-1)
+            moved -= np.square(np.einsum("sgk,sk->sg", field, beam.tangent))
+            square += float((share * moved).sum())
+            cube += float((share * np.maximum(moved, 0.0) ** 1.5).sum())
+    if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
+        _fit_load(model, share, record)
+    _fill_flow(record, mean, square, cube)
 
 
-def _fill_flow(record: Any, square: float) -> None:
+def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
     """
-    Scale the displacement at which drag damps, so that push times flow is the mean square of the
-    displacement: both axes of the first shape as one, so that it does not matter how they are laid.
+    Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
+    all winds, push and couple in those along the ground (least squares).
 
     """
-    push = float(np.square(record["push"][:2]).sum())
-    record["flow"] = record["push"]
-    record["flow"][:2] *= square / push if push > 0.0 else 1.0
-    record["lever"] = math.sqrt(0.5 * push)
+    tangent = model.beam.tangent
+    outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
+    drag = np.maximum(_WINDS @ outer[:, [0, 4, 8, 1, 2, 5]].T, 0.0) ** 1.5 @ share.sum(axis=1)
+    record["projector"] = _NEAREST @ drag ** (2.0 / 3.0)
+    projector = record["projector"][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+    across = _LEVEL @ projector
+    force = np.sqrt(np.maximum((_LEVEL * across).sum(axis=1), 0.0))[:, None] * across
+    fit = np.linalg.pinv(force, rcond=_STRAIGHT)
+    pieces = _LEVEL[:, None] - (_LEVEL @ tangent.T)[..., None] * tangent
+    pieces *= np.linalg.norm(pieces, axis=-1, keepdims=True)
+    point = (share[..., None] * model.beam.point).sum(axis=1)
+    moment = cross(point, pieces).sum(axis=1)
+    record["couple"] += (fit @ (moment - force @ record["couple"].T)).T
+    k = len(model.fields)
+    moved = np.stack([(share[..., None] * one.points).sum(axis=1) for one in model.fields])
+    pushed = np.einsum("dsk,csk->dc", pieces, moved)
+    record["push"][:k] += (fit @ (pushed - force @ record["push"][:k].T)).T
+
+
+def _fill_flow(record: Any, mean: Floats, square: float, cube: float) -> None:
+    """
+    Scale the mean displacement across the branch to that at which drag damps, so that what the
+    drag on it does is the mean square of the displacement: both axes of the first shape as one, so
+    that it does not matter how they are laid.
+
+    In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
+    speed of mean cube over mean square: what the flow lacks of that is the spread.
+
+    """
+    across = float(np.square(mean[:2]).sum())
+    record["flow"] = mean
+    record["flow"][:2] *= square / across if across > 0.0 else 1.0
+    still = (cube / square) ** 2 if square > 0.0 else 0.0
+    record["spread"] = max(still - 0.5 * float(np.square(record["flow"][:2]).sum()), 0.0)
+    record["lever"] = math.sqrt(0.5 * across)
 
 
 def _fill_axial_levers(records: Any) -> None:
@@ -329,11 +402,18 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     centre = loads["centre"]
     moved = twists[:, :, :3] + np.cross(twists[:, :, 3:], centre[:, None])
     record["centre"] = share[0] * own["centre"] + share[1:] @ centre
+    record["couple"] = share[0] * own["couple"] + np.tensordot(share[1:], loads["couple"], axes=1)
     record["push"] = share[0] * own["push"] + np.tensordot(share[1:], moved, axes=1)
     record["turn"] = share[0] * own["turn"] + np.tensordot(share[1:], twists[:, :, 3:], axes=1)
-    square = share[0] * (own["push"][:2] * own["flow"][:2]).sum()
-    square += share[1:] @ np.square(moved[:, :2]).sum(axis=(1, 2))
-    _fill_flow(record, float(square))
+    xx, yy, zz, xy, xz, yz = own["projector"]
+    mean = own["push"] @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    damped = float((mean[:2] * own["flow"][:2]).sum())
+    still = math.sqrt(own["spread"] + 0.5 * float(np.square(own["flow"][:2]).sum()))
+    squares = np.square(moved[:, :2]).sum(axis=-1)
+    square = share[0] * damped + share[1:] @ squares.sum(axis=1)
+    cube = share[0] * damped * still + share[1:] @ (squares**1.5).sum(axis=1)
+    mean = share[0] * mean + np.tensordot(share[1:], moved, axes=1)
+    _fill_flow(record, mean, float(square), float(cube))
 
 
 def _squares(directions: Floats) -> Floats:
@@ -345,29 +425,33 @@ def _squares(directions: Floats) -> Floats:
     return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
 
 
-_WINDS = _squares(
-    np.array(
-        [
-            (np.cos(rise) * np.cos(bearing), np.cos(rise) * np.sin(bearing), np.sin(rise))
-            for rise in np.deg2rad([-20.0, 0.0, 20.0])
-            for bearing in np.arange(16) * np.pi / 8.0
-        ]
-    )
-)
+def _sides(rise: float) -> Floats:
+    """Directions from all sides, so much upwards in [deg], (16, 3)."""
+    bearing, up = np.arange(16) * np.pi / 8.0, np.full(16, math.radians(rise))
+    return np.stack([np.cos(up) * np.cos(bearing), np.cos(up) * np.sin(bearing), np.sin(up)], 1)
+
+
+_LEVEL = _sides(0.0)
+"""Winds along the ground."""
+
+_WINDS = _squares(np.concatenate([_sides(-20.0), _LEVEL, _sides(20.0)]))
 """Winds from all sides, along the ground and, as branches bend, aslant."""
 
 _NEAREST = np.linalg.pinv(_WINDS)
 """From squares in those winds to the projector that fits them best, (6, d)."""
 
 
-def _distinct_shapes(model: BranchModel) -> list[tuple[int, SlopeShape]]:
+def _drawn_turns(model: BranchModel) -> Floats:
     """
-    Shapes of a branch with the column of each: pairs share theirs, twists come after all shapes.
+    Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3): that of
+    a plain branch by one slope about the axes across its chord.
 
     """
-    pairs = [one.shape for one in model.coordinates if not one.is_twist][::2]
-    twists = [one.shape for one in model.coordinates if one.is_twist]
-    return [*enumerate(pairs), *enumerate(twists, start=N_SHAPES)]
+    if len(model.fields) == 2:
+        e1, e2 = across(model.beam.chord)
+        return np.multiply.outer(model.shape.segment_slope, [e2, -e1]).transpose(1, 0, 2)
+    turns = [(model.beam.weight[..., None] * one.slope).sum(axis=1) for one in model.fields]
+    return np.stack(turns) / model.beam.length[:, None]
 
 
 def _skew(slope: Floats, length: Floats) -> float:
@@ -385,7 +469,7 @@ def _tip_load_slope(model: BranchModel) -> Floats:
 
     """
     u = model.beam.node / model.beam.node[-1]
-    first: SlopeShape = model.coordinates[0].shape
+    first = model.shape
     primitive = 1.5 * (u * u - u**3 / 3.0)
     mean = float(first.segment_slope @ model.beam.length) / float(model.beam.node[-1])
     slope: Floats = mean * np.diff(primitive) / np.diff(u)
@@ -412,9 +496,9 @@ def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
     """
     if layout is None:
         layout = load_layout(branches.dtype["push"].shape[0])
-    records = np.zeros(-(-len(branches) // LANES), dtype=layout)
+    records = zeros_in_lines(-(-len(branches) // LANES), layout)
     block, lane = np.divmod(np.arange(len(branches)), LANES)
-    for name in ("speed", "area", "projector", "centre"):
+    for name in ("speed", "area", "spread", "projector", "centre"):
         records[name][block, ..., lane] = branches[name]
     for name in ("flow", "turn", "push"):
         rows = records.dtype[name].shape[0]

@@ -88,6 +88,11 @@ class ModalBank:
         self._pull = np.zeros(len(branches))
         self.whole, self.half = np.zeros((2, m, 8))
 
+    @property
+    def loads(self) -> Any:
+        """Records of `load_fields`."""
+        return self._loads
+
     def set_pace(self, dt: float) -> None:
         """Refill how the modes go on in a time step [s]."""
         one = np.ones(len(self.stiffness))

@@ -49,7 +49,7 @@ class NumpyUncoupledBank(UncoupledBank):
         middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
         base = passes.outward(middle_x, middle_v) if self.carries else np.zeros((n, 9))
-        wind = np.array([wx, wy, wz])
+        wind = np.array([wx, wy, wz]) + of_lanes(self._banks["gust"], n)
         force = passes.wind_forces(
             base, middle_x, middle_v, wind, per_speed_squared, self._compliance, slip
         )
@@ -105,7 +105,8 @@ class NumpyModalBank(ModalBank):
         x = passes.per_branch(flexibility * moment + _summed(middle_eta, self._shapes))
         v = passes.per_branch(_summed(middle_rate, self._shapes))
         slip = of_lanes(self._loads["slip"], n).copy()
-        base, wind = passes.outward(x, v), np.array([wx, wy, wz])
+        base = passes.outward(x, v)
+        wind = np.array([wx, wy, wz]) + of_lanes(self._loads["gust"], n)
         compliance = of_lanes(self._loads["compliance"], n)
         on_branches = passes.wind_forces(base, x, v, wind, per_speed_squared, compliance, slip)
         pull = passes.generalised_loads(base[:, 6:], on_branches, True, moment)

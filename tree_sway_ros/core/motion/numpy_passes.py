@@ -36,7 +36,7 @@ class NumpyPasses:
         names = ("parent", "source", "twist", "centre", "flow", "turn", "push", "lever", "speed")
         self._of: dict[str, Any] = {
             name: np.ascontiguousarray(branches[name])
-            for name in (*names, "area", "axial_lever", "frame")
+            for name in (*names, "spread", "area", "axial_lever", "frame", "couple")
         }
         xx, yy, zz, xy, xz, yz = branches["projector"].T
         self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
@@ -78,7 +78,8 @@ class NumpyPasses:
         free = cayley_turned(-turn, of["speed"][:, None] * wind - motion)
         free += compliance[:, None] * slip
         across = np.einsum("bij,bj->bi", self._projector, free)
-        speed = np.sqrt(np.maximum(np.einsum("bi,bi->b", free, across), 0.0))
+        spread = of["spread"] * np.square(v[:, :2]).sum(axis=1)
+        speed = np.sqrt(np.maximum(np.einsum("bi,bi->b", free, across), 0.0) + spread)
         c = per_speed_squared * of["area"]
         share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * compliance * c * speed))
         per_speed = (c * speed * share**2)[:, None]
@@ -95,7 +96,7 @@ class NumpyPasses:
         own = np.einsum("bck,bk->bc", of["push"], turned)
         pull: Floats = of["lever"] * np.einsum("bk,bk->b", chord, turned)
         if carries:
-            wrench = np.hstack([force, cross(of["centre"], force)])
+            wrench = np.hstack([force, np.einsum("bij,bj->bi", of["couple"], force)])
             total = np.vstack([np.zeros(6), np.cumsum(wrench, axis=0)])
             carried = (total[self._end] - total[:-1])[1:]
             parent = of["parent"][1:]
@@ -157,7 +158,7 @@ def of_lanes(field: Floats, count: int) -> Floats:
     return rows.reshape(-1, *rows.shape[2:])[:count]
 
 
-def into_lanes(rows: Floats, field: Floats) -> None:
+def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
     """Write rows of branches, (b, ...), into a field of records in lanes."""
     block, lane = np.divmod(np.arange(len(rows)), LANES)
     field[block, ..., lane] = rows
@@ -187,9 +188,7 @@ def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
     across = np.sqrt(np.maximum(level[:, None] + slant[:, None] * sides, 0.0)).mean(axis=1)
     force = np.stack([[xx, xy, xz], [xy, yy, yz]]).transpose(2, 1, 0)
     force = force * (branches["area"] * branches["speed"] ** 2 * across)[:, None, None]
-    wrench = np.concatenate(
-        [force, np.cross(branches["centre"][:, :, None], force, axis=1)], axis=1
-    )
+    wrench = np.concatenate([force, branches["couple"] @ force], axis=1)
     moments = np.zeros((n_coordinates, 2))
     for b in range(len(branches) - 1, -1, -1):
         i, k = int(branches["coordinate"][b]), int(branches["n_coordinates"][b])

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.shapes import N_SHAPES
 from tree_sway_ros.core.motion.numpy_passes import NumpyPasses
 from tree_sway_ros.core.motion.numpy_rotation import (
     quaternion_product,
@@ -42,8 +41,9 @@ class NumpyPlacing:
 
     def __init__(self, branches: Any, segments: Any, frozen: RigidParts | None) -> None:
         """Lay out the segments in the order of the branches."""
-        names = ("parent", "skew", "tip_skew", "base_slope", "offset")
+        names = ("parent", "skew", "tip_skew", "offset")
         self._branch: dict[str, Any] = {name: branches[name].copy() for name in names}
+        self._branch["base_turn"] = branches["twist"][:, :, 3:].copy()
         self._frozen, self._passes = frozen, NumpyPasses(branches)
         counts = branches["end"] - branches["first"]
         self._owner = np.repeat(np.arange(len(branches)), counts)
@@ -54,17 +54,15 @@ class NumpyPlacing:
         self._segment: dict[str, Any] = {
             name: segments[name][at, ..., lane] for name in ("slope", "tip_slope", "chord", "rest")
         }
+        # x turns about e2 and y about -e1.
+        e1, e2 = branches["frame"][self._owner, 1], branches["frame"][self._owner, 2]
+        self._pair = np.stack([e2, -e1], axis=1)
+        self._turn = self._segment["slope"][:, None, None] * self._pair
+        if branches["push"].shape[1] > 2:
+            self._turn = segments["turn"][at, ..., lane]
         place = np.zeros(int(self._rows.max()) + 1, dtype=np.int64)
         place[self._rows] = np.arange(len(self._rows))
         self._on = place[np.maximum(branches["base_segment"], 0)]
-        # Coordinates are pairs that share a shape, then twists; those that are not there come last
-        # and stand still.
-        column, pairs = np.arange(branches["push"].shape[1]), branches["n_pairs"][:, None]
-        shape = np.where(column < 2 * pairs, column // 2, N_SHAPES + column - 2 * pairs)
-        self._shape = np.where(self._passes.is_there, shape, 0)
-        chord, e1, e2 = (branches["frame"][:, None, k] for k in range(3))
-        bends = np.where((column % 2 == 0)[:, None], e2, -e1)
-        self._axis = np.where((column < 2 * pairs)[..., None], bends, chord)
 
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
         """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
@@ -75,17 +73,19 @@ class NumpyPlacing:
         stretch = 1.0 + np.minimum(t, _STRETCH_TO) * (
             branch["skew"] + blend * (branch["tip_skew"] - branch["skew"])
         )
-        slope = np.take_along_axis(segment["slope"], self._shape[owner], axis=1)
-        bent = slope[:, 0] + blend[owner] * (segment["tip_slope"] - slope[:, 0])
-        slope[:, :2] = (stretch[owner] * bent)[:, None]
-        bend = quaternions_of(np.einsum("jc,jc,jck->jk", slope, angles[owner], self._axis[owner]))
+        keys = angles.copy()
+        keys[:, :2] *= stretch[:, None]
+        far = blend[owner] * (segment["tip_slope"] - segment["slope"])
+        bend = np.einsum("jc,jck->jk", keys[owner], self._turn)
+        bend += far[:, None] * np.einsum("jc,jck->jk", keys[owner, :2], self._pair)
+        bend = quaternions_of(bend)
 
         angles[:, :2] *= (1.0 + np.minimum(t, _STRETCH_TO) * branch["skew"])[:, None]
         base = np.zeros((len(t), 4))
         base[0, 0] = 1.0
         for level in self._passes.levels:
             parent = branch["parent"][level]
-            turn = self._turns(parent, branch["base_slope"][level], angles)
+            turn = self._turns(parent, branch["base_turn"][level], angles)
             base[level] = quaternion_product(base[parent], turn)
         turned = quaternion_product(base[owner], bend)
         pose = quaternion_product(turned, segment["rest"])
@@ -105,15 +105,14 @@ class NumpyPlacing:
         if self._frozen is not None:
             self._place_frozen(self._frozen, base, angles, out)
 
-    def _turns(self, parent: Ints, slope: Floats, angles: Floats) -> Floats:
+    def _turns(self, parent: Ints, turns: Floats, angles: Floats) -> Floats:
         """Rotation of places on branches by their angles, stretched, from the parents' bases."""
-        at = np.take_along_axis(slope, self._shape[parent], axis=1)
-        return quaternions_of(np.einsum("bc,bck->bk", at * angles[parent], self._axis[parent]))
+        return quaternions_of(np.einsum("bc,bck->bk", angles[parent], turns))
 
     def _place_frozen(self, parts: RigidParts, base: Floats, angles: Floats, out: Floats) -> None:
         """Place subtrees that move with the segment they sit on as one body."""
         on, first, end = parts.rows.T
-        turn = self._turns(parts.parent, parts.base_slope, angles)
+        turn = self._turns(parts.parent, parts.base_turn, angles)
         turn = quaternion_product(base[parts.parent], turn)
         seat = out[on]
         place = seat[:, :3] + quaternion_rotated(seat[:, [6, 3, 4, 5]], parts.offset)

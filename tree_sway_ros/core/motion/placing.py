@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.branch.shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import (
@@ -63,54 +62,62 @@ def place(
         Pose block to write, (n, 7).
 
     """
-    last = len(heads) - 1
-    place_blocks(branches, segments, heads, work, heads, x, origin, out, last, 0, last)
+    place_standing_at(
+        branches, segments, heads, work, x, origin[0], origin[1], origin[2], 1.0, 0.0, 1.0, out
+    )
 
 
 @fused
-def place_blocks(
-    branches: Any, segments: Any, heads: Any, work: Any, scratches: Any, x: Floats, origin: Floats,
-    out: Floats, mine: int, first: int, end: int,
+def place_standing_at(
+    branches: Any, segments: Any, heads: Any, work: Any, x: Floats,
+    east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
-    Place the segments of some blocks, whose parents stand.
+    Place every segment of a tree that is turned and scaled.
 
     Parameters
     ----------
-    branches, segments, heads, work, x, origin, out
+    branches, segments, heads, work, x, out
         As for `place`.
-    scratches, mine
-        Records of `head_layout`, and which of them to work in.
-    first, end
-        First block and one past the last.
+    east, north, up
+        Root node.
+    cosine, sine
+        Of half the angle that the tree is turned by about the vertical.
+    scale
+        Its size over that of its records.
 
     """
-    scratch = scratches[mine]
+    last = len(heads) - 1
+    scratch = heads[last]
     at, pose = scratch.at, scratch.pose
-    for block in range(first, end):
+    for block in range(last):
         head = heads[block]
-        _read_parents(branches, head, scratch, work, x, origin, out)
-        _turn_bases(head, scratch)
+        _read_parents(branches, head, scratch, work, x, east, north, up, cosine, sine, out)
+        _turn_bases(head, scratch, scale)
         is_far = _write_bases(head, scratch, work)
-        if not head.is_plain:
-            is_far = _set_further_turns(branches, head, scratch, x) or is_far
+        if head.n_rows > 2:
+            is_far = _set_further_keys(branches, head, scratch, x) or is_far
         for rank in range(head.n_records):
             segment = segments[head.block + rank]
             if is_far:
-                _bend_far(segment, scratch)
-            elif head.is_plain:
+                _bend_far(segment, scratch, head.n_rows)
+            elif head.n_rows == 2:
                 _bend_in_plane(segment, scratch)
             else:
-                _bend(segment, scratch)
+                _bend(segment, scratch, head.n_rows)
+            if head.is_joined:
+                _join(segment, scratch, scale)
+            else:
+                _join_gaps(segment, scratch, scale)
             for j in range(segment.n_lanes):
-                row = head.first[j] + rank
-                out[row, 0], out[row, 1], out[row, 2] = at[0, j], at[1, j], at[2, j]
-                out[row, 3], out[row, 4], out[row, 5] = pose[1, j], pose[2, j], pose[3, j]
-                out[row, 6] = pose[0, j]
+                pose_to = out[np.uintp(head.first[j] + rank)]
+                pose_to[0], pose_to[1], pose_to[2] = at[0, j], at[1, j], at[2, j]
+                pose_to[3], pose_to[4], pose_to[5] = pose[1, j], pose[2, j], pose[3, j]
+                pose_to[6] = pose[0, j]
 
 
 @fused
-def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float, float]:
+def turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
     Rotation of a place on a branch.
 
@@ -118,8 +125,8 @@ def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float,
     ----------
     parent
         Record of `BRANCH`.
-    slope
-        Of its shapes and twists at that place, (c,).
+    turns
+        Rotation vector of that place per unit of each of its coordinates, (c, 3).
     x
         Key rotations, (N,).
 
@@ -129,33 +136,30 @@ def turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float,
         Quaternion w x y z, from rest.
 
     """
-    hx, hy, hz = _half_turn_at(parent, slope, x)
+    hx, hy, hz = _half_turn_at(parent, turns, x)
     return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
 
 
 @inlined
-def _half_turn_at(parent: Any, slope: Floats, x: Floats) -> tuple[float, float, float]:
+def _half_turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float]:
     """Half the rotation vector of a place on a branch, as `turn_at`."""
-    i, pairs, frame = parent.coordinate, parent.n_pairs, parent.frame
-    first = slope[0] * (1.0 + min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew)
-    ux, uy, spin = first * x[i], first * x[i + 1], 0.0
-    for p in range(1, pairs):
-        ux += slope[p] * x[i + 2 * p]
-        uy += slope[p] * x[i + 2 * p + 1]
-    for p in range(parent.n_coordinates - 2 * pairs):
-        spin += slope[N_SHAPES + p] * x[i + 2 * pairs + p]
-    ux, uy, spin = 0.5 * ux, 0.5 * uy, 0.5 * spin
-    return (
-        ux * frame[2, 0] - uy * frame[1, 0] + spin * frame[0, 0],
-        ux * frame[2, 1] - uy * frame[1, 1] + spin * frame[0, 1],
-        ux * frame[2, 2] - uy * frame[1, 2] + spin * frame[0, 2],
-    )
+    i = parent.coordinate
+    half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
+    ux, uy = half * x[i], half * x[i + 1]
+    hx = ux * turns[0, 0] + uy * turns[1, 0]
+    hy = ux * turns[0, 1] + uy * turns[1, 1]
+    hz = ux * turns[0, 2] + uy * turns[1, 2]
+    for c in range(2, parent.n_coordinates):
+        u = 0.5 * x[i + c]
+        hx, hy, hz = hx + u * turns[c, 0], hy + u * turns[c, 1], hz + u * turns[c, 2]
+    return hx, hy, hz
 
 
 @fused
 def _read_parents(
-    branches: Any, head: Any, scratch: Any, work: Any, x: Floats, origin: Floats, out: Floats
-) -> None:
+    branches: Any, head: Any, scratch: Any, work: Any, x: Floats,
+    east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
+) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
     turned, base, carrier = scratch.carrier_turn, scratch.parent_base, scratch.carrier
     for j in range(head.n_lanes):
@@ -163,17 +167,19 @@ def _read_parents(
         scratch.key[0, j], scratch.key[1, j] = x[i], x[i + 1]
         if head.parent[j] < 0:
             hx, hy, hz = 0.0, 0.0, 0.0
-            bw, bx, by, bz = 1.0, 0.0, 0.0, 0.0
-            px, py, pz = origin[0], origin[1], origin[2]
-            sx, sy, sz, sw = 0.0, 0.0, 0.0, 1.0
+            bw, bx, by, bz = cosine, 0.0, 0.0, sine
+            px, py, pz = east, north, up
+            sx, sy, sz, sw = 0.0, 0.0, sine, cosine
         else:
             below, on = work[head.parent[j]], head.base_segment[j]
             if head.is_parent_plain[j]:
-                slope = head.base_slope[j]
-                hx, hy, hz = slope * below.turn[0], slope * below.turn[1], slope * below.turn[2]
+                ux, uy, per = below.key[0], below.key[1], head.base_turn
+                hx = ux * per[0, 0, j] + uy * per[1, 0, j]
+                hy = ux * per[0, 1, j] + uy * per[1, 1, j]
+                hz = ux * per[0, 2, j] + uy * per[1, 2, j]
             else:
-                slopes = branches[head.branch[j]].base_slope
-                hx, hy, hz = _half_turn_at(branches[head.parent[j]], slopes, x)
+                turns = branches[head.branch[j]].twist[:, 3:]
+                hx, hy, hz = _half_turn_at(branches[head.parent[j]], turns, x)
             bw, bx, by, bz = below.base[0], below.base[1], below.base[2], below.base[3]
             if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:
                 qw, qx, qy, qz = quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
@@ -188,7 +194,7 @@ def _read_parents(
 
 
 @fused
-def _turn_bases(head: Any, scratch: Any) -> None:
+def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
@@ -197,14 +203,10 @@ def _turn_bases(head: Any, scratch: Any) -> None:
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
-    turn, base, half_turn, swing, at, ahead = (
-        scratch.turn,
-        scratch.base,
-        scratch.half_turn,
-        scratch.swing,
-        scratch.at,
-        scratch.ahead,
-    )
+    bent, base, half_turn, half_key, swing, following = (
+        scratch.bent, scratch.base, scratch.half_turn, scratch.half_key, scratch.swing,
+        scratch.next,
+    )  # fmt: skip
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
         t = x * x + y * y
@@ -215,9 +217,10 @@ def _turn_bases(head: Any, scratch: Any) -> None:
         ux = x * frame[2, 0, j] - y * frame[1, 0, j]
         uy = x * frame[2, 1, j] - y * frame[1, 1, j]
         uz = x * frame[2, 2, j] - y * frame[1, 2, j]
-        turn[0, j], turn[1, j], turn[2, j] = own * ux, own * uy, own * uz
+        bent[0, j], bent[1, j] = own * x, own * y
         wx, wy, wz = half * ux, half * uy, half * uz
-        half_turn[0, 0, j], half_turn[0, 1, j], half_turn[0, 2, j] = wx, wy, wz
+        half_turn[0, j], half_turn[1, j], half_turn[2, j] = wx, wy, wz
+        half_key[0, j], half_key[1, j] = half * x, half * y
         square = half * half * t
         scratch.blend[j], scratch.square[j] = blend, square
         scratch.half_angle[j] = square * head.steepest[j]
@@ -234,8 +237,9 @@ def _turn_bases(head: Any, scratch: Any) -> None:
             carrier[6, j], carrier[3, j], carrier[4, j], carrier[5, j],
             offset[0, j], offset[1, j], offset[2, j],
         )  # fmt: skip
-        at[0, j], at[1, j], at[2, j] = carrier[0, j] + ox, carrier[1, j] + oy, carrier[2, j] + oz
-        ahead[0, j], ahead[1, j], ahead[2, j] = 0.0, 0.0, 0.0
+        following[0, j] = carrier[0, j] + scale * ox
+        following[1, j] = carrier[1, j] + scale * oy
+        following[2, j] = carrier[2, j] + scale * oz
 
 
 @fused
@@ -250,71 +254,82 @@ def _write_bases(head: Any, scratch: Any, work: Any) -> bool:
         here = work[head.branch[j]]
         for k in range(4):
             here.base[k] = scratch.base[k, j]
-        for k in range(3):
-            here.turn[k] = scratch.turn[k, j]
+        here.key[0], here.key[1] = scratch.bent[0, j], scratch.bent[1, j]
         is_far |= not scratch.half_angle[j] <= SERIES_LIMIT
     return is_far
 
 
 @fused
-def _set_further_turns(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
+def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
     """
-    Set how further shapes and twists bend; return whether any branch with them bends beyond the
-    series.
+    Set the further coordinates; return whether any branch with them bends beyond the series.
 
     """
-    is_far, half_turn = False, scratch.half_turn
-    half_turn[1:] = 0.0
+    is_far, half_key = False, scratch.half_key
+    half_key[2:] = 0.0
     for j in range(head.n_lanes):
         branch = branches[head.branch[j]]
         if branch.n_coordinates == 2:
             continue
-        i, pairs, frame = branch.coordinate, branch.n_pairs, branch.frame
-        further = 0.0
-        for p in range(1, pairs):
-            ux, uy = 0.5 * x[i + 2 * p], 0.5 * x[i + 2 * p + 1]
-            for k in range(3):
-                half_turn[p, k, j] = ux * frame[2, k] - uy * frame[1, k]
-            further += (ux * ux + uy * uy) * branch.steepest[p]
-        for p in range(branch.n_coordinates - 2 * pairs):
-            spin = 0.5 * x[i + 2 * pairs + p]
-            for k in range(3):
-                half_turn[N_SHAPES + p, k, j] = spin * frame[0, k]
-            further += spin * spin * branch.steepest[N_SHAPES + p]
+        i, further = branch.coordinate, 0.0
+        for c in range(2, branch.n_coordinates):
+            half = 0.5 * x[i + c]
+            half_key[c, j] = half
+            further += half * half * branch.steepest[c]
         # The square of a sum is at most twice the square of its first and twice that of the others.
-        is_far |= not 2.0 * (scratch.half_angle[j] + 5.0 * further) <= SERIES_LIMIT
+        others = branch.n_coordinates - 2
+        is_far |= not 2.0 * (scratch.half_angle[j] + others * further) <= SERIES_LIMIT
     return is_far
 
 
 @inlined
-def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, float]:
-    """Half the rotation vector of a segment of the lane j, of all its shapes and twists."""
-    slope, half_turn = segment.slope, scratch.half_turn
-    first = slope[0, j] + scratch.blend[j] * (segment.tip_slope[j] - slope[0, j])
-    hx, hy, hz = first * half_turn[0, 0, j], first * half_turn[0, 1, j], first * half_turn[0, 2, j]
-    for c in range(1, slope.shape[0]):
-        hx += slope[c, j] * half_turn[c, 0, j]
-        hy += slope[c, j] * half_turn[c, 1, j]
-        hz += slope[c, j] * half_turn[c, 2, j]
+def _half_vector(segment: Any, scratch: Any, n_rows: int, j: int) -> tuple[float, float, float]:
+    """Half the rotation vector of a segment of the lane j, by all its coordinates."""
+    turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
+    far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
+    hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
+    for c in range(n_rows):
+        key = half_key[c, j]
+        hx, hy, hz = hx + key * turn[c, 0, j], hy + key * turn[c, 1, j], hz + key * turn[c, 2, j]
     return hx, hy, hz
 
 
 @inlined
 def _turn(segment: Any, scratch: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
-    """Turn the segment of the lane j from rest, at the end of the one before."""
-    rest, chord = segment.rest, segment.chord
-    pose, at, ahead = scratch.pose, scratch.at, scratch.ahead
-    at[0, j], at[1, j], at[2, j] = (
-        at[0, j] + ahead[0, j],
-        at[1, j] + ahead[1, j],
-        at[2, j] + ahead[2, j],
-    )
+    """Turn the segment of the lane j from rest."""
+    rest, pose = segment.rest, scratch.pose
     pose[0, j], pose[1, j], pose[2, j], pose[3, j] = product(
         qw, qx, qy, qz, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
     )
-    ahead[0, j], ahead[1, j], ahead[2, j] = rotated(
-        qw, qx, qy, qz, chord[0, j], chord[1, j], chord[2, j]
-    )
+
+
+@fused
+def _join(segment: Any, scratch: Any, scale: float) -> None:
+    """Put sixteen turned segments at the ends of those before them, and find their own ends."""
+    pose, at, following, reach = scratch.pose, scratch.at, scratch.next, segment.reach
+    for j in range(LANES):
+        w, x, y, z = pose[0, j], pose[1, j], pose[2, j], pose[3, j]
+        px, py, pz, length = following[0, j], following[1, j], following[2, j], scale * reach[0, j]
+        at[0, j], at[1, j], at[2, j] = px, py, pz
+        twice = length + length
+        following[0, j] = px + length - twice * (y * y + z * z)
+        following[1, j] = py + twice * (x * y + w * z)
+        following[2, j] = pz + twice * (x * z - w * y)
+
+
+@fused
+def _join_gaps(segment: Any, scratch: Any, scale: float) -> None:
+    """Do the same where the next segment does not start at this one's end."""
+    pose, at, following, reach = scratch.pose, scratch.at, scratch.next, segment.reach
+    for j in range(LANES):
+        px, py, pz = following[0, j], following[1, j], following[2, j]
+        at[0, j], at[1, j], at[2, j] = px, py, pz
+        rx, ry, rz = rotated(
+            pose[0, j], pose[1, j], pose[2, j], pose[3, j], reach[0, j], reach[1, j], reach[2, j]
+        )
+        following[0, j] = px + scale * rx
+        following[1, j] = py + scale * ry
+        following[2, j] = pz + scale * rz
 
 
 @fused
@@ -322,7 +337,7 @@ def _bend_in_plane(segment: Any, scratch: Any) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
     slope, base, swing = segment.slope, scratch.base, scratch.swing
     for j in range(LANES):
-        first = slope[0, j] + scratch.blend[j] * (segment.tip_slope[j] - slope[0, j])
+        first = slope[j] + scratch.blend[j] * (segment.tip_slope[j] - slope[j])
         c, s = half_angle_series(first * first * scratch.square[j])
         s *= first
         _turn(
@@ -333,11 +348,11 @@ def _bend_in_plane(segment: Any, scratch: Any) -> None:
 
 
 @fused
-def _bend(segment: Any, scratch: Any) -> None:
-    """Turn sixteen segments of branches with further shapes or twists."""
+def _bend(segment: Any, scratch: Any, n_rows: int) -> None:
+    """Turn sixteen segments of branches with further coordinates."""
     base = scratch.base
     for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, scratch, j)
+        hx, hy, hz = _half_vector(segment, scratch, n_rows, j)
         c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
@@ -345,11 +360,16 @@ def _bend(segment: Any, scratch: Any) -> None:
 
 
 @fused
-def _bend_far(segment: Any, scratch: Any) -> None:
+def _bend_far(segment: Any, scratch: Any, n_rows: int) -> None:
     """Turn sixteen segments, some of a branch that bends beyond the series."""
-    base = scratch.base
+    base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):
-        hx, hy, hz = _half_vector(segment, scratch, j)
+        if n_rows > 2:
+            hx, hy, hz = _half_vector(segment, scratch, n_rows, j)
+        else:
+            slope = segment.slope[j]
+            slope += scratch.blend[j] * (segment.tip_slope[j] - slope)
+            hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]
         c, s = half_angle(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)

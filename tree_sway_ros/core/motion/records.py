@@ -25,21 +25,16 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.branch.shapes import MAX_COORDINATES, N_SHAPES, N_TWISTS
-
-MAX_SLOPES = N_SHAPES + N_TWISTS
-"""Shapes and twists of an enriched branch."""
+from tree_sway_ros.core.branch.shapes import MAX_COORDINATES
 
 
 @cache
-def branch_layout(
-    n_coordinates: int = MAX_COORDINATES, n_slopes: int = MAX_SLOPES
-) -> np.dtype[np.void]:
+def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
-    All that a step needs to know of a branch, with room for so many coordinates, shapes and twists.
+    All that a step needs to know of a branch, with room for so many coordinates.
 
-    Where no branch has more than one shape, records have no room for more: a forest is solved no
-    faster than its records come from memory.
+    Where no branch has more than its key rotation, records have no room for more: a forest is
+    solved no faster than its records come from memory.
 
     """
     return np.dtype(
@@ -49,14 +44,13 @@ def branch_layout(
             ("first", "i8"),  # its first segment
             ("end", "i8"),  # one past its last segment
             ("coordinate", "i8"),  # its first coordinate
-            ("n_coordinates", "i8"),  # pairs x, y, then twists
-            ("n_pairs", "i8"),
+            ("n_coordinates", "i8"),  # key rotation x, y, then further ones
             ("source", "i8"),  # branch whose motion it copies, itself if solved
             (
                 "frame",
                 "f8",
                 (3, 3),
-            ),  # b, e1, e2 as rows; x turns about e2, y about -e1, a twist about b
+            ),  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
             (
                 "twist",
                 "f8",
@@ -64,6 +58,7 @@ def branch_layout(
             ),  # motion of its base per unit of parent's coordinates
             ("push", "f8", (n_coordinates, 3)),  # displacement under the wind's mean push
             ("flow", "f8", (n_coordinates, 3)),  # displacement at which its drag damps
+            ("spread", "f8"),  # mean square of what pieces move beside that displacement
             ("reach", "f8", (n_coordinates, 3)),  # displacement of its tip
             ("tip", "f8", (3,)),  # tip at rest
             ("turn", "f8", (n_coordinates, 3)),  # rotation of what the wind sees
@@ -72,13 +67,13 @@ def branch_layout(
             ("area", "f8"),  # drag area [m^2]
             ("speed", "f8"),  # wind here over wind at the anemometer
             ("centre", "f8", (3,)),  # centre of the wind load
+            ("couple", "f8", (3, 3)),  # its moment about the root of the tree per force [m]
             ("projector", "f8", (6,)),  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
             ("block", "i8"),  # record of its first segment
             ("lane", "i8"),  # of all its segments
-            ("steepest", "f8", (n_slopes,)),  # square of the largest slope of each shape and twist
+            ("steepest", "f8", (n_coordinates,)),  # square of the most a unit of each turns it by
             ("skew", "f8"),  # third cumulant of its slope shape, over 6
             ("tip_skew", "f8"),  # the same of the tip-load shape
-            ("base_slope", "f8", (n_slopes,)),  # of the parent's shapes and twists at its base
             ("offset", "f8", (3,)),  # base, from its base segment's start, in that one's frame
         ]
     )
@@ -89,39 +84,71 @@ BRANCH = branch_layout()
 
 LANES = 16
 
+_LINE = 64
+"""Bytes of a cache line, and of the widest vector."""
+
+
+def _whole_lines(fields: list[tuple[Any, ...]]) -> np.dtype[np.void]:
+    """Fields of whole vectors first, the others behind, filled up to whole cache lines."""
+    packed: Any = np.dtype(sorted(fields, key=lambda field: len(field) < 3))
+    told: dict[str, Any] = dict(packed.fields or {})
+    return np.dtype(
+        {
+            "names": list(told),
+            "formats": [kind[0] for kind in told.values()],
+            "offsets": [kind[1] for kind in told.values()],
+            "itemsize": -(-packed.itemsize // _LINE) * _LINE,
+        }
+    )
+
+
+def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Any:
+    """Return so many records of zeros that begin where a cache line does."""
+    memory = np.zeros(count * layout.itemsize + _LINE, dtype=np.uint8)
+    first = -memory.ctypes.data % _LINE
+    return memory[first : first + count * layout.itemsize].view(layout)
+
 
 @cache
-def segment_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
-    """All that placing needs to know of one segment of each of sixteen branches."""
-    return np.dtype(
+def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+    """
+    All that placing needs to know of one segment of each of sixteen branches; where no branch has
+    more than its key rotation, there is no room for what further coordinates turn it by.
+
+    """
+    rows = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
+    return _whole_lines(
         [
-            ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
-            ("slope", "f8", (n_slopes, LANES)),  # of each shape, then of each twist
+            ("slope", "f8", (LANES,)),  # by which a plain branch is drawn
             ("tip_slope", "f8", (LANES,)),  # of the shape under a load at the tip
             ("chord", "f8", (3, LANES)),  # from its start to the next one's start, at rest
+            ("reach", "f8", (3, LANES)),  # the same in its own frame
             ("rest", "f8", (4, LANES)),  # orientation at rest, w x y z
+            ("turn", "f8", (*rows, LANES)),  # rotation vector per unit of each coordinate
+            ("n_lanes", "i8"),  # how many of the sixteen have a segment here, the first ones
         ]
     )
 
 
 @cache
-def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
+def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
     What placing needs to know of the sixteen branches of a block, and finds.
 
     All work in the last record, behind the last block's, so that it stays in the fastest cache.
 
     """
-    return np.dtype(
+    return _whole_lines(
         [
             ("block", "i8"),  # first record of their segments
             ("n_records", "i8"),
             ("n_lanes", "i8"),
-            ("is_plain", "i8"),  # whether none of them has more than one shape
+            ("n_rows", "i8"),  # most coordinates that one of them has; 2 where all are plain
+            ("is_joined", "i8"),  # whether each segment starts where the one before ends
             # As in `BRANCH`:
             ("branch", "i8", (LANES,)),
             ("parent", "i8", (LANES,)),
-            ("is_parent_plain", "i8", (LANES,)),  # whether its parent has one shape
+            ("is_parent_plain", "i8", (LANES,)),  # whether its parent has two coordinates
             ("coordinate", "i8", (LANES,)),
             ("base_segment", "i8", (LANES,)),
             ("first", "i8", (LANES,)),
@@ -129,7 +156,8 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
             ("skew", "f8", (LANES,)),
             ("tip_skew", "f8", (LANES,)),
             ("steepest", "f8", (LANES,)),
-            ("base_slope", "f8", (LANES,)),
+            # Rotation of its base per unit of the first two of its parent's coordinates:
+            ("base_turn", "f8", (2, 3, LANES)),
             ("offset", "f8", (3, LANES)),
             # Scratch:
             ("key", "f8", (2, LANES)),  # key rotation
@@ -140,34 +168,31 @@ def head_layout(n_slopes: int = MAX_SLOPES) -> np.dtype[np.void]:
                 "f8",
                 (3, LANES),
             ),  # half the rotation vector at the base, from the parent's base
-            (
-                "turn",
-                "f8",
-                (3, LANES),
-            ),  # half the rotation vector per unit of slope, as children see it
+            ("bent", "f8", (2, LANES)),  # half the key rotation, stretched, as children see it
             ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
-            ("half_turn", "f8", (n_slopes, 3, LANES)),  # half the rotation vector per unit of slope
-            ("square", "f8", (LANES,)),  # of the length of the first of these
+            ("half_turn", "f8", (3, LANES)),  # half the rotation vector per unit of slope
+            ("half_key", "f8", (n_coordinates, LANES)),  # half of each coordinate, stretched
+            ("square", "f8", (LANES,)),  # of the length of half_turn
             (
                 "swing",
                 "f8",
                 (4, LANES),
-            ),  # the first of these, then the base: what a sine is multiplied by
+            ),  # half_turn, then the base: what a sine is multiplied by
             (
                 "half_angle",
                 "f8",
                 (LANES,),
             ),  # bound on the square of half of what segments turn by [rad^2]
             ("at", "f8", (3, LANES)),  # where the segment starts
-            ("ahead", "f8", (3, LANES)),  # its chord when placed
+            ("next", "f8", (3, LANES)),  # where the one after it starts
             ("pose", "f8", (4, LANES)),  # its orientation when placed, w x y z
         ]
     )
 
 
 SEGMENT = segment_layout()
-"""With room for every shape and twist."""
+"""With room for every coordinate."""
 
 WORK = np.dtype(
     [
@@ -176,8 +201,7 @@ WORK = np.dtype(
         ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
         ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
-        # Half the rotation vector per unit of slope, for who sits on a branch of one shape:
-        ("turn", "f8", (3,)),
+        ("key", "f8", (2,)),  # half the key rotation, stretched, for who sits on a plain branch
     ]
 )
 """What a step computes on the way, kept from one step to the next."""
@@ -193,9 +217,11 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
     return [
         ("n_rows", "i8"),  # the most coordinates that one of them has
         ("is_solved", "i8", (LANES,)),  # whether it copies no other
+        ("delay", "i8", (LANES,)),  # which delay of `crown_wind` it has
         # As in `BRANCH`:
         ("speed", "f8", (LANES,)),
         ("area", "f8", (LANES,)),
+        ("spread", "f8", (LANES,)),
         ("projector", "f8", (6, LANES)),
         ("centre", "f8", (3, LANES)),
         ("flow", "f8", (n_coordinates, 3, LANES)),
@@ -204,6 +230,8 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         ("along", "f8", (3, LANES)),  # its chord times its lever
         # Set with the time step:
         ("compliance", "f8", (LANES,)),  # velocity half a step after a unit of force [s/kg]
+        # Set with the wind:
+        ("gust", "f8", (3, LANES)),  # by which its own wind differs from the tree's [m/s]
         # State half a step on, and what follows from it:
         ("x", "f8", (n_coordinates, LANES)),
         ("v", "f8", (n_coordinates, LANES)),
@@ -222,10 +250,10 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
 @cache
 def load_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """Records of `load_fields`."""
-    return np.dtype(load_fields(n_coordinates))
+    return _whole_lines(load_fields(n_coordinates))
 
 
-OSCILLATORS = np.dtype(
+OSCILLATORS = _whole_lines(
     [
         *load_fields(2),
         ("now_x", "f8", (2, LANES)),

@@ -13,12 +13,14 @@ how the error of the lesser one is known without running the greater.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
 
 Complexes = NDArray[np.complex128]
@@ -85,13 +87,24 @@ def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
         Displacement of the tip of each branch, (b, 3, ...).
 
     """
-    base = base_motion(branches, rotations)
-    tips = carried_to(base, branches["tip"])
-    for tip, branch in zip(tips, branches, strict=True):
-        k = int(branch["n_coordinates"])
-        own = rotations[branch["coordinate"] : branch["coordinate"] + k]
-        tip += np.tensordot(branch["reach"][:k], own, axes=(0, 0))
+    tips = carried_to(base_motion(branches, rotations), branches["tip"])
+    for own, rows in _moved(branches, rotations):
+        tips[rows] += _sums(branches["reach"][rows, : own.shape[1]], own)
     return tips
+
+
+def _moved(branches: Any, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
+    """Rotations (k, c, ...) of those branches (k,) that have as many coordinates, c."""
+    for count in np.unique(branches["n_coordinates"]):
+        rows = np.flatnonzero(branches["n_coordinates"] == count)
+        yield rotations[branches["coordinate"][rows, None] + np.arange(count)], rows
+
+
+def _sums(ways: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
+    """Motion (k, d, ...) of branches by what a unit of each coordinate moves, (k, c, d)."""
+    flat = rotations.reshape(*rotations.shape[:2], math.prod(rotations.shape[2:]))
+    moved = np.swapaxes(ways, 1, 2) @ flat
+    return moved.reshape(len(ways), ways.shape[2], *rotations.shape[2:])
 
 
 def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
@@ -101,12 +114,15 @@ def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
 
     """
     base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
-    for b, branch in enumerate(branches):
-        if branch["parent"] >= 0:
-            parent = branches[branch["parent"]]
-            k = int(parent["n_coordinates"])
-            moved = rotations[parent["coordinate"] : parent["coordinate"] + k]
-            base[b] = base[branch["parent"]] + np.tensordot(branch["twist"][:k], moved, axes=(0, 0))
+    parents = branches["parent"]
+    for own, rows in _moved(branches, rotations):
+        place = np.full(len(branches) + 1, -1)
+        place[rows] = np.arange(len(rows))
+        children = np.flatnonzero(place[parents] >= 0)
+        ways = branches["twist"][children, : own.shape[1]]
+        base[children] = _sums(ways, own[place[parents[children]]])
+    for branch in np.flatnonzero(parents > 0):  # children of the stem have all that is theirs
+        base[branch] += base[parents[branch]]
     return base
 
 

@@ -33,9 +33,9 @@ class RigidParts:
         Moving branch that each one sits on, its index among the moving ones, (t,).
     rows
         Its base segment, its first segment and one past its last, rows of the pose block, (t, 3).
-    base_slope, offset
-        Slopes of the parent's shapes at its base, (t, c), and its base from that segment's start in
-        its frame in [m], (t, 3).
+    base_turn, offset
+        Rotation of its base per unit of the parent's coordinates, (t, c, 3), and its base from that
+        segment's start in its frame in [m], (t, 3).
     arm, rest
         Start of each segment of the tree from the base it moves with, at rest, in [m], (n, 3), and
         orientation at rest, w x y z, (n, 4); those of moving segments are not read.
@@ -44,7 +44,7 @@ class RigidParts:
 
     parent: Ints
     rows: Ints
-    base_slope: Floats
+    base_turn: Floats
     offset: Floats
     arm: Floats
     rest: Floats
@@ -71,7 +71,7 @@ class RigidParts:
         return RigidParts(
             pruning.place_among_moving[tree.branch_parent[tops]],
             np.stack([tree.segment_parent[first], first, end], axis=1),
-            branches["base_slope"][tops].copy(),
+            branches["twist"][tops, :, 3:].copy(),
             branches["offset"][tops].copy(),
             tree.start - base,
             tree.rest_frame,
@@ -92,19 +92,19 @@ class RigidParts:
 
         """
         _place(
-            self.parent, self.rows, self.base_slope, self.offset, self.arm, self.rest,
+            self.parent, self.rows, self.base_turn, self.offset, self.arm, self.rest,
             branches, work, x, out,
         )  # fmt: skip
 
 
 @fused
 def _place(
-    parents: Ints, rows: Ints, base_slope: Floats, offset: Floats, arm: Floats, rest: Floats,
+    parents: Ints, rows: Ints, base_turn: Floats, offset: Floats, arm: Floats, rest: Floats,
     branches: Any, work: Any, x: Floats, out: Floats,
 ) -> None:  # fmt: skip
     for t in range(len(parents)):
         on, below = rows[t, 0], work[parents[t]].base
-        w, i, j, k = turn_at(branches[parents[t]], base_slope[t], x)
+        w, i, j, k = turn_at(branches[parents[t]], base_turn[t], x)
         w, i, j, k = product(below[0], below[1], below[2], below[3], w, i, j, k)
         px, py, pz = rotated(
             out[on, 6], out[on, 3], out[on, 4], out[on, 5],

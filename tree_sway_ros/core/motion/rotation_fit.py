@@ -4,7 +4,7 @@
 Key rotations that come nearest to given poses: the way back from segments to branches.
 
 From the root out, each branch's base is turned as placing would turn it; what its segments are
-turned by beyond that is fitted by the branch's shapes and twists, by least squares weighted with
+turned by beyond that is fitted by the branch's coordinates, by least squares weighted with
 the lengths of the segments.
 
 """
@@ -17,11 +17,14 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.shapes import N_SHAPES
 from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.motion.placing import turn_at
 from tree_sway_ros.core.rotation import product
 from tree_sway_ros.core.tree.tree import Tree
+
+_LEAST = 1e-4
+"""Singular values of the turns of a branch, over the largest, below which they are none."""
 
 
 class RotationFit:
@@ -41,19 +44,14 @@ class RotationFit:
         """Invert the shapes of every branch."""
         self._branches = branches
         self._rest = tree.rest_frame
-        n_slopes = segments["slope"].shape[1]
-        self._inverse = np.zeros((tree.n_segments, n_slopes))
+        self._inverse = np.zeros((tree.n_segments, branches["push"].shape[1], 3))
         for b, branch in enumerate(branches):
             here = tree.segments_of(b)
-            rows = slice(branch["block"], branch["block"] + here.stop - here.start)
-            slopes = segments["slope"][rows, :, branch["lane"]]
-            root = np.sqrt(tree.length[here])[:, None]
-            pairs = int(branch["n_pairs"])
-            twists = int(branch["n_coordinates"]) - 2 * pairs
-            for columns in (range(pairs), range(N_SHAPES, N_SHAPES + twists)):
-                if columns:
-                    inverse = np.linalg.pinv(root * slopes[:, columns]) * root.T
-                    self._inverse[here, columns.start : columns.stop] = inverse.T
+            turns = turns_of_segments(branch, segments)
+            root = np.repeat(np.sqrt(tree.length[here]), 3)
+            columns = root[:, None] * turns.transpose(0, 2, 1).reshape(len(root), -1)
+            inverse = (np.linalg.pinv(columns, rcond=_LEAST) * root).reshape(len(turns[0]), -1, 3)
+            self._inverse[here, : len(turns[0])] = inverse.transpose(1, 0, 2)
         self._base = np.zeros((len(branches), 4))
         self._x = np.zeros(int(branches["n_coordinates"].sum()))
 
@@ -73,11 +71,10 @@ def _fit(
     x[:] = 0.0
     for b in range(len(branches)):
         branch = branches[b]
-        i, pairs, frame, base = branch.coordinate, branch.n_pairs, branch.frame, bases[b]
-        twists = branch.n_coordinates - 2 * pairs
+        i, base = branch.coordinate, bases[b]
         base[0], base[1], base[2], base[3] = 1.0, 0.0, 0.0, 0.0
         if branch.parent >= 0:
-            w, a, c, d = turn_at(branches[branch.parent], branch.base_slope, x)
+            w, a, c, d = turn_at(branches[branch.parent], branch.twist[:, 3:], x)
             p = bases[branch.parent]
             base[0], base[1], base[2], base[3] = product(p[0], p[1], p[2], p[3], w, a, c, d)
         for s in range(branch.first, branch.end):
@@ -89,14 +86,9 @@ def _fit(
                 w, a, c, d = -w, -a, -c, -d
             factor = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
             a, c, d = factor * a, factor * c, factor * d
-            ux = a * frame[2, 0] + c * frame[2, 1] + d * frame[2, 2]
-            uy = -(a * frame[1, 0] + c * frame[1, 1] + d * frame[1, 2])
-            spin = a * frame[0, 0] + c * frame[0, 1] + d * frame[0, 2]
-            for k in range(pairs):
-                x[i + 2 * k] += inverse[s, k] * ux
-                x[i + 2 * k + 1] += inverse[s, k] * uy
-            for k in range(twists):
-                x[i + 2 * pairs + k] += inverse[s, N_SHAPES + k] * spin
+            for k in range(branch.n_coordinates):
+                per = inverse[s, k]
+                x[i + k] += per[0] * a + per[1] * c + per[2] * d
         # Placing stretches the first shape by 1 + skew t: take that back.
         ux, uy = x[i], x[i + 1]
         for _ in range(4):

@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import Any
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import fused, kernel
 from tree_sway_ros.core.motion.drag import drag
 from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import turned
@@ -49,6 +49,17 @@ def outward_pass(branches: Any, work: Any, x: Floats, v: Floats) -> None:
                 here.velocity[k] += twist[c, k] * rate
             for k in range(3):
                 here.rotation[k] += twist[c, 3 + k] * angle
+
+
+@kernel
+def blow(loads: Any, apart: Floats) -> None:
+    """Give every branch the wind of its delay: by how much it differs from the tree's (d, 3)."""
+    for block in range(len(loads)):
+        here = loads[block]
+        for j in range(LANES):
+            own = here.delay[j]
+            for k in range(3):
+                here.gust[k, j] = apart[own, k]
 
 
 @fused
@@ -121,22 +132,24 @@ def _move_loads(loads: Any) -> None:
 @fused
 def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
     """Find the force on sixteen branches, drag in the frame of each as it is turned."""
-    speed, motion, turn, base, slip = (
-        loads.speed, loads.motion, loads.turned, loads.base, loads.slip,
+    speed, motion, turn, base, slip, gust = (
+        loads.speed, loads.motion, loads.turned, loads.base, loads.slip, loads.gust,
     )  # fmt: skip
-    force, turned_force, p = loads.force, loads.turned_force, loads.projector
+    force, turned_force, p, v = loads.force, loads.turned_force, loads.projector, loads.v
     for j in range(LANES):
         tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
         ux, uy, uz = turned(
             -tx, -ty, -tz,
-            speed[j] * wx - motion[0, j], speed[j] * wy - motion[1, j],
-            speed[j] * wz - motion[2, j],
+            speed[j] * (wx + gust[0, j]) - motion[0, j],
+            speed[j] * (wy + gust[1, j]) - motion[1, j],
+            speed[j] * (wz + gust[2, j]) - motion[2, j],
         )  # fmt: skip
         beta = loads.compliance[j]
         ux, uy, uz = ux + beta * slip[0, j], uy + beta * slip[1, j], uz + beta * slip[2, j]
         fx, fy, fz, f = drag(
             p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
             per_speed_squared * loads.area[j], beta, ux, uy, uz,
+            loads.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
         )  # fmt: skip
         slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
         fx, fy, fz = turned(tx, ty, tz, fx, fy, fz)
@@ -211,12 +224,13 @@ def inward_pass(branches: Any, work: Any) -> None:
 
     """
     for b in range(len(branches)):
-        here, centre = work[b], branches[b].centre
+        here, couple = work[b], branches[b].couple
         force, wrench = here.force, here.wrench
         wrench[0], wrench[1], wrench[2] = force[0], force[1], force[2]
-        wrench[3] = centre[1] * force[2] - centre[2] * force[1]
-        wrench[4] = centre[2] * force[0] - centre[0] * force[2]
-        wrench[5] = centre[0] * force[1] - centre[1] * force[0]
+        for k in range(3):
+            wrench[3 + k] = (
+                couple[k, 0] * force[0] + couple[k, 1] * force[1] + couple[k, 2] * force[2]
+            )
     for b in range(len(branches) - 1, 0, -1):
         wrench, below = work[b].wrench, work[branches[b].parent].wrench
         for k in range(6):

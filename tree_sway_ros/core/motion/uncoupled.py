@@ -72,6 +72,11 @@ class UncoupledBank:
         self._pull = np.zeros(n)
         self._banks = load_records(branches, OSCILLATORS)
 
+    @property
+    def loads(self) -> Any:
+        """Records of `load_fields`, and what the oscillators add."""
+        return self._banks
+
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         n = len(self.branches)

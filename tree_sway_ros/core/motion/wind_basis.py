@@ -13,13 +13,15 @@ table, the step is one of `modes`, told by `outside`.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.wind_basis_force import (
@@ -72,6 +74,7 @@ class WindBasisBank:
 
     carries = True
     is_tabled = True
+    loads: Any | None = None
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
         """Stand at rest."""
@@ -93,10 +96,20 @@ class WindBasisBank:
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
-        if not _advance(self.record, self.pace, self.instance, wx, wy, wz, per_speed_squared):
+        if not self._step(wx, wy, wz, per_speed_squared):
             return 0
         self.n_outside += 1
         return step_outside(self.instance[0], self.modal, self.all_shapes, self._x)
+
+    @cached_property
+    def _step(self) -> Callable[..., int]:
+        arrays = self.record, self.pace, self.instance
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    @cached_property
+    def _expand(self) -> Callable[[], None]:
+        arrays = self.record, self.instance, self.all_shapes, self._x
+        return partial(entry_of(expand_one, *arrays), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """As `ModalBank.response`."""
@@ -108,7 +121,7 @@ class WindBasisBank:
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
-        _rotations(self.record, self.instance, self.all_shapes, self._x)
+        self._expand()
         return self._x
 
     def forces(self) -> Floats:
@@ -208,16 +221,23 @@ def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
             table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
             instance.values, instance.rest,
         )  # fmt: skip
+    eta, rest, n = instance.eta, instance.rest, len(shapes) - N_REST
     x[:] = 0.0
-    for k in range(len(shapes)):
-        n = table.n_modes
-        amount = instance.eta[k] if k < n else instance.rest[k - n]
+    for k in range(n):
         for i in range(len(x)):
-            x[i] += shapes[k, i] * amount
+            x[i] += shapes[k, i] * eta[k]
+    for r in range(0, N_REST, 4):
+        a, b, c, d, k = rest[r], rest[r + 1], rest[r + 2], rest[r + 3], n + r
+        for i in range(len(x)):
+            x[i] += (
+                shapes[k, i] * a + shapes[k + 1, i] * b + shapes[k + 2, i] * c
+                + shapes[k + 3, i] * d
+            )  # fmt: skip
 
 
 @fused
-def _rotations(tables: Any, instances: Any, shapes: Floats, x: Floats) -> None:
+def expand_one(tables: Any, instances: Any, shapes: Floats, x: Floats) -> None:
+    """Do what `expand` does, for the first record of each array."""
     expand(tables[0], instances[0], shapes, x)
 
 

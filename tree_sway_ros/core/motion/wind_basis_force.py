@@ -17,7 +17,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.harmonics import fill_harmonics
 
-N_AZIMUTHS, N_LEVELS, N_REST = 24, 5, 24
+N_AZIMUTHS, N_LEVELS, N_REST = 24, 5, 16
 """Azimuths of the wind and levels of the lean in the table, and shapes of the static rest."""
 
 _MODES_TOGETHER = 4

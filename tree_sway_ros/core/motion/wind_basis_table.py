@@ -24,7 +24,7 @@ with V the few shapes that the static rest of the modes left out takes.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -45,10 +45,11 @@ from tree_sway_ros.core.motion.wind_basis_force import (
     wind_rest,
 )
 
-SPEEDS = np.array([0.0, 7.0, 11.0, 16.0, 22.0])
+FASTEST = 22.0
 """
-Winds in [m/s] whose static deflections are the levels; a share of them for a tree that bends so far
-that the table would be wrong.
+Wind in [m/s] whose static deflection is the last level; each level before it is that of half the
+dynamic pressure of an even drag. A tree that bends so far that the table would be wrong has its
+levels further down.
 
 """
 
@@ -61,11 +62,25 @@ BEYOND = 1.6
 _ELEVATIONS = np.deg2rad([-45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0])
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
-_REST_LEVEL = 1
 _SWING = 0.3
-_DIFFERENCE = 1e-3
-_SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.17, 0.1)
-_MOST_WRONG = 0.004
+_DIFFERENCE = 1e-4
+_LOWEST = 6
+_MOST_WRONG = 0.007
+_TRIALS = 200
+
+_ASKED = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, 2) / N_AZIMUTHS
+"""Azimuths at which loads are found; those between follow, for loads are smooth in the azimuth."""
+
+
+class _Level(NamedTuple):
+    """What the wind does to a tree that leans along it, by azimuth."""
+
+    pressure: float
+    load: Floats
+    rest: Floats
+    turning: Floats
+    damping: Floats
+    rest_slopes: Floats | None
 
 
 class WindBasisTable:
@@ -104,13 +119,18 @@ class WindBasisTable:
         table["n_modes"], table["degree"] = m, degree
         table["stiffness"] = 1.0
         table["stiffness"][:m] = bank.stiffness
-        rests = self._fit_harmonics(table, degree)
-        for share in _SHARES:
-            self._set_levels(table, drag_law, share)
-            self._fill_azimuths(table, degree, rests)
+        self._along = harmonics_at(direction(_ASKED, 0.0), degree)
+        self._rests = self._fit_harmonics(table, degree)
+        self._fill_slopes(table)
+        levels = [self._level(0.0)]
+        levels += [self._level(_pressure(k, drag_law), lowest=k == 3) for k in (3, 2, 1, 0)]
+        for lowest in range(N_LEVELS - 1, N_LEVELS + _LOWEST):
+            self._fill_levels(table, levels)
             self.error = self._tried(table, degree)
             if self.error <= _MOST_WRONG:
                 break
+            below = self._level(_pressure(lowest, drag_law), lowest=True)
+            levels = [levels[0], below, levels[1]._replace(rest_slopes=None), *levels[2:-1]]
 
     def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         """Moments of a wind of 1 kg/m^3 on a tree at x that moves at v, (N,)."""
@@ -123,16 +143,11 @@ class WindBasisTable:
 
     def _slopes(self, at: Floats, wind: Floats, ways: Floats, *, rates: bool = False) -> Floats:
         """Slope of the moments by each way (k, N) that the tree can bend or move, (k, N)."""
-        slopes = np.zeros_like(ways)
+        slopes, here = np.zeros_like(ways), self._moments(at, self._still, wind)
         for row, way in zip(slopes, ways, strict=True):
             size = _DIFFERENCE / max(float(np.abs(way).max()), 1e-12)
-            step = size * way
-            if rates:
-                gap = self._moments(at, step, wind) - self._moments(at, -step, wind)
-            else:
-                gap = self._moments(at + step, self._still, wind)
-                gap -= self._moments(at - step, self._still, wind)
-            row[:] = gap / (2.0 * size)
+            x, v = (at, size * way) if rates else (at + size * way, self._still)
+            row[:] = (self._moments(x, v, wind) - here) / size
         return slopes
 
     def _rest_of(self, moments: Floats) -> Floats:
@@ -154,56 +169,79 @@ class WindBasisTable:
         table["harmonics"][:, : table["n_modes"]] = fitted @ self._shapes
         return self._rest_of(fitted)
 
-    def _set_levels(self, table: Any, drag_law: DragLaw, share: float) -> None:
-        """Set the levels for a share of the usual winds, and how far the table goes on."""
-        table["levels"] = [pressure(u, *drag_law) * u**2 for u in share * SPEEDS]
-        table["most_pressure"] = BEYOND * table["levels"][-1]
-        table["lean"], table["most_energy"] = 0.0, 0.0
-
-    def _fill_azimuths(self, table: Any, degree: int, rests: Floats) -> None:
-        """Fill loads and slopes by azimuth and level, then the rest."""
+    def _fill_slopes(self, table: Any) -> None:
+        """Fill the deflections in level winds, and what winds aslant and stronger ones change."""
         m, shapes = int(table["n_modes"]), self._shapes
         stiffness = table["stiffness"][:m]
-        rest = np.zeros((N_AZIMUTHS, N_LEVELS, len(shapes)))
-        by_mode = np.zeros((2, N_AZIMUTHS, m, len(shapes)))
-        energy = 0.0
-        for k, azimuth in enumerate(2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS):
-            ahead = direction(azimuth, 0.0)
-            values = harmonics_at(ahead[None], degree)[0]
-            static = values @ table["harmonics"][:, :m] / stiffness
-            table["static"][k, :m] = static
-            twice = float(static @ (stiffness * static))
-            table["amount"][k, :m] = static * stiffness / twice if twice > 0.0 else 0.0
-            energy = max(energy, twice * table["levels"][-1] ** 2)
-            way = values @ rests
-            table["excess"][k, :m] = self._slopes(self._still, ahead, way[None])[0] @ shapes
+        azimuths = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
+        along = harmonics_at(direction(azimuths, 0.0), int(table["degree"]))
+        static = along @ table["harmonics"][:, :m] / stiffness
+        twice = (static**2 @ stiffness)[:, None]
+        table["static"][:, :m] = static
+        table["amount"][:, :m] = static * stiffness / np.where(twice > 0.0, twice, 1.0)
+        self._twice = float(twice.max())
+        excess, lean = np.zeros((len(_ASKED), m)), np.zeros((len(_ASKED), m, m))
+        for k, azimuth in enumerate(_ASKED):
+            way = self._along[k] @ self._rests
+            excess[k] = self._slopes(self._still, direction(azimuth, 0.0), way[None])[0] @ shapes
             for sign in (1.0, -1.0):
                 slant = direction(azimuth, sign * _SLOPE_AT)
                 slopes = self._slopes(self._still, slant, shapes.T)
-                table["lean"][k, :m, :m] += sign * slopes @ shapes / (2.0 * np.sin(_SLOPE_AT))
-            upright = self._moments(self._still, self._still, ahead)
-            for j, level in enumerate(table["levels"]):
-                at = level * (shapes @ static + way)
-                further = self._moments(at, self._still, ahead) - upright
-                table["load"][k, j, :m] = further @ shapes
-                rest[k, j] = self._rest_of(further[None])[0]
-                for kind, name in enumerate(("turning", "damping")):
-                    slopes = self._slopes(at, ahead, shapes.T, rates=name == "damping")
-                    table[name][k, j, :m, :m] = slopes @ shapes
-                    if j == _REST_LEVEL:
-                        by_mode[kind, k] = self._rest_of(slopes)
-        table["most_energy"] = 2.0 * energy
-        self._fill_rest(table, rests, rest, by_mode)
+                lean[k] += sign * slopes @ shapes / (2.0 * np.sin(_SLOPE_AT))
+        table["excess"][:, :m] = _between(excess)
+        table["lean"][:, :m, :m] = _between(lean)
 
-    def _fill_rest(self, table: Any, rests: Floats, rest: Floats, by_mode: Floats) -> None:
+    def _level(self, pressure: float, *, lowest: bool = False) -> _Level:
+        """
+        Ask the tree for its loads where it leans as a dynamic pressure [kg/m/s^2] holds it.
+
+        The slopes of the rest are large, and wanted of the lowest lean alone.
+
+        """
+        shapes, count = self._shapes, len(_ASKED)
+        n, m = shapes.shape
+        level = _Level(
+            pressure, np.zeros((count, m)), np.zeros((count, n)), np.zeros((count, m, m)),
+            np.zeros((count, m, m)), np.zeros((2, count, m, n)) if lowest else None,
+        )  # fmt: skip
+        for k, azimuth in enumerate(_ASKED):
+            ahead = direction(azimuth, 0.0)
+            static = self.record[0]["static"][2 * k, :m]
+            at = pressure * (shapes @ static + self._along[k] @ self._rests)
+            upright = self._moments(self._still, self._still, ahead)
+            further = self._moments(at, self._still, ahead) - upright
+            level.load[k] = further @ shapes
+            level.rest[k] = self._rest_of(further[None])[0]
+            for kind, into in enumerate((level.turning, level.damping)):
+                slopes = self._slopes(at, ahead, shapes.T, rates=kind == 1)
+                into[k] = slopes @ shapes
+                if level.rest_slopes is not None:
+                    level.rest_slopes[kind, k] = self._rest_of(slopes)
+        return level
+
+    def _fill_levels(self, table: Any, levels: list[_Level]) -> None:
+        """Fill what the lean changes, and how far the table goes on."""
+        m = int(table["n_modes"])
+        table["levels"] = [level.pressure for level in levels]
+        table["most_pressure"] = BEYOND * table["levels"][-1]
+        table["most_energy"] = 2.0 * self._twice * table["levels"][-1] ** 2
+        for j, level in enumerate(levels):
+            table["load"][:, j, :m] = _between(level.load)
+            table["turning"][:, j, :m, :m] = _between(level.turning)
+            table["damping"][:, j, :m, :m] = _between(level.damping)
+        rest = np.stack([level.rest for level in levels], axis=1)
+        assert levels[1].rest_slopes is not None
+        self._fill_rest(table, rest, levels[1].rest_slopes)
+
+    def _fill_rest(self, table: Any, rest: Floats, by_mode: Floats) -> None:
         """Lay the rest out on the few shapes that move the tips most in winds."""
-        m, n, levels = int(table["n_modes"]), rests.shape[1], table["levels"]
-        top = levels[_REST_LEVEL]
+        m, levels, rests = int(table["n_modes"]), table["levels"], self._rests
+        n, top = rests.shape[1], levels[1]
         moved = _SWING * top * np.abs(table["static"][:, :m]).max(axis=0)[:, None]
         pace = moved * np.sqrt(table["stiffness"][:m] / top)[:, None]
         parts = {
             "rest_harmonics": (rests, top),
-            "rest": (rest, np.maximum(levels, levels[1])[:, None]),
+            "rest": (rest, np.maximum(levels, top)[:, None]),
             "rest_turning": (by_mode[0], top * moved),
             "rest_damping": (by_mode[1], top * pace),
         }
@@ -219,6 +257,7 @@ class WindBasisTable:
         for name, (part, size) in parts.items():
             rows = part.size // n
             amounts = share[first : first + rows].reshape(*part.shape[:-1], N_REST) / size
+            amounts = amounts if name == "rest_harmonics" else _between(amounts)
             table[name][tuple(map(slice, amounts.shape))] = amounts
             first += rows
 
@@ -232,7 +271,7 @@ class WindBasisTable:
         for _ in range(_TRIALS):
             azimuth, elevation = rng.uniform(0.0, 2.0 * np.pi), rng.normal(0.0, 0.15)
             wind = direction(azimuth, elevation)
-            push, lean = rng.uniform(0.05, 1.0, 2) * table["levels"][-2]
+            push, lean = rng.uniform(0.05, 1.0, 2) * table["levels"][-1]
             side = direction(azimuth + rng.normal(0.0, 0.3), 0.0)
             at = harmonics_at(side[None], degree)[0]
             eta = np.zeros(len(stiffness))
@@ -247,7 +286,18 @@ class WindBasisTable:
         return float(np.sqrt(wrong / right)) if right > 0.0 else 0.0
 
 
-_TRIALS = 200
+def _pressure(number: int, drag_law: DragLaw) -> float:
+    """Dynamic pressure of a level in [kg/m/s^2], the last one's number being 0."""
+    speed = FASTEST * 0.5 ** (0.5 * number)
+    return pressure(speed, *drag_law) * speed**2
+
+
+def _between(asked: Floats) -> Floats:
+    """Values at `N_AZIMUTHS` of a smooth function, first axis, that is known at every other one."""
+    waves = np.fft.rfft(asked, axis=0)
+    waves[-1] *= 0.5
+    found: Floats = np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked))
+    return found
 
 
 def direction(azimuth: Any, elevation: Any) -> Floats:

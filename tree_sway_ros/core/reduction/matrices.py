@@ -29,7 +29,7 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import cross_matrix
+from tree_sway_ros.core.branch.beam import cross, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
 from tree_sway_ros.core.branch.shapes import MAX_COORDINATES
 from tree_sway_ros.core.tree.tree import Tree
@@ -45,7 +45,7 @@ class Reduction:
     first
         First coordinate of each branch, and N at the end, (b + 1,).
     partner
-        Coordinate of the same shape about the other axis, itself for a twist, (N,).
+        The other one of a key rotation x, y; itself for a further coordinate, (N,).
     twist
         Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
         (b, 9, 6).
@@ -118,7 +118,7 @@ def reduce_tree(
 
     """
     n_branches = tree.n_branches
-    first = np.concatenate([[0], np.cumsum([len(m.coordinates) for m in models])]).astype(np.int64)
+    first = np.concatenate([[0], np.cumsum([len(m.fields) for m in models])]).astype(np.int64)
     partner = np.arange(first[-1])
     momentum = np.zeros((first[-1], 6))
     twist = np.zeros((n_branches, MAX_COORDINATES, 6))
@@ -127,8 +127,7 @@ def reduce_tree(
     for branch in range(n_branches - 1, -1, -1):
         model = models[branch]
         own = slice(int(first[branch]), int(first[branch + 1]))
-        paired = own.start + sum(not one.is_twist for one in model.coordinates)
-        partner[own.start : paired] = partner[own.start : paired].reshape(-1, 2)[:, ::-1].ravel()
+        partner[own.start : own.start + 2] = own.start + 1, own.start
         fields, twists = _motions(model)
         dm = model.mass * model.beam.weight
         moved = dm[..., None] * fields
@@ -191,22 +190,17 @@ def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     Displacement at the points (k, m, 5, 3) and twist on the children (k, c, 6) of each coordinate.
 
     """
-    fields = [one.field.points for one in model.coordinates]
+    places = model.beam.child_point
     twists = [
-        np.hstack(
-            [
-                one.field.children - np.cross(one.field.child_slope, model.beam.child_point),
-                one.field.child_slope,
-            ]
-        )
-        for one in model.coordinates
+        np.hstack([one.children - cross(one.child_slope, places), one.child_slope])
+        for one in model.fields
     ]
-    return np.stack(fields), np.stack(twists)
+    return np.stack([one.points for one in model.fields]), np.stack(twists)
 
 
 def _own_elastic(model: BranchModel, modulus: float, shear_modulus: float) -> Floats:
     """Energy between the coordinates of a branch in [N m/rad]."""
-    fields = [one.field for one in model.coordinates]
+    fields = model.fields
     return np.array([[a.stiffness(b, modulus, shear_modulus) for b in fields] for a in fields])
 
 
@@ -241,8 +235,8 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     masses = bodies[:, 0, 0]
     if len(masses):
         beyond = beyond + beam.child_lever[1] @ masses
-    slopes = [one.field.slope for one in model.coordinates]
-    child_slopes = [one.field.child_slope for one in model.coordinates]
+    slopes = [one.slope for one in model.fields]
+    child_slopes = [one.child_slope for one in model.fields]
     lever = beam.weight[..., None] * beyond[..., None] * beam.tangent[:, None, :]
     moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
     hanging = moment - masses[:, None] * beam.child_point

@@ -74,6 +74,8 @@ class ArticulatedTree:
         Wind at each segment over the wind given to `step`, (n,); 1 if None.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
+    root_stiffness
+        Of the spring that holds the root in [N m/rad].
 
     """
 
@@ -96,13 +98,16 @@ class ArticulatedTree:
         wind_factor: ArrayLike | None = None,
         leaf_mass: Floats | None = None,
         leaf_area: Floats | None = None,
+        root_stiffness: float = math.inf,
     ) -> None:
         need_compiler("the model 'segments'")
         self.tree = tree
         self.subdivisions = subdivisions
         cut = refined(tree, subdivisions)
         leaves = (self._along(leaf_mass), self._along(leaf_area))
-        self.bodies = articulated_bodies(cut, modulus, density, gravity, twist_ratio, *leaves)
+        self.bodies = articulated_bodies(
+            cut, modulus, density, gravity, twist_ratio, *leaves, root_stiffness
+        )
         n = cut.n_segments
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
         self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
@@ -111,7 +116,7 @@ class ArticulatedTree:
         self._wind = np.zeros((n, 3))
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
-        self._gravity = gravity
+        self._gravity, self._damped_modes = gravity, damped_modes
         if rayleigh is None:
             by_mass, by_stiffness, by_mode, momentum = self._even_damping(
                 damping_ratio, damped_modes
@@ -140,6 +145,23 @@ class ArticulatedTree:
             return np.zeros(tree.n_segments * self.subdivisions)
         each = one_of_each("leaves", leaves, tree.n_branches, "branch")
         return np.repeat((each / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
+
+    def tune(self, stiffness: float, damping_ratio: float, weight: float) -> None:
+        """Multiply the springs and the gravity, and damp anew, as `damping_ratio` of the class."""
+        self.bodies.bend[:] *= stiffness
+        self.bodies.twist[:] *= stiffness
+        self.bodies.rest_torque[:] *= weight
+        self._gravity *= weight
+        by_mass, by_stiffness, by_mode, momentum = self._even_damping(
+            damping_ratio, self._damped_modes
+        )
+        self.laws = self.laws._replace(
+            gravity=self._gravity,
+            mass_damping=by_mass,
+            stiffness_damping=by_stiffness,
+            mode_damping=by_mode,
+            mode_momentum=momentum,
+        )
 
     def reset(self) -> None:
         """Go back to rest."""

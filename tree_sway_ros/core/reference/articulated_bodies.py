@@ -69,6 +69,7 @@ def articulated_bodies(
     twist_ratio: float,
     leaf_mass: ArrayLike = 0.0,
     leaf_width: ArrayLike = 0.0,
+    root_stiffness: float = np.inf,
 ) -> Bodies:
     """
     Part a tree into bodies.
@@ -85,6 +86,8 @@ def articulated_bodies(
         Stiffness in twist over that in bending, GJ/EI, in [-].
     leaf_mass, leaf_width
         Mass and area of leaves per length of each segment in [kg/m] and [m], (n,).
+    root_stiffness
+        Of a spring in series with the first joint in [N m/rad].
 
     """
     n = tree.n_segments
@@ -111,6 +114,7 @@ def articulated_bodies(
     centre = moment / total[:, None]
 
     bend = 3.0 * np.pi / 64.0 * modulus * d0**3 * d1**3 / (tree.length * square)
+    bend[0] = 1.0 / (1.0 / bend[0] + 1.0 / root_stiffness)
     reach = tree.length[:, None] * np.stack([hinge, 1.0 - hinge], axis=1)
     middle = d0 + hinge * (d1 - d0)
     return Bodies(

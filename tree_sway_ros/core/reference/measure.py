@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.tree.tree import Tree
 
 
@@ -28,12 +28,9 @@ class Swaying(Protocol):
         """Fill the pose block, (n, 7)."""
 
 
-def tips_of_poses(tree: Tree, poses: Floats) -> Floats:
-    """
-    Tip of each branch in [m], (b, 3), from a pose block (n, 7).
-
-    """
-    last = tree.branch_first[1:] - 1
+def tips_of_poses(tree: Tree, poses: Floats, branches: Ints | slice = slice(None)) -> Floats:
+    """Tips of some branches, or of all, in [m], (k, 3), from a pose block (n, 7)."""
+    last = tree.branch_first[1:][branches] - 1
     x, y, z, w = poses[last, 3:].T
     along = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
     tips: Floats = poses[last, :3] + tree.length[last, None] * along

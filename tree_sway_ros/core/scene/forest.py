@@ -11,7 +11,6 @@ need be turned into its frame and no pose out of it. The gusts reach one tree af
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -23,12 +22,14 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 
 
@@ -181,11 +182,8 @@ class Forest:
         """
         refuse_time_step(dt)
         status = OK
-        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         # The history must not remember what no tree would take.
-        if math.hypot(x, y, z) <= self.settings.max_wind:
-            self._wind[0], self._wind[1], self._wind[2] = x, y, z
-        else:
+        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
             status = WIND_REFUSED
             self._refused += 1
         felt = self.gusts.push(self._wind, dt)
@@ -193,6 +191,16 @@ class Forest:
             status |= simulator.step(wind, dt)
         self._steps += 1
         return status
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
+        return [simulator.check_tuning(**changes) for simulator in self.simulators][-1]
+
+    def tune(self, **changes: float) -> None:
+        """Change every tree while it sways, as `SwaySimulator.tune`; all or none."""
+        self.check_tuning(**changes)
+        for simulator in self.simulators:
+            simulator.tune(**changes)
 
     def place(self, out: Floats | None = None) -> Floats:
         """

@@ -144,12 +144,12 @@ class Rig:
         """
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
         simulator = self._at_rest()
-        rest = tips_of_poses(self.tree, simulator.place())[chosen]
+        rest = tips_of_poses(self.tree, simulator.place(), chosen)
         tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
         poses, every = np.empty((self.tree.n_segments, 7)), max(len(means) // 100, 1)
         for step, mean in enumerate(means):
             simulator.step(mean, 1.0 / rate)
-            tips[step] = tips_of_poses(self.tree, simulator.place(poses))[chosen] - rest
+            tips[step] = tips_of_poses(self.tree, simulator.place(poses), chosen) - rest
             moment[step] = self.base.of(simulator.rotations())
             if progress is not None and step % every == 0:
                 progress(step / len(means))
@@ -196,12 +196,13 @@ class BaseMoment:
         layer = calibrated.layer(model if model in ("branch", "subtree") else "coupled")
         stem = layer.models[0]
         beam = stem.beam
-        self._per_unit = np.zeros((len(stem.coordinates), 3))
-        for k, coordinate in enumerate(stem.coordinates):
-            if not coordinate.is_twist:
-                bending = beam.second_moment[0] * coordinate.shape.curvature[0]
-                at_base = np.polyval(np.polyfit(beam.place[0], bending, 2), 0.0)
-                self._per_unit[k] = species.modulus * at_base * coordinate.axis
+        along = beam.tangent[0]
+        self._per_unit = np.zeros((len(stem.fields), 3))
+        for k, field in enumerate(stem.fields):
+            across = field.curvature[0] - np.outer(field.curvature[0] @ along, along)
+            bending = beam.second_moment[0][:, None] * across
+            at_base = np.polyfit(beam.place[0], bending, 2)[-1]
+            self._per_unit[k] = species.modulus * at_base
         radius = 0.5 * float(tree.base_diameter[0])
         self._strain_per_moment = radius / (species.modulus * np.pi / 4.0 * radius**4)
 

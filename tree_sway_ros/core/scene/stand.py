@@ -14,8 +14,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -24,11 +25,21 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.checks import array_to_fill, within
 from tree_sway_ros.core.motion.harmonics import COUNT
+from tree_sway_ros.core.motion.placing import place_standing_at
+from tree_sway_ros.core.motion.records import zeros_in_lines
 from tree_sway_ros.core.motion.standing import STANDING, place_standing, step_standing
-from tree_sway_ros.core.motion.wind_basis import WindBasisBank, fill_pace, instance_layout
+from tree_sway_ros.core.motion.wind_basis import (
+    CARRIED,
+    WindBasisBank,
+    expand_one,
+    fill_pace,
+    instance_layout,
+)
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.stand_member import StandMember
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
@@ -40,9 +51,11 @@ from tree_sway_ros.core.simulator.simulator import (
     SwaySimulator,
     refuse_time_step,
 )
+from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 
 SMALLEST, LARGEST = 0.2, 5.0
@@ -117,7 +130,7 @@ class StandKind:
     species: Species | None = None
 
 
-class Stand:
+class Stand(KeepsState):
     """
     Trees of a few kinds that sway in one wind; used like a `SwaySimulator`.
 
@@ -131,6 +144,8 @@ class Stand:
         How they are modelled; the model does not matter.
     anemometer, convection_ratio
         As of `Forest`.
+    threads
+        How many threads place, 1 to 64.
     progress
         Called with the number of kinds that are ready, while the stand is set up.
     **changes
@@ -160,6 +175,7 @@ class Stand:
         *,
         anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
+        threads: int = 1,
         progress: Callable[[int], object] = lambda done: None,
         **changes: Any,
     ) -> None:
@@ -198,14 +214,19 @@ class Stand:
             self._standing["at"], anemometer, convection_ratio=convection_ratio
         )
         self._wind, self._dt = np.zeros(3), math.nan
-        self._rooms = [np.zeros(len(bank.shapes)) for bank in banks]
-        self._scratch = [np.zeros((model.tree.n_segments, 7)) for model in self._models]
+        self._rooms = [self._room() for _ in range(int(within("threads", threads, 1, 64)))]
+        self._pool = ThreadPoolExecutor(threads - 1, "placing") if threads > 1 else None
 
     @property
     def model(self) -> str:
         """Models in use."""
         shared = ["wind_basis"] if not self._standing["is_still"].all() else []
         return ", ".join([*shared, *dict.fromkeys(sim.model for sim in self._own.values())])
+
+    @property
+    def simulators(self) -> tuple[TreeSimulator, ...]:
+        """The simulators of the trees that are solved on a model of their own."""
+        return tuple(self._own.values())
 
     @property
     def n_segments(self) -> int:
@@ -240,7 +261,7 @@ class Stand:
         return self._wind
 
     @cached_property
-    def tree(self) -> Tree:
+    def tree(self) -> Tree:  # type: ignore[override]
         """All trees in one record, to be described or drawn."""
         return joined([self.tree_of(t) for t in range(len(self.trees))], "stand")
 
@@ -267,10 +288,7 @@ class Stand:
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step, as `Forest.step`; a wind beyond a table is held at its limit."""
         status = OK
-        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
-        if math.hypot(x, y, z) <= self.settings.max_wind:
-            self._wind[0], self._wind[1], self._wind[2] = x, y, z
-        else:
+        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
         if dt != self._dt:
@@ -285,6 +303,16 @@ class Stand:
         self.counts.held += held
         self.counts.restarted += restarted
         return status | (LOAD_HELD if held else OK) | (RESTARTED if restarted else OK)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse: trees of a stand share what they are made of."""
+        raise ParameterError(
+            f"a change of {', '.join(changes)} in a stand", where="tune", cure="make it anew"
+        )
+
+    def tune(self, **changes: float) -> None:
+        """Refuse, as `check_tuning`."""
+        self.check_tuning(**changes)
 
     def place(self, out: Floats | None = None, which: ArrayLike | None = None) -> Floats:
         """
@@ -310,18 +338,108 @@ class Stand:
         """
         shape = (self.n_segments, 7)
         poses = np.zeros(shape) if out is None else array_to_fill("out", out, shape)
-        for kind, rows in enumerate(self._rows(which)):
-            if len(rows):
-                bank, model = self._banks[kind], self._models[kind].bank
-                place_standing(
-                    self._tables, self._standing, self._instances, rows, bank.all_shapes,
-                    model.branches, model.segments, model.heads, bank.work, self._rooms[kind],
-                    self._models[kind].tree.start[0], self._scratch[kind], poses,
-                )  # fmt: skip
+        shares = [np.array_split(rows, len(self._rooms)) for rows in self._rows(which)]
+        others = [
+            self._pool.submit(self._place, poses, shares, thread)  # type: ignore[union-attr]
+            for thread in range(1, len(self._rooms))
+        ]
+        self._place(poses, shares, 0)
+        for other in others:
+            other.result()
         wanted = None if which is None else set(np.atleast_1d(which).tolist())
         for number, simulator in self._own.items():
             if wanted is None or number in wanted:
                 simulator.place(poses[self._ends[number] : self._ends[number + 1]])
+        return poses
+
+    def _place(self, poses: Floats, shares: list[list[Ints]], thread: int) -> None:
+        """Place a thread's share of the trees of each kind."""
+        for kind, share in enumerate(shares):
+            if len(share[thread]):
+                bank, records = self._banks[kind], self._models[kind].bank
+                heads, work, x, block = self._rooms[thread][kind]
+                place_standing(
+                    self._tables, self._standing, self._instances, share[thread], bank.all_shapes,
+                    records.branches, records.segments, heads, work, x, block, poses,
+                )  # fmt: skip
+
+    def _room(self) -> list[tuple[Any, Any, Floats, Floats]]:
+        """What placing works in, of each kind."""
+        room = []
+        for model, bank in zip(self._models, self._banks, strict=True):
+            heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
+            heads[:] = model.bank.heads
+            block = np.zeros((model.tree.n_segments, 7))
+            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
+        return room
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of the trees whose wind was held at the limit of their table in the last step."""
+        return tuple(self.names[t] for t in np.flatnonzero(self._standing["is_held"]))
+
+    @property
+    def told_as(self) -> str:
+        """Name that its states bear."""
+        return "stand"
+
+    def digest(self) -> str:
+        """Digest of all trees, what they are, and how they are modelled."""
+        kinds = [each for model in self._models for each in (model.tree, model.species)]
+        return digest_of(*kinds, *self.trees, self.settings)
+
+    def memory(self) -> tuple[Any, ...]:
+        """Views of what is carried from one step to the next, the wind first."""
+        carried = (self._instances[name] for name in CARRIED)
+        own = (array for simulator in self._own.values() for array in _memory_of(simulator))
+        return self._wind, *self.gusts.memory(), *carried, *own
+
+    def rotations(self) -> Floats:
+        """Key rotations of all trees, one after another, in [rad], (N,)."""
+        return np.concatenate([self._rotations(number) for number in range(len(self.trees))])
+
+    def members(self) -> tuple[StandMember | TreeSimulator, ...]:
+        """Each tree by itself: what it is, and how it bends at any time."""
+        return tuple(
+            self._own.get(number)
+            or StandMember(
+                self.tree_of(number),
+                self._models[self._used.index(told.kind)],
+                told.yaw,
+                partial(self._rotations, number),
+            )
+            for number, told in enumerate(self.trees)
+        )
+
+    def _rotations(self, number: int) -> Floats:
+        """Key rotations of a tree in [rad], (N,)."""
+        if number in self._own:
+            return self._own[number].rotations()
+        bank, here = self._banks[self._standing["kind"][number]], slice(number, number + 1)
+        found = np.zeros(len(bank.shapes))
+        expand_one(bank.record, self._instances[here], bank.all_shapes, found)
+        return found
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        shape = (self.n_segments, 7)
+        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        first = 0
+        for number, here in enumerate(self._standing):
+            rows = poses[self._ends[number] : self._ends[number + 1]]
+            kind = int(here["kind"])
+            own, records = self._own.get(number), self._models[kind].bank
+            size = len(own.rotations() if own else self._banks[kind].shapes)
+            x, first = rotations[first : first + size], first + size
+            if own:
+                own.place_rotations(x, rows)
+                continue
+            heads, work = self._rooms[0][kind][:2]
+            east, north, up = here["at"].tolist()
+            place_standing_at(
+                records.branches, records.segments, heads, work, x, east, north, up,
+                float(here["cosine"]), float(here["sine"]), float(here["scale"]), rows,
+            )  # fmt: skip
         return poses
 
     @property
@@ -427,6 +545,11 @@ def _model_of(name: str, kind: StandKind, settings: Settings) -> SwaySimulator:
     except TreeSwayError as error:
         where = f"{name}: {error.where}" if error.where else name
         raise type(error)(error.what, where=where, cure=error.cure) from error
+
+
+def _memory_of(simulator: Any) -> tuple[Floats, ...]:
+    memory: tuple[Floats, ...] = simulator.memory()
+    return memory
 
 
 def scaled_tree(tree: Tree, scale: float) -> Tree:

@@ -10,7 +10,7 @@ What only one model needs is imported where that model is made.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
@@ -21,6 +21,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
+from tree_sway_ros.core.leaves.foliage import clad_wood
 from tree_sway_ros.core.motion.drag import DragLaw, crown_drag
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
@@ -39,10 +40,12 @@ from tree_sway_ros.core.reduction.modes import (
     with_static,
 )
 from tree_sway_ros.core.reduction.one_thread import one_thread
+from tree_sway_ros.core.simulator.crown_gusts import delays_of
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.crown_wind import CrownDelays
 from tree_sway_ros.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -60,6 +63,10 @@ class Oscillators(Protocol):
     is_tabled: bool
     branches: Any
     work: Any
+
+    @property
+    def loads(self) -> Any | None:
+        """Records of `load_fields`; None where only an even wind is known."""
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
@@ -103,6 +110,7 @@ class Frozen:
 
     carries = True
     is_tabled = False
+    loads: Any | None = None
 
     def __init__(self, branches: Any, n_coordinates: int) -> None:
         """Rest is all there is."""
@@ -203,24 +211,6 @@ class Bank:
             self._plain_placing.place(rotations, origin, out)
             return
         self._compiled_placing(rotations, origin, out)
-        self._place_frozen(rotations, out)
-
-    def on_threads(self, threads: int) -> Callable[[Floats, Floats, Floats], None]:
-        """Return what `place` does on several threads; on one where nothing is compiled."""
-        if self.plain:
-            return self.place
-        from tree_sway_ros.core.motion.threaded_placing import ThreadedPlacing
-
-        work = self.oscillators.work
-        threaded = ThreadedPlacing(self.branches, self.segments, self.heads, work, threads)
-
-        def place_all(rotations: Floats, origin: Floats, out: Floats) -> None:
-            threaded.place(rotations, origin, out)
-            self._place_frozen(rotations, out)
-
-        return place_all
-
-    def _place_frozen(self, rotations: Floats, out: Floats) -> None:
         if self.frozen is not None:
             self.frozen.place(self.branches, self.oscillators.work, rotations, out)
 
@@ -262,6 +252,8 @@ class CalibratedTree:
     ) -> None:
         """Wait to be asked."""
         self.plain = plain or bool(WHY_PLAIN)
+        if settings.root_stiffness is not None:
+            species = replace(species, root_stiffness=settings.root_stiffness)
         self.tree, self.species = tree, species
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
@@ -276,15 +268,16 @@ class CalibratedTree:
         return species.damping(bool(settings.in_leaf))
 
     @cached_property
-    def _crown_drag(self) -> tuple[DragLaw, float]:
+    def _crown_drag(self) -> tuple[DragLaw, Floats | None]:
+        """Law of the tree, and the area of bare wood that the leaves of each branch stand for."""
         species, given = self.species, self.settings.leaf_area
         if not self.settings.in_leaf or given is None:
-            return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), 1.0
+            return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), None
         tree = self.tree
         area = one_of_each("leaf_area", given, tree.n_branches, "branch")
         wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
         laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
-        return crown_drag(wood, float(area.sum()), *laws)
+        return crown_drag(wood, area, clad_wood(tree, species.leaves), *laws)
 
     @property
     def drag_law(self) -> DragLaw:
@@ -294,8 +287,12 @@ class CalibratedTree:
     @property
     def leaf_load_area(self) -> Floats | None:
         """Area of bare wood that the leaves of each branch stand for in [m^2], (b,)."""
-        area = self.settings.leaf_area
-        return None if area is None else self._crown_drag[1] * np.asarray(area, dtype=np.float64)
+        return self._crown_drag[1]
+
+    @cached_property
+    def crown_delays(self) -> CrownDelays:
+        """When each branch meets a gust."""
+        return delays_of(self.tree, self.leaf_load_area)
 
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
@@ -352,7 +349,7 @@ class CalibratedTree:
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
         solved = int((branches["source"] == np.arange(len(branches))).sum())
-        segments = layer.segments.copy()
+        segments = layer.segments
         heads = head_records(branches, segments)
         return Bank(
             oscillators, branches, segments, heads, frequencies, solved, layer.mass,
@@ -362,7 +359,7 @@ class CalibratedTree:
     def at_rest(self, model: str) -> Bank:
         """Return what places the key rotations of a model, and steps nothing."""
         layer = self.layer(model)
-        branches, segments = layer.branches.copy(), layer.segments.copy()
+        branches, segments = layer.branches.copy(), layer.segments
         still = Frozen(branches, layer.reduction.n_coordinates)
         heads = head_records(branches, segments)
         return Bank(still, branches, segments, heads, np.zeros(0), 0, layer.mass)
@@ -403,12 +400,13 @@ class CalibratedTree:
             speed_profile=speed,
             leaf_mass=settings.leaf_mass,
             leaf_area=self.leaf_load_area,
+            root_compliance=species.modulus / species.root_stiffness,
         )
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(
             tree, models, species.modulus, shear, settings.gravity, carries=carries
         )
-        layout = branch_layout() if enriched else branch_layout(2, 1)
+        layout = branch_layout() if enriched else branch_layout(2)
         return Layer(
             models,
             reduction,

@@ -16,6 +16,7 @@ from tree_sway_ros.core.motion.fill_records import lanes, moving_records, segmen
 from tree_sway_ros.core.motion.rigid_placing import RigidParts
 from tree_sway_ros.core.reduction.pruning import Bools, Pruning
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Layer
+from tree_sway_ros.core.wind.crown_wind import CrownDelays
 
 
 class PartlyFrozenTree(CalibratedTree):
@@ -51,6 +52,12 @@ class PartlyFrozenTree(CalibratedTree):
     def drag_law(self) -> DragLaw:
         """Of the whole tree, wood and leaves."""
         return self._whole.drag_law
+
+    @cached_property
+    def crown_delays(self) -> CrownDelays:
+        """When each moving branch meets a gust: as in the whole tree."""
+        whole = self._whole.crown_delays
+        return whole._replace(of_branch=whole.of_branch[self.pruning.moving])
 
     @cached_property
     def alone(self) -> Layer:

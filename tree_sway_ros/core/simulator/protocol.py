@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts
 from tree_sway_ros.core.state.tree_state import TreeState
@@ -67,6 +68,12 @@ class Simulator(Protocol):
 
     def place(self, out: Floats | None = None) -> Floats:
         """Place every segment, (n, 7); a new array if out is None."""
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what `tune` would refuse; returns all values as they would be."""
+
+    def tune(self, **changes: float) -> None:
+        """Change damping, stiffness or gravity between steps; see `SwaySimulator.tune`."""
 
     def reset(self) -> None:
         """Go back to rest."""

@@ -24,8 +24,8 @@ from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
-from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
     OK,
@@ -37,6 +37,8 @@ from tree_sway_ros.core.simulator.simulator import (
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.crown_wind import CrownWind
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError
 
 LONGEST_STEP = 1.0 / 60.0
@@ -73,13 +75,14 @@ class SegmentsSimulator(OneTree, KeepsState):
             raise ParameterError(
                 f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
-        settings = in_season(tree, species, settings)
+        calibrated = CalibratedTree(tree, species, settings)
+        species, settings = calibrated.species, calibrated.settings
         self.tree, self.species, self.settings = tree, species, settings
         self.counts = Counts()
         damping = settings.damping_ratio
         if damping is None:
             damping = species.damping(bool(settings.in_leaf))
-        calibrated = CalibratedTree(tree, species, settings)
+        self._tuning = Tuning.of(settings, damping)
         law = calibrated.drag_law
         middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
         self._model = ArticulatedTree(
@@ -95,8 +98,14 @@ class SegmentsSimulator(OneTree, KeepsState):
             wind_factor=settings.profile.over_anemometer(middle),
             leaf_mass=settings.leaf_mass,
             leaf_area=calibrated.leaf_load_area,
+            root_stiffness=species.root_stiffness,
         )
-        self.wind = np.zeros(3)
+        self.wind, self._air = np.zeros(3), np.zeros((tree.n_segments, 3))
+        self._crown: CrownWind | None = None
+        if settings.crown_coherence < 1.0:
+            delays = calibrated.crown_delays
+            self._crown = CrownWind(delays.spread, settings.crown_coherence)
+            self._delay_of_segment = delays.of_branch[tree.branch_of_segment]
         self.n_solved, self.n_copied, self.n_frozen = tree.n_branches, 0, 0
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
 
@@ -109,13 +118,11 @@ class SegmentsSimulator(OneTree, KeepsState):
 
         """
         refuse_time_step(dt)
-        wind = np.asarray(wind_mean, dtype=np.float64)
         status = OK
-        if np.abs(wind).max() < 1e9 and np.linalg.norm(wind) <= self.settings.max_wind:
-            self.wind[:] = wind
-        else:
+        if not take_wind(self.wind, wind_mean, self.settings.max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
+        self._blow(dt)
         pieces = math.ceil(dt / LONGEST_STEP - 1e-9)
         for _ in range(pieces):
             if not self._advance(dt / pieces):
@@ -125,13 +132,41 @@ class SegmentsSimulator(OneTree, KeepsState):
         self.counts.steps += 1
         return status
 
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what `tune` would refuse; returns all values as they would be."""
+        goal = self._tuning.changed(**changes)
+        if (goal.volume_stiffness, goal.volume_damping) != (
+            self._tuning.volume_stiffness,
+            self._tuning.volume_damping,
+        ):
+            raise ParameterError("the volume rule on model 'segments'", where="tune")
+        if goal.gravity > 0.0 and not self._tuning.gravity > 0.0:
+            raise ParameterError(
+                f"gravity {goal.gravity:g} m/s^2 on a tree without weight", where="gravity"
+            )
+        return goal
+
+    def tune(self, **changes: float) -> None:
+        """Change the tree while it sways, as `SwaySimulator.tune`."""
+        goal, now = self.check_tuning(**changes), self._tuning
+        weight = goal.gravity / now.gravity if now.gravity > 0.0 else 1.0
+        self._model.tune(goal.stiffness_factor / now.stiffness_factor, goal.damping_ratio, weight)
+        self._tuning = goal
+
+    def _blow(self, dt: float) -> None:
+        """Give every segment the wind of its limb."""
+        self._air[:] = self.wind
+        if self._crown is not None:
+            x, y, z = self.wind.tolist()
+            self._air += self._crown.push(x, y, z, dt)[self._delay_of_segment]
+
     def _advance(self, dt: float) -> bool:
         """Advance by a time [s], finer where joints turn too fast; tell whether they still do."""
         turn, rate = self._model.state
         before = turn.copy(), rate.copy()
         for pieces in (1, 4, 16, 64, 256):
             for _ in range(pieces):
-                self._model.step(self.wind, dt / pieces)
+                self._model.step(self._air, dt / pieces)
                 largest = float(np.abs(rate).max()) * dt / pieces
                 if not largest <= LARGEST_TURN:
                     break
@@ -162,7 +197,8 @@ class SegmentsSimulator(OneTree, KeepsState):
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next, the wind of the last step first."""
-        return self.wind, self._model.state.turn, self._model.state.rate
+        crown = () if self._crown is None else self._crown.memory()
+        return self.wind, self._model.state.turn, self._model.state.rate, *crown
 
     def rotations(self) -> Floats:
         """Key rotations in [rad] that fit the segments best, (N,); the same array each time."""
@@ -196,4 +232,6 @@ class SegmentsSimulator(OneTree, KeepsState):
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self._model.reset()
+        if self._crown is not None:
+            self._crown.reset()
         self.wind[:] = 0.0

@@ -57,6 +57,9 @@ class Settings:
         In [m/s^2]; 0 leaves weight out.
     profile
         Wind over height.
+    crown_coherence
+        Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
+        after a delay of its own (`crown_wind`). 1 is one wind for the whole crown.
     integrator
         Method that steps the oscillators, one of `rule_names.REAL_TIME`; one whose step would be
         unstable is refused at the first step. Later steps that are longer are cut.
@@ -66,6 +69,9 @@ class Settings:
         Branches that get further shapes and twists in the models ``modes`` and ``coupled``:
         ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
         branches), all ``carriers`` of others, or ``all``.
+    root_stiffness
+        Stiffness of the roots against tilting in [N m/rad], infinite if they are rigid; the tree's
+        own if None.
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,); those of the species in leaf if both are
         None.
@@ -85,9 +91,11 @@ class Settings:
     in_leaf: bool | None = None
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
+    crown_coherence: float = 1.0
     integrator: str = DEFAULT
     twig_tolerance: float = 0.05
     enrich: str = "limbs"
+    root_stiffness: float | None = None
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
     max_wind: float = FASTEST_WIND
@@ -111,10 +119,17 @@ class Settings:
             )
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
             raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
+        if self.root_stiffness is not None and not self.root_stiffness > 0.0:
+            raise ParameterError(
+                f"{self.root_stiffness} N m/rad",
+                where="root_stiffness",
+                cure="give a stiffness above 0, infinite for rigid roots",
+            )
         if self.n_modes is not None and self.n_modes < 1:
             raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
         if self.degree not in (1, 3, 5):
             raise ParameterError(f"degree {self.degree}", where="degree", cure="use 1, 3 or 5")
+        within("crown_coherence", self.crown_coherence, 0.0, 1.0)
         within("max_wind", self.max_wind, 0.0, FASTEST_WIND, "m/s", above=True)
         for name in ("volume_stiffness", "volume_damping"):
             value = getattr(self, name)

@@ -15,16 +15,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.checks import array_to_fill, array_to_read, within
+from tree_sway_ros.core.checks import array_to_fill, array_to_read
+from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
-from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
+from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
+from tree_sway_ros.core.simulator.live_tuning import LiveTuning, Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError
 
 OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
@@ -69,8 +73,6 @@ class SwaySimulator(OneTree, KeepsState):
         How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
-    threads
-        How many threads place, 1 to 64: more than one pays from some ten thousand segments on.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
@@ -99,7 +101,6 @@ class SwaySimulator(OneTree, KeepsState):
         settings: Settings | None = None,
         *,
         calibrated: CalibratedTree | None = None,
-        threads: int = 1,
         **changes: Any,
     ) -> None:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
@@ -111,14 +112,24 @@ class SwaySimulator(OneTree, KeepsState):
             calibrated = CalibratedTree(tree, self.species, self.settings)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self.drag_law = calibrated.drag_law
+        self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
         self._advance = self.bank.oscillators.advance
-        within("threads", threads, 1, 64)
-        self._place = self.bank.place if threads == 1 else self.bank.on_threads(int(threads))
+        self._place = self.bank.place
         self._max_wind = self.settings.max_wind
+        self._gusts: CrownGusts | None = None
+        if self.settings.crown_coherence < 1.0:
+            self._gusts = CrownGusts(
+                calibrated.crown_delays,
+                self.settings.crown_coherence,
+                self.bank.oscillators.loads,
+            )
+        self._calibrated = calibrated
+        self._tuning: LiveTuning | None = None
         self._dt, self._longest, self._pieces = math.nan, 0.0, 1
         self._wind = np.zeros(3)
         self._expected = self.bank.oscillators.rotations().shape
         self._poses = np.zeros((tree.n_segments, 7))
+        self._filled = self._poses
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
         self._rest_tip = tree.end[self._highest].copy()
@@ -171,7 +182,8 @@ class SwaySimulator(OneTree, KeepsState):
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next, the wind of the last step first."""
-        return self._wind, *self.bank.oscillators.memory()
+        crown = () if self._gusts is None else self._gusts.wind.memory()
+        return self._wind, *self.bank.oscillators.memory(), *crown
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
@@ -207,20 +219,16 @@ class SwaySimulator(OneTree, KeepsState):
             integrator; later ones are cut into pieces no longer than those it could take.
 
         """
-        wx, wy, wz = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
         status = OK
-        speed = math.hypot(wx, wy, wz)
-        if speed <= self._max_wind:
-            wind = self._wind
-            wind[0], wind[1], wind[2] = wx, wy, wz
-        else:
+        if not take_wind(self._wind, wind_mean, self._max_wind):
             status = WIND_REFUSED
             self.counts.refused += 1
-            wx, wy, wz = self._wind.tolist()
-            speed = math.hypot(wx, wy, wz)
-        if dt != self._dt:
+        if dt != self._dt or (self._tuning is not None and self._tuning.step(dt)):
             self._set_step(dt)
-        load = pressure(speed, *self.drag_law)
+        wx, wy, wz = self._wind.tolist()
+        load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        if self._gusts is not None:
+            wx, wy, wz = self._gusts.felt(self._wind, dt)
         for _ in range(self._pieces):
             held = self._advance(wx, wy, wz, load)
             if held > 0:
@@ -257,10 +265,12 @@ class SwaySimulator(OneTree, KeepsState):
         return self._placed(self.bank.oscillators.rotations(), out)
 
     def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
-        shape = self._poses.shape
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
-        self._place(rotations, self._origin, poses)
-        return poses
+        if out is None:
+            out = np.empty(self._poses.shape)
+        elif out is not self._filled:
+            self._filled = array_to_fill("out", out, self._poses.shape)
+        self._place(rotations, self._origin, out)
+        return out
 
     @property
     def tip_displacement(self) -> Floats:
@@ -280,8 +290,8 @@ class SwaySimulator(OneTree, KeepsState):
         rest, in [N m], (3,).
 
         """
-        centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
-        moment: Floats = np.cross(centre, force).sum(axis=0)
+        couple, force = self.bank.branches["couple"], self.bank.oscillators.forces()
+        moment: Floats = np.einsum("bij,bj->i", couple, force)
         return moment
 
     def motion(self) -> tuple[Floats, Floats]:
@@ -292,9 +302,54 @@ class SwaySimulator(OneTree, KeepsState):
         """Go on from key rotations and rates, (N,), instead of from rest."""
         self.bank.oscillators.take_over(x, v)
 
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what `tune` would refuse; returns all values as they would be."""
+        of = self.bank.oscillators
+        if isinstance(of, Frozen):
+            return Tuning.of(self.settings, 0.0).changed(**changes)
+        if self._tuning is None:
+            calibrated = self._calibrated
+            self._tuning = LiveTuning(
+                of.modal if of.is_tabled else of,  # type: ignore[attr-defined, arg-type]
+                calibrated.layer(self.model).reduction,
+                self.settings,
+                calibrated.damping_ratio,
+                of.is_tabled,
+            )
+        goal = self._tuning.goal.changed(**changes)
+        self._tuning.check(goal)
+        return goal
+
+    def tune(self, **changes: float) -> None:
+        """
+        Change the tree while it sways; poses go over to the change within half a second.
+
+        Parameters
+        ----------
+        **changes
+            ``damping_ratio``, ``stiffness_factor``, ``gravity``, ``volume_stiffness`` or
+            ``volume_damping``, as of `Tuning`. What is not named stays.
+
+        Raises
+        ------
+        ParameterError
+            A value that is out of range or that this tree cannot take; nothing changes.
+
+        """
+        goal = self.check_tuning(**changes)
+        if self._tuning is not None:
+            self._tuning.go_to(goal)
+
+    def follow_wind(self, other: SwaySimulator) -> None:
+        """Go on with the wind that the limbs of the same tree have felt on another model."""
+        if self._gusts is not None and other._gusts is not None:
+            self._gusts.wind.follow(other._gusts.wind)
+
     def reset(self) -> None:
         """Go back to rest, with no wind; the counts stay."""
         self.bank.oscillators.reset()
+        if self._gusts is not None:
+            self._gusts.wind.reset()
         self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:
@@ -304,6 +359,9 @@ class SwaySimulator(OneTree, KeepsState):
         self.bank.oscillators.set_step(dt / pieces)
         self._longest = max(self._longest, dt / pieces)
         self._dt, self._pieces = dt, pieces
+
+
+_pressure = fused(pressure)
 
 
 def refuse_time_step(dt: float) -> None:

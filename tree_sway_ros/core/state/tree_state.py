@@ -94,13 +94,13 @@ def refuse_version(version: object) -> None:
         )
 
 
-def digest_of(tree: Tree, *told: Any) -> str:
+def digest_of(*told: Any) -> str:
     """
-    Digest of a tree and of frozen dataclasses that tell how it is modelled, 16 hexadecimal digits.
+    Digest of trees and of frozen dataclasses that tell how they are modelled, 16 hex digits.
 
     """
     digest = hashlib.sha256()
-    for each in (tree, *told):
+    for each in told:
         for field in fields(each):
             value = getattr(each, field.name)
             if field.name in ("name", "source_index"):
@@ -118,6 +118,11 @@ class KeepsState:
     """
 
     tree: Tree
+
+    @property
+    def told_as(self) -> str:
+        """Name that its states bear."""
+        return self.tree.name
 
     @property
     def model(self) -> str:
@@ -143,7 +148,7 @@ class KeepsState:
     def state(self) -> TreeState:
         """Return a copy of all that is carried from one step to the next."""
         values = np.concatenate([np.ravel(array) for array in self.memory()])
-        return TreeState(self.tree.name, self.digest(), self.model, values)
+        return TreeState(self.told_as, self.digest(), self.model, values)
 
     def set_state(self, state: TreeState) -> None:
         """
@@ -160,7 +165,7 @@ class KeepsState:
         arrays = self.memory()
         n_values = sum(array.size for array in arrays)
         for what, theirs, own in (
-            ("tree", state.tree, self.tree.name),
+            ("tree", state.tree, self.told_as),
             ("model", state.model, self.model),
             ("settings", state.digest, self.digest()),
             ("number of values", len(state.values), n_values),
@@ -168,11 +173,11 @@ class KeepsState:
             if theirs != own:
                 raise StateError(
                     f"a state of {what} '{theirs}', and this is '{own}'",
-                    where=self.tree.name,
+                    where=self.told_as,
                     cure="set the state of the same tree with the same species, settings and model",
                 )
         if not np.isfinite(state.values).all():
-            raise StateError("a state that is not finite", where=self.tree.name)
+            raise StateError("a state that is not finite", where=self.told_as)
         first = 0
         for array in arrays:
             array[...] = state.values[first : first + array.size].reshape(array.shape)

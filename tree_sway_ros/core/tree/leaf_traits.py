@@ -53,5 +53,5 @@ class LeafTraits:
 BROAD_LEAVES = LeafTraits(0.07, 2500.0, 0.20, 4.0)
 """Leaves of an average broadleaf."""
 
-NEEDLES = LeafTraits(0.08, 2200.0, 0.50, 6.0, is_evergreen=True, are_needles=True)
+NEEDLES = LeafTraits(0.08, 3000.0, 0.45, 6.0, is_evergreen=True, are_needles=True)
 """Leaves of an average conifer."""

@@ -18,6 +18,7 @@ delays follow so slowly that for every tree time goes on.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -146,14 +147,18 @@ class GustHistory:
             raise ParameterError(
                 f"wind ({x}, {y}, {z}) m/s over {dt} s", cure="give finite numbers"
             )
-        _remember(self._run, self._at, self._finest, x, y, z, dt)
-        _follow_mean(self._mean, x, y, dt, self._averaging)
+        remember(self._run, self._at, self._finest, x, y, z, dt)
+        follow_mean(self._mean, x, y, dt, self._averaging)
         _feel(
             self._run, self._at, self._along, self._from_first, self._mean, self._ratio,
             self._memory,
             x, y, z, dt, self._wanted, self._delay, self._felt,
         )  # fmt: skip
         return self._felt
+
+    def memory(self) -> tuple[Any, ...]:
+        """Views of what is carried from one step to the next."""
+        return self._run, self._at, self._mean, self._wanted, self._delay, self._felt
 
     def reset(self) -> None:
         """Forget the wind."""
@@ -164,7 +169,7 @@ class GustHistory:
 
 
 @kernel
-def _remember(
+def remember(
     run: Floats, at: NDArray[np.int64], finest: float, x: float, y: float, z: float, dt: float
 ) -> None:
     """
@@ -197,7 +202,7 @@ def _remember(
 
 
 @kernel
-def _follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
+def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
     """
     A plain mean while there is little wind to average, then a running one; its span stands beside
     it.
@@ -240,14 +245,14 @@ def _feel(
             felt[i, 0], felt[i, 1], felt[i, 2] = x, y, z
             continue
         begin, end = now - dt - before, now - delay[i]
-        bx, by, bz = _run_until(run, at, begin)
-        ex, ey, ez = _run_until(run, at, end)
+        bx, by, bz = run_until(run, at, begin)
+        ex, ey, ez = run_until(run, at, end)
         span = end - begin
         felt[i, 0], felt[i, 1], felt[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
 
 
 @kernel
-def _run_until(run: Floats, at: NDArray[np.int64], time: float) -> tuple[float, float, float]:
+def run_until(run: Floats, at: NDArray[np.int64], time: float) -> tuple[float, float, float]:
     """Run of the wind at a time; before the history begins it blew as in its first step."""
     size, count = len(run), at[1]
     oldest = at[0] - count + 1

@@ -6,6 +6,10 @@ from __future__ import annotations
 
 import math
 
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
+
 FASTEST_WIND = 150.0
 """Speed in [m/s] above which nothing is wind; the record gust is 113 m/s (Courtney et al. 2012)."""
 
@@ -13,3 +17,29 @@ FASTEST_WIND = 150.0
 def is_wind(x: float, y: float, z: float, limit: float = FASTEST_WIND) -> bool:
     """Whether a vector in [m/s] is finite and no faster than a limit."""
     return math.hypot(x, y, z) <= limit
+
+
+def take_wind(kept: Floats, wind: ArrayLike, limit: float) -> bool:
+    """
+    Keep a wind, if it is one: the way in to every simulator.
+
+    Parameters
+    ----------
+    kept
+        The wind of the last step in [m/s], (3,); written if the new one is a wind.
+    wind
+        In [m/s], (3,).
+    limit
+        Speed in [m/s] above which it is refused.
+
+    Returns
+    -------
+    bool
+        False if it is not finite or too fast, and what was kept stays.
+
+    """
+    x, y, z = float(wind[0]), float(wind[1]), float(wind[2])  # type: ignore[index, arg-type]
+    if not math.hypot(x, y, z) <= limit:
+        return False
+    kept[0], kept[1], kept[2] = x, y, z
+    return True

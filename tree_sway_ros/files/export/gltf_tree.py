@@ -24,6 +24,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.state.find_basis import MARGIN, Swaying, state_basis
 from tree_sway_ros.core.state.state_basis import StateBasis
+from tree_sway_ros.core.tree.species import bark_color, leaf_traits
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import FormatError
@@ -36,10 +37,6 @@ from tree_sway_ros.files.export.tree_mesh import TreeMesh, leaf_mesh, rest_poses
 
 _GENERATOR = "tree_sway_ros"
 _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
-_MATERIALS: dict[str, dict[str, Any]] = {
-    "bark": {"color": [0.36, 0.27, 0.2, 1.0], "doubleSided": None},
-    "leaves": {"color": [0.24, 0.42, 0.16, 1.0], "doubleSided": True},
-}
 _MAX_JOINTS = 65536
 _BREEZE, _SECONDS, _RATE, _DT = 6.0, 20.0, 15, 1.0 / 60.0
 
@@ -92,7 +89,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     skin = document.add("skins", joints=joints, skeleton=root, inverseBindMatrices=inverse)
     primitives = []
     for material, mesh in _meshes(tree, leaves):
-        primitive = _primitive(document, material, mesh, poses)
+        primitive = _primitive(document, material, tree.species, mesh, poses)
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
         weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
         joint[:, 0], weight[:, 0] = mesh.segment, 255
@@ -133,7 +130,7 @@ def morphing_tree(
     names = tuple(f"sway {k + 1}" for k in range(basis.n_coordinates))
     primitives = []
     for material, mesh in _meshes(tree, leaves):
-        primitive = _primitive(document, material, mesh, rest)
+        primitive = _primitive(document, material, tree.species, mesh, rest)
         primitive["targets"] = [
             {"POSITION": document.add_array(change, target=ARRAY_BUFFER, bounds=True)}
             for change in (_change(mesh, step).astype(np.float32) for step in steps)
@@ -160,10 +157,11 @@ def _meshes(tree: Tree, leaves: LeafClusters | None) -> list[tuple[str, TreeMesh
 
 
 def _primitive(
-    document: GltfDocument, material: str, mesh: TreeMesh, poses: Floats
+    document: GltfDocument, material: str, species: str, mesh: TreeMesh, poses: Floats
 ) -> dict[str, Any]:
     """Part of a mesh at rest, in the frame of the tree."""
-    look = _MATERIALS[material]
+    is_bark = material == "bark"
+    color = bark_color(species) if is_bark else leaf_traits(species).green
     normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
     points = mesh.placed(poses).astype(np.float32)
     return {
@@ -177,9 +175,9 @@ def _primitive(
         "material": document.add(
             "materials",
             name=material,
-            doubleSided=look["doubleSided"],
+            doubleSided=None if is_bark else True,
             pbrMetallicRoughness={
-                "baseColorFactor": look["color"],
+                "baseColorFactor": [*(round(c**2.2, 3) for c in color), 1.0],
                 "metallicFactor": 0.0,
                 "roughnessFactor": 1.0,
             },

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree, scaled_tree
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
 
@@ -30,6 +31,24 @@ class StandFile(ForestFile):
 
     kinds: dict[str, StandKind] = field(default_factory=dict)
     standing: tuple[StandTree, ...] = ()
+
+    def with_trees(self, trees: Sequence[PlacedTree]) -> StandFile:
+        """Return the same stand of some of its trees, which may stand elsewhere."""
+        standing = {each.name: each for each in self.standing}
+        moved = tuple(
+            replace(standing[each.name], x=each.x, y=each.y, z=each.z, yaw=each.yaw)
+            for each in trees
+        )
+        return replace(self, trees=tuple(trees), standing=moved)
+
+    def of_species(self, species: Species) -> StandFile:
+        """Return the same stand, all of one wood."""
+        kinds = {
+            name: StandKind(replace(kind.tree, species=species.key), species)
+            for name, kind in self.kinds.items()
+        }
+        trees = super().of_species(species).trees
+        return replace(self, trees=trees, kinds=kinds)
 
     def simulator(  # type: ignore[override]
         self,

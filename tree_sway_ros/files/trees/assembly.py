@@ -8,12 +8,23 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, TreeError
 
 MAX_COORDINATE = 1e8
 """No map has coordinates beyond this [m]; a file with wrong columns soon does."""
+
+
+def nearest_axis(start: Floats, end: Floats, point: Floats) -> tuple[int, float]:
+    """Return which of some axes from start to end (n, 3) is nearest to a point, how far in [m]."""
+    axis = end - start
+    squared = np.maximum(np.einsum("ij,ij->i", axis, axis), 1e-24)
+    along = np.clip(np.einsum("ij,ij->i", point - start, axis) / squared, 0.0, 1.0)
+    distance = np.linalg.norm(start + along[:, None] * axis - point, axis=1)
+    best = int(np.argmin(distance))
+    return best, float(distance[best])
 
 
 @dataclass(slots=True)

@@ -43,6 +43,6 @@ def placed_scene(
             px, py, pz = moved(each.x, each.y, each.z)
             trees.append(replace(each, x=px, y=py, z=pz, yaw=each.yaw + yaw))
         anemometer = None if source.anemometer is None else moved(*source.anemometer)
-        return replace(source, trees=tuple(trees), anemometer=anemometer)
+        return replace(source.with_trees(trees), anemometer=anemometer)
     root = moved(*source.tree.start[0].tolist())
     return replace(source, tree=PlacedTree(source.tree.name, source.tree, *root, yaw).placed())

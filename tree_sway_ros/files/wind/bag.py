@@ -66,10 +66,10 @@ def read_bag_wind(
     epoch, n_unstamped, notes = -1, 0, list[str]()
     # A damaged bag fails in rosbags, sqlite3, lz4 or struct: whatever it is, it is the bag's fault.
     try:
-        with AnyReader([_bag(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
-            connection = _chosen(reader.connections, topic, source)
-            for number, (_, recorded, data) in enumerate(reader.messages([connection]), start=1):
-                message = reader.deserialize(data, connection.msgtype)
+        with AnyReader([bag_of(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as bag:
+            connection = _chosen(bag.connections, topic, source)
+            for number, (_, recorded, data) in enumerate(bag.messages([connection]), start=1):
+                message = bag.deserialize(data, connection.msgtype)
                 stamp = _stamp(message)
                 n_unstamped += not stamp
                 epoch = (stamp or recorded) if epoch < 0 else epoch
@@ -98,7 +98,7 @@ def read_bag_wind(
     )
 
 
-def _bag(path: Path) -> Path:
+def bag_of(path: Path) -> Path:
     """Return the folder of a bag's file if its metadata is there, else the file itself."""
     return path.parent if path.is_file() and (path.parent / "metadata.yaml").exists() else path
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The page: what comes over the line onto the screen, what hands do back onto the line. */
 
-import { Connection } from "./connection.js";
+import { TreeStream } from "./client.js";
 import { Panel } from "./panel.js";
-import { Playout } from "./playout.js";
 import { LOOKS, Scene } from "./scene.js";
 import { Trace } from "./trace.js";
 
@@ -20,7 +19,6 @@ const FACTS_EVERY = 400;
 const element = (id) => /** @type {T} */ (document.getElementById(id));
 
 const canvas = /** @type {HTMLCanvasElement} */ (element("view"));
-const playout = new Playout();
 const traces = {
   wind: new Trace(element("wind-trace"), 4, "--blue"),
   tip: new Trace(element("tip-trace"), 0.02, "--green"),
@@ -52,14 +50,13 @@ try {
   notice("This browser cannot draw the tree", String(error), false);
 }
 
-const connection = new Connection(streamUrl(), {
+const stream = new TreeStream(location.href, {
   onState(state, retryIn) {
     line = state;
     retryAt = performance.now() + retryIn;
     showState();
   },
   onDescription(description) {
-    playout.clear();
     scene?.describe(description);
     const { segment_length: length } = description.arrays;
     highest = 0;
@@ -76,8 +73,7 @@ const connection = new Connection(streamUrl(), {
     traces.tip.clear();
     showState();
   },
-  onFrame(frame, arrival, size) {
-    playout.push(frame, arrival);
+  onFrame(_frame, _arrival, size) {
     lastFrameAt = performance.now();
     bytes += size;
     frames += 1;
@@ -94,16 +90,8 @@ const connection = new Connection(streamUrl(), {
   },
 });
 
-const panel = new Panel(element("controls"), (name, value) => {
-  connection.send({ set: { name, value } });
-});
-
-function streamUrl() {
-  const url = new URL("stream", location.href);
-  url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-  url.search = location.search;
-  return url.href;
-}
+const { connection, playout } = stream;
+const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 
 /** @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
 function stateNow() {
@@ -163,7 +151,9 @@ function showFacts() {
   const span = (now - factsAt) / 1000;
   if (span < FACTS_EVERY / 1000) return;
   fps = drawn / span;
-  element("drawn").textContent = `${Math.round(fps)} fps`;
+  const leftOut = scene?.leftOut ?? "";
+  element("drawn").textContent = `${Math.round(fps)} fps${leftOut && ", coarser"}`;
+  element("drawn").title = leftOut;
   element("stream").textContent = `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`;
   const half = connection.roundTrip / 2;
   const latency = Number.isFinite(half) ? half + Math.max(0, playout.lateness) : NaN;
@@ -197,11 +187,11 @@ function bearing(wind) {
 function draw(now) {
   requestAnimationFrame(draw);
   if (!scene) return;
-  const coordinates = playout.sample(Date.now());
+  const coordinates = stream.sample();
   scene.wind = playout.wind;
   if (!playout.isPaused) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
   lastDrawn = now;
-  scene.draw(coordinates, sceneTime);
+  scene.draw(coordinates, sceneTime, playout.isPaused);
   drawn += 1;
   if (coordinates && stateNow()[0] === "live") {
     const at = scene.position(highest);
@@ -236,7 +226,7 @@ dark.addEventListener("change", () => setTheme(dark.matches ? "dark" : "light"))
 element("theme").addEventListener("click", toggleTheme);
 element("leaves").addEventListener("click", toggleLeaves);
 element("home").addEventListener("click", () => scene?.camera.home());
-element("retry").addEventListener("click", () => connection.open());
+element("retry").addEventListener("click", () => stream.open());
 document.addEventListener("keydown", (event) => {
   const target = /** @type {HTMLElement} */ (event.target);
   if (target.closest("input, select, button, summary") || event.ctrlKey || event.metaKey) return;
@@ -245,12 +235,13 @@ document.addEventListener("keydown", (event) => {
   else if (event.key === " ") element("control-pause")?.click();
 });
 scene?.camera.listen(canvas);
-connection.open();
+stream.open();
 requestAnimationFrame(draw);
 
 /** For tests and for the curious at the console. */
 Object.assign(window, {
   treeSway: {
+    stream,
     connection,
     playout,
     get scene() {

@@ -6,7 +6,7 @@
 
 import { decodeDescription, decodeFrame, isFrame, ProtocolError } from "./protocol.js";
 
-const CREDIT = 12;
+const CREDIT = 24;
 const GRANT_EVERY = 4;
 const SHORTEST_WAIT = 500;
 const LONGEST_WAIT = 10000;
@@ -24,7 +24,7 @@ const SILENCE = 6000;
  * @property {(message: Record<string, any>) => void} onMessage
  */
 
-/** One line to a server, for good once `open` has been called. */
+/** One line to a server, kept from `open` to `close`. */
 export class Connection {
   /**
    * @param {string} url of the stream
@@ -43,8 +43,9 @@ export class Connection {
     this._wait = SHORTEST_WAIT;
     this._ungranted = 0;
     this._heard = 0;
-    this._retry = 0;
-    setInterval(() => this._watch(), PING_EVERY);
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this._retry = undefined;
+    this._watching = setInterval(() => this._watch(), PING_EVERY);
   }
 
   /** Open the line now, whatever the wait. */
@@ -68,6 +69,15 @@ export class Connection {
     socket.onclose = () => {
       if (socket === this._socket) this._lose();
     };
+  }
+
+  /** Close the line for good. */
+  close() {
+    clearTimeout(this._retry);
+    clearInterval(this._watching);
+    const socket = this._socket;
+    this._socket = null;
+    socket?.close();
   }
 
   /** @param {Record<string, any>} message */

@@ -115,7 +115,8 @@ export function boxOf(poses) {
 }
 
 /**
- * The bark: rings of [along, across cosine, across sine, shade], joined to tubes.
+ * The bark: rings of [along, across cosine, across sine, shade], joined to tubes; of twigs two edges
+ * of a ribbon, [along, across, 0, shade - 2].
  *
  * @param {Description} description
  * @param {Int32Array} branches
@@ -133,7 +134,8 @@ export function barkMesh(description, branches, rest) {
     const from = arrays.branch_first[branch];
     const end = arrays.branch_first[branch + 1];
     const thick = radius[2 * from] / size;
-    const sides = thick > 0.006 ? 12 : thick > 0.0025 && !few ? 6 : 3;
+    const sides = thick > 0.006 ? 12 : thick > 0.0025 && !few ? 6 : 2;
+    const shade = Math.min(1, thick / 0.01);
     const isStem = arrays.branch_parent[branch] < 0;
     let turn = 0;
     let risen = 0;
@@ -147,15 +149,16 @@ export function barkMesh(description, branches, rest) {
         : s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : radius[2 * s];
       r = Math.max(r, 0.0007 * size);
       if (isStem) r *= 1 + 0.9 * Math.exp(-risen / (2.5 * radius[2 * from]));
+      const along = isLast ? length[segment] : 0;
       for (let k = 0; k < sides; k++) {
         const angle = (2 * Math.PI * k) / sides - turn;
-        mesh.add(segment, isLast ? length[segment] : 0, r * Math.cos(angle), r * Math.sin(angle),
-          Math.min(1, thick / 0.01));
+        if (sides === 2) mesh.add(segment, along, k ? -r : r, 0, shade - 2);
+        else mesh.add(segment, along, r * Math.cos(angle), r * Math.sin(angle), shade);
       }
       risen += isLast ? 0 : length[s];
       if (s === from) continue;
       const ring = mesh.count - sides;
-      for (let k = 0; k < sides; k++) {
+      for (let k = 0; k < (sides === 2 ? 1 : sides); k++) {
         const next = (k + 1) % sides;
         const a = ring - sides + k;
         const b = ring - sides + next;
@@ -227,16 +230,17 @@ function seeded() {
 }
 
 /**
- * Leaves: each cluster is a spray of blades, each blade two triangles folded at the midrib.
- * Per vertex: centre of the cluster (3), its orientation w x y z (4), place in it (3), normal in it
+ * Leaves: each cluster is a spray of blades, each blade two triangles folded at the midrib, or one.
+ * They come in a mixed order, so that any first part of them is a thinner crown. Per vertex: centre of the cluster (3), its orientation w x y z (4), place in it (3), normal in it
  * (3), flutter frequency and phase (2), shade (1).
  *
  * @param {Description} description
  * @param {Int32Array} branches that are drawn
  * @param {Float32Array} rest
  * @param {number} blades that may be drawn
+ * @param {boolean} areFolded
  */
-export function leafMesh(description, branches, rest, blades) {
+export function leafMesh(description, branches, rest, blades, areFolded) {
   const { arrays } = description;
   const mesh = new Growing(16);
   const carrier = arrays.leaf_segment;
@@ -269,11 +273,28 @@ export function leafMesh(description, branches, rest, blades) {
     const size = arrays.leaf_size[i];
     for (let blade = 0; blade < each; blade++) {
       const shade = open * (0.82 + 0.36 * random());
-      addBlade(mesh, segment, centre, turn, size, needles, random, arrays.leaf_frequency[i],
-        arrays.leaf_phase[i] + 6.28 * random(), shade);
+      addBlade(mesh, segment, centre, turn, size, needles, areFolded, random,
+        arrays.leaf_frequency[i], arrays.leaf_phase[i] + 6.28 * random(), shade);
     }
   }
+  mesh.indices = mixed(mesh.indices, areFolded ? 6 : 3, random);
   return mesh;
+}
+
+/**
+ * Groups of indices in a random order (Fisher and Yates).
+ *
+ * @param {number[]} indices
+ * @param {number} size of a group
+ * @param {() => number} random
+ */
+function mixed(indices, size, random) {
+  const order = Int32Array.from({ length: indices.length / size }, (_, i) => i);
+  for (let i = order.length - 1; i > 0; i--) {
+    const j = Math.floor((i + 1) * random());
+    [order[i], order[j]] = [order[j], order[i]];
+  }
+  return Array.from(order, (i) => indices.slice(i * size, (i + 1) * size)).flat();
 }
 
 /**
@@ -283,12 +304,14 @@ export function leafMesh(description, branches, rest, blades) {
  * @param {number[]} turn
  * @param {number} size of the cluster [m]
  * @param {boolean} needles
+ * @param {boolean} isFolded
  * @param {() => number} random
  * @param {number} frequency
  * @param {number} phase
  * @param {number} shade
  */
-function addBlade(mesh, segment, centre, turn, size, needles, random, frequency, phase, shade) {
+function addBlade(mesh, segment, centre, turn, size, needles, isFolded, random, frequency, phase,
+  shade) {
   const angle = 2 * Math.PI * random();
   const far = size * (needles ? 0.15 : 0.3) * Math.sqrt(random());
   const long = size * (needles ? 0.62 : 0.6) * (0.75 + 0.5 * random());
@@ -305,7 +328,9 @@ function addBlade(mesh, segment, centre, turn, size, needles, random, frequency,
   ];
   const base = [far * Math.cos(angle), far * Math.sin(angle), 0.3 * size * (random() - 0.5)];
   const first = mesh.count;
-  const corners = needles
+  const corners = !isFolded
+    ? [[0.2, 1.1, 0.1], [1, 0, 0], [0.2, -1.1, 0.1]]
+    : needles
     ? [[0, 0, 0], [0.5, 1, 0], [1, 0, 0], [0.5, -1, 0]]
     : [[0, 0, 0], [0.42, 1, 0.25], [1, 0, -0.12], [0.42, -1, 0.25]];
   for (const [u, v, lift] of corners) {
@@ -317,7 +342,8 @@ function addBlade(mesh, segment, centre, turn, size, needles, random, frequency,
       normal[0] - lean * side[0], normal[1] - lean * side[1], normal[2] - lean * side[2],
       frequency, phase, shade);
   }
-  mesh.indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
+  mesh.indices.push(first, first + 1, first + 2);
+  if (isFolded) mesh.indices.push(first, first + 2, first + 3);
 }
 
 /**

@@ -8,7 +8,6 @@
 const STRETCH_TO = (Math.PI / 2) ** 2;
 const BLEND_FROM = (Math.PI / 6) ** 2;
 const BLEND_TO = (Math.PI / 4) ** 2;
-const N_SHAPES = 3;
 
 /** Numbers per pose: x y z [m] of the root-side node, 0, then the quaternion x y z w. */
 export const STRIDE = 8;
@@ -26,7 +25,7 @@ export class Placer {
     this.rotations = new Float32Array(description.nKeys);
     this.poses = new Float32Array(STRIDE * description.nSegments);
     this._base = new Float32Array(4 * description.nBranches); // w x y z
-    this._way = new Float32Array(3 * description.nSlopes);
+    this._half = new Float32Array(256); // half of each key rotation of a branch, stretched
     this._rows = rowsOf(description, this.branches);
   }
 
@@ -56,8 +55,8 @@ export class Placer {
 
   /** @param {number} branch */
   _placeBranch(branch) {
-    const { arrays, nSlopes } = this.description;
-    const { rotations: x, poses, _base: bases, _way: way } = this;
+    const { arrays } = this.description;
+    const { rotations: x, poses, _base: bases, _half: half } = this;
     const parent = arrays.branch_parent[branch];
     const offset = arrays.branch_offset;
     let px = offset[3 * branch];
@@ -97,10 +96,14 @@ export class Placer {
     bases[own + 3] = bz;
 
     const first = arrays.branch_coordinate[branch];
-    const pairs = first < 0 ? 0 : arrays.branch_pairs[branch];
-    const twists = first < 0 ? 0 : arrays.branch_twists[branch];
+    const count = first < 0 ? 0 : arrays.branch_keys[branch];
+    const turn = arrays.turn;
+    let row = arrays.branch_turn[branch];
     let blend = 0;
-    if (pairs > 0) {
+    let wx = 0;
+    let wy = 0;
+    let wz = 0;
+    if (count > 0) {
       const f = 9 * branch;
       const frame = arrays.branch_frame;
       const kx = x[first];
@@ -109,21 +112,11 @@ export class Placer {
       blend = Math.min(Math.max((t - BLEND_FROM) / (BLEND_TO - BLEND_FROM), 0), 1);
       const skew = arrays.branch_skew[2 * branch];
       const skewHere = skew + blend * (arrays.branch_skew[2 * branch + 1] - skew);
-      const half = 0.5 * (1 + Math.min(t, STRETCH_TO) * skewHere);
-      for (let c = 0; c < 3; c++) {
-        way[c] = half * (kx * frame[f + 6 + c] - ky * frame[f + 3 + c]);
-      }
-      for (let p = 1; p < pairs; p++) {
-        const ux = 0.5 * x[first + 2 * p];
-        const uy = 0.5 * x[first + 2 * p + 1];
-        for (let c = 0; c < 3; c++) {
-          way[3 * p + c] = ux * frame[f + 6 + c] - uy * frame[f + 3 + c];
-        }
-      }
-      for (let p = 0; p < twists; p++) {
-        const spin = 0.5 * x[first + 2 * pairs + p];
-        for (let c = 0; c < 3; c++) way[3 * (N_SHAPES + p) + c] = spin * frame[f + c];
-      }
+      const stretched = 0.5 * (1 + Math.min(t, STRETCH_TO) * skewHere);
+      wx = stretched * (kx * frame[f + 6] - ky * frame[f + 3]);
+      wy = stretched * (kx * frame[f + 7] - ky * frame[f + 4]);
+      wz = stretched * (kx * frame[f + 8] - ky * frame[f + 5]);
+      for (let c = 0; c < count; c++) half[c] = (c < 2 ? stretched : 0.5) * x[first + c];
     }
 
     const slope = arrays.segment_slope;
@@ -135,21 +128,19 @@ export class Placer {
       let qx = bx;
       let qy = by;
       let qz = bz;
-      if (pairs > 0) {
-        const at = s * nSlopes;
-        const main = slope[at] + blend * (arrays.segment_tip_slope[s] - slope[at]);
-        let hx = main * way[0];
-        let hy = main * way[1];
-        let hz = main * way[2];
-        for (let p = 1; p < pairs; p++) {
-          hx += slope[at + p] * way[3 * p];
-          hy += slope[at + p] * way[3 * p + 1];
-          hz += slope[at + p] * way[3 * p + 2];
-        }
-        for (let p = N_SHAPES; p < N_SHAPES + twists; p++) {
-          hx += slope[at + p] * way[3 * p];
-          hy += slope[at + p] * way[3 * p + 1];
-          hz += slope[at + p] * way[3 * p + 2];
+      if (count > 0) {
+        // By one slope about the axes across its chord, or by every key rotation in its own way.
+        const far = blend * (arrays.segment_tip_slope[s] - slope[s]);
+        const main = row < 0 ? slope[s] + far : far;
+        let hx = main * wx;
+        let hy = main * wy;
+        let hz = main * wz;
+        if (row >= 0) {
+          for (let c = 0; c < count; c++, row++) {
+            hx += half[c] * turn[3 * row];
+            hy += half[c] * turn[3 * row + 1];
+            hz += half[c] * turn[3 * row + 2];
+          }
         }
         halfTurn(hx, hy, hz);
         const { w, i, j, k } = turnOf;
@@ -190,31 +181,25 @@ export class Placer {
    * @param {number} parent
    */
   _baseTurn(branch, parent) {
-    const { arrays, nSlopes } = this.description;
+    const { arrays } = this.description;
     const x = this.rotations;
     const first = arrays.branch_coordinate[parent];
     if (first < 0) return false;
-    const pairs = arrays.branch_pairs[parent];
-    const twists = arrays.branch_twists[parent];
-    const slope = arrays.branch_base_slope;
-    const at = branch * nSlopes;
+    const count = arrays.branch_keys[parent];
+    const turn = arrays.turn;
     const t = Math.min(x[first] ** 2 + x[first + 1] ** 2, STRETCH_TO);
-    const main = slope[at] * (1 + t * arrays.branch_skew[2 * parent]);
-    let ux = main * x[first];
-    let uy = main * x[first + 1];
-    let spin = 0;
-    for (let p = 1; p < pairs; p++) {
-      ux += slope[at + p] * x[first + 2 * p];
-      uy += slope[at + p] * x[first + 2 * p + 1];
+    const stretched = 0.5 * (1 + t * arrays.branch_skew[2 * parent]);
+    let at = 3 * arrays.branch_base_turn[branch];
+    let hx = 0;
+    let hy = 0;
+    let hz = 0;
+    for (let c = 0; c < count; c++, at += 3) {
+      const half = (c < 2 ? stretched : 0.5) * x[first + c];
+      hx += half * turn[at];
+      hy += half * turn[at + 1];
+      hz += half * turn[at + 2];
     }
-    for (let p = 0; p < twists; p++) spin += slope[at + N_SHAPES + p] * x[first + 2 * pairs + p];
-    const f = 9 * parent;
-    const frame = arrays.branch_frame;
-    halfTurn(
-      0.5 * (ux * frame[f + 6] - uy * frame[f + 3] + spin * frame[f]),
-      0.5 * (ux * frame[f + 7] - uy * frame[f + 4] + spin * frame[f + 1]),
-      0.5 * (ux * frame[f + 8] - uy * frame[f + 5] + spin * frame[f + 2]),
-    );
+    halfTurn(hx, hy, hz);
     return true;
   }
 }
@@ -263,7 +248,7 @@ function rowsOf(description, branches) {
     while (first >= blocks[block + 1]) block += 5;
     while (first < blocks[block]) block -= 5;
     const width = blocks[block + 3] - blocks[block + 2];
-    const count = 2 * arrays.branch_pairs[branch] + arrays.branch_twists[branch];
+    const count = arrays.branch_keys[branch];
     for (let key = first; key < first + count; key++) {
       const at = blocks[block + 4] + (key - blocks[block]) * width;
       rows.push(key, at, blocks[block + 2], blocks[block + 3]);

@@ -55,8 +55,9 @@ export class Playout {
     this.clock = new ClockOffset();
     /** @type {Frame[]} */
     this._frames = [];
-    this.missing = 0;
     this.received = 0;
+    /** Frames that came after they were to be shown. */
+    this.late = 0;
     /** Age of the newest frame when it came, over the quickest [ms]. */
     this.lateness = 0;
     /** @type {Float32Array | null} what was drawn when the stream was cut */
@@ -93,6 +94,7 @@ export class Playout {
     this.received++;
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
+    if (this.lateness > this.delay) this.late++;
     this._frames.push(frame);
     if (this._frames.length > KEPT) this._frames.shift();
   }

@@ -42,7 +42,6 @@ const FRAME_SIZE = 28;
  * @property {number} nBranches
  * @property {number} nCoordinates
  * @property {number} nKeys key rotations of all trees
- * @property {number} nSlopes columns of the slopes
  * @property {Record<string, NumberArray>} arrays
  *
  * @typedef {object} Frame
@@ -104,7 +103,6 @@ export function decodeDescription(data) {
     nBranches,
     nCoordinates: arrays.basis_scale.length,
     nKeys,
-    nSlopes: header.arrays.segment_slope.shape[1],
     arrays,
   };
 }

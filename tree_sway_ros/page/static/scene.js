@@ -7,7 +7,6 @@ import {
   barkMesh,
   boxOf,
   drawnBranches,
-
   isPotted,
   leafMesh,
   restPoses,
@@ -20,8 +19,12 @@ import * as shaders from "./shaders.js";
 /** A shadow is drawn anew every so many frames without a graphics unit. */
 const SHADOW_EVERY = 5;
 /** Frames per second below which, without a graphics unit, fewer points are drawn. */
-const WANTED_FPS = 45;
+const WANTED_FPS = 55;
+/** Points per point of the page, and share of the leaves, that are drawn at least. */
 const COARSEST = 0.7;
+const THINNEST = 0.3;
+/** Segments that are drawn at most without a graphics unit. */
+const MOST_SLOW = 6000;
 const POT_HEIGHT = 0.17;
 
 /**
@@ -49,9 +52,14 @@ const WOODS = {
   spruce: { bark: [0.4, 0.29, 0.22], twig: [0.38, 0.28, 0.18], leaf: [0.11, 0.27, 0.16], fresh: [0.25, 0.43, 0.22] },
   birch: { bark: [0.82, 0.81, 0.78], twig: [0.4, 0.3, 0.25], leaf: [0.3, 0.48, 0.16], fresh: [0.55, 0.68, 0.25] },
 };
-WOODS.sitka = WOODS.spruce;
+WOODS.sitka = { ...WOODS.spruce, bark: [0.42, 0.37, 0.36] };
+WOODS.oak = { ...WOODS.usual, bark: [0.36, 0.31, 0.26] };
+WOODS.beech = { ...WOODS.usual, bark: [0.55, 0.56, 0.54] };
+WOODS.ash = { ...WOODS.usual, bark: [0.52, 0.5, 0.44] };
+WOODS.sycamore = { ...WOODS.usual, bark: [0.5, 0.45, 0.41] };
+WOODS.walnut = { ...WOODS.usual, bark: [0.46, 0.43, 0.4] };
 WOODS.douglas_fir = WOODS.spruce;
-WOODS.pine = { ...WOODS.spruce, bark: [0.55, 0.36, 0.25] };
+WOODS.pine = { ...WOODS.spruce, bark: [0.66, 0.4, 0.24] };
 
 /** @param {WebGLRenderingContext | WebGL2RenderingContext} gl */
 function isSoftware(gl) {
@@ -99,6 +107,9 @@ export class Scene {
     };
     this._texture = gl.createTexture();
     this._rows = 0;
+    /** Segments that are drawn, and the slot of each. */
+    this._drawn = new Int32Array(0);
+    this._slots = new Uint32Array(0);
     /** @type {Float32Array} */
     this._texels = new Float32Array(0);
     /** @type {Record<string, Drawable | null>} */
@@ -116,6 +127,8 @@ export class Scene {
     this._shadowHalf = 1;
     /** Points of the picture per point of the page. */
     this._fineness = 1;
+    /** Share of the leaves that is drawn. */
+    this._density = 1;
     this._paceFrom = 0;
     this._paced = 0;
     this._groundHeight = 0;
@@ -133,13 +146,24 @@ export class Scene {
   describe(description) {
     const { gl } = this;
     const rest = restPoses(description);
-    const branches = drawnBranches(description);
+    const branches = drawnBranches(description, this.isSlow ? MOST_SLOW : undefined);
     this.placer = new Placer(description, branches);
     this.placer.poses.set(rest);
     this.description = description;
     const isSame = this._name === description.name;
     this._name = description.name;
-    this._rows = Math.ceil((2 * description.nSegments) / shaders.TEXTURE_WIDTH);
+    // Only what is drawn goes to the graphics unit, each segment in a slot of its own.
+    const { branch_first: first } = description.arrays;
+    const drawn = [];
+    this._slots = new Uint32Array(description.nSegments);
+    for (const branch of branches) {
+      for (let s = first[branch]; s < first[branch + 1]; s++) {
+        this._slots[s] = drawn.length;
+        drawn.push(s);
+      }
+    }
+    this._drawn = Int32Array.from(drawn);
+    this._rows = Math.ceil((2 * drawn.length) / shaders.TEXTURE_WIDTH);
     this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * this._rows);
     gl.bindTexture(gl.TEXTURE_2D, this._texture);
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
@@ -151,7 +175,8 @@ export class Scene {
     this._free("leaf");
     const bark = barkMesh(description, branches, rest);
     this._parts.bark = this._hung("bark", bark, [["ring", 4]]);
-    const leaves = leafMesh(description, branches, rest, this.isSlow ? 4500 : 24000);
+    const leaves = leafMesh(description, branches, rest, this.isSlow ? 4500 : 24000,
+      !this.isSlow);
     this._parts.leaf = this._hung("leaf", leaves, [
       ["centre", 3],
       ["orientation", 4],
@@ -204,8 +229,9 @@ export class Scene {
    *
    * @param {Float32Array | null} coordinates the state; the poses stay as they are if null
    * @param {number} time [s]
+   * @param {boolean} isPaused nothing of the picture changes then
    */
-  draw(coordinates, time) {
+  draw(coordinates, time, isPaused) {
     const { gl, look } = this;
     this.resize();
     const matrix = this.camera.update();
@@ -214,7 +240,7 @@ export class Scene {
     // The eye takes a shadow that is some frames old for one that is not.
     const every = this.isSlow ? SHADOW_EVERY : 1;
     if (this.placer && this._frame % every === 0) this._castShadow(matrix, time);
-    if (this.isSlow) this._keepPace();
+    if (this.isSlow && !isPaused) this._keepPace();
     this._frame++;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -230,7 +256,12 @@ export class Scene {
   /** @param {Float32Array} poses */
   _upload(poses) {
     const { gl } = this;
-    this._texels.set(poses);
+    const { _drawn: drawn, _texels: texels } = this;
+    for (let slot = 0; slot < drawn.length; slot++) {
+      const from = STRIDE * drawn[slot];
+      const to = STRIDE * slot;
+      for (let c = 0; c < STRIDE; c++) texels[to + c] = poses[from + c];
+    }
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this._texture);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, this._rows, gl.RGBA, gl.FLOAT,
@@ -263,6 +294,7 @@ export class Scene {
     gl.useProgram(used.program);
     gl.uniformMatrix4fv(at.camera, false, matrix);
     gl.uniform3f(at.light, light[0], light[1], light[2]);
+    gl.uniform3f(at.eye, this.camera.eye[0], this.camera.eye[1], this.camera.eye[2]);
     gl.uniform1f(at.ground, this._groundHeight);
     gl.uniform1f(at.isShadow, isShadow ? 1 : 0);
     const [x, y] = this._shadowMiddle;
@@ -286,15 +318,27 @@ export class Scene {
     this._shadowHalf = Math.max(to[0] - from[0], to[1] - from[1]) / 2;
   }
 
-  /** Draw fewer points while frames come too slowly, and more again when there is time. */
+  /** What of the picture is left out so that frames come in time, for people; empty if nothing. */
+  get leftOut() {
+    const parts = [];
+    if (this._fineness < 0.99) parts.push(`${Math.round(100 * this._fineness)} % of the points`);
+    if (this._density < 0.99) parts.push(`${Math.round(100 * this._density)} % of the leaves`);
+    return parts.length ? `Drawn without a graphics unit: ${parts.join(", ")}` : "";
+  }
+
+  /** Draw fewer points and leaves while frames come too slowly, more again when there is time. */
   _keepPace() {
     const now = performance.now();
     this._paced++;
+    if (now - this._paceFrom > 3000) [this._paceFrom, this._paced] = [now, 0];
     if (now - this._paceFrom < 700) return;
     const fps = (1000 * this._paced) / (now - this._paceFrom);
     if (this._paceFrom && this._paced > 2) {
-      const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.04;
+      const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.02;
       this._fineness = Math.min(1, Math.max(COARSEST, this._fineness * factor));
+      // Points cost less than leaves, and are missed less.
+      const thinner = factor < 1 && this._fineness > COARSEST ? 1 : factor;
+      this._density = Math.min(1, Math.max(THINNEST, this._density * thinner));
     }
     this._paceFrom = now;
     this._paced = 0;
@@ -326,7 +370,8 @@ export class Scene {
       gl.uniform1f(used.uniforms.speed, Math.hypot(...this.wind));
       const law = description.flutter ?? { gain: 0, largest_angle: 1 };
       gl.uniform2f(used.uniforms.law, law.gain, law.largest_angle);
-      drawPart(gl, leaf);
+      gl.uniform1f(used.uniforms.swell, 1 / Math.sqrt(this._density));
+      drawPart(gl, leaf, this._density);
     }
   }
 
@@ -425,7 +470,7 @@ export class Scene {
     const used = this._programs[name];
     const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
     gl.bindVertexArray(vao);
-    const segments = filled(gl, gl.ARRAY_BUFFER, Uint32Array.from(mesh.segments));
+    const segments = filled(gl, gl.ARRAY_BUFFER, Uint32Array.from(mesh.segments, (s) => this._slots[s]));
     const at = gl.getAttribLocation(used.program, "segment");
     gl.enableVertexAttribArray(at);
     gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
@@ -536,10 +581,11 @@ function filled(gl, kind, data) {
 /**
  * @param {WebGL2RenderingContext} gl
  * @param {Drawable} part
+ * @param {number} [share] of its triangles
  */
-function drawPart(gl, part) {
+function drawPart(gl, part, share = 1) {
   gl.bindVertexArray(part.vao);
-  gl.drawElements(gl.TRIANGLES, part.count, gl.UNSIGNED_INT, 0);
+  gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
 /** @param {number[]} v */

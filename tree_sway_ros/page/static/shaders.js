@@ -11,6 +11,7 @@ uniform highp sampler2D poses;
 uniform mat4 camera;
 uniform float ground;
 uniform vec3 light;
+uniform vec3 eye;
 uniform vec4 shadowArea; // middle x, y, one over half its size, 1 when the shadow is drawn
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
@@ -21,36 +22,51 @@ vec4 seen(vec3 p) {
 }
 `;
 
+/** What is lit; the shadow is its outline. */
+const LIT = `#version 300 es
+precision highp float;
+in vec3 normal;
+uniform vec3 light;
+uniform float isShadow;
+out vec4 color;
+`;
+
 export const BARK_VERTEX = `${POSE}
 in uint segment;
-in vec4 ring; // along, across y, across z, thickness
+in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, 0, thickness - 2
 out vec3 normal;
-out vec3 shade; // thickness, height over the ground, around
+out float thickness;
 void main() {
-  vec3 at = texel(2u * segment).xyz;
+  vec3 p = texel(2u * segment).xyz;
   vec4 q = texel(2u * segment + 1u);
-  vec3 across = vec3(0.0, ring.yz);
-  vec3 p = at + turned(q, vec3(ring.x, 0.0, 0.0) + across);
-  normal = turned(q, across);
-  shade = vec3(ring.w, p.z - ground, p.z);
+  vec3 axis = turned(q, vec3(1.0, 0.0, 0.0));
+  p += ring.x * axis;
+  thickness = ring.w;
+  if (ring.w < -0.5) {
+    // What is too thin to be seen round faces whoever looks, the sun for the shadow.
+    vec3 back = normalize(shadowArea.w < 0.5 ? eye - p : light);
+    vec3 across = normalize(cross(back, axis) + vec3(0.0, 0.0, 1e-6));
+    p += ring.y * across;
+    normal = back + sign(ring.y) * across;
+    thickness += 2.0;
+  } else {
+    vec3 across = turned(q, vec3(0.0, ring.yz));
+    p += across;
+    normal = across;
+  }
   gl_Position = seen(p);
 }`;
 
-export const BARK_FRAGMENT = `#version 300 es
-precision highp float;
-in vec3 normal;
-in vec3 shade;
-uniform vec3 light;
+export const BARK_FRAGMENT = `${LIT}
+in float thickness;
 uniform vec3 barkColor;
 uniform vec3 twigColor;
-uniform float isShadow;
-out vec4 color;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
   float lit = max(dot(n, light), 0.0);
   float sky = 0.5 + 0.5 * n.z;
-  vec3 base = mix(twigColor, barkColor, shade.x);
+  vec3 base = mix(twigColor, barkColor, thickness);
   color = vec4(base * (0.34 + 0.28 * sky + 0.62 * lit), 1.0);
 }`;
 
@@ -64,6 +80,7 @@ in vec3 flutter; // frequency, phase, shade
 uniform float time;
 uniform float speed;
 uniform vec2 law; // gain, largest angle
+uniform float swell; // where fewer leaves are drawn, larger ones
 out vec3 normal;
 out float shade;
 void main() {
@@ -76,21 +93,16 @@ void main() {
   vec3 local = vec3(place.x, c * place.y - s * place.z, s * place.y + c * place.z);
   vec3 face = vec3(facing.x, c * facing.y - s * facing.z, s * facing.y + c * facing.z);
   vec4 own = orientation.yzwx;
-  vec3 p = at + turned(q, centre + turned(own, local));
+  vec3 p = at + turned(q, centre + turned(own, swell * local));
   normal = turned(q, turned(own, face));
   shade = flutter.z;
   gl_Position = seen(p);
 }`;
 
-export const LEAF_FRAGMENT = `#version 300 es
-precision highp float;
-in vec3 normal;
+export const LEAF_FRAGMENT = `${LIT}
 in float shade;
-uniform vec3 light;
 uniform vec3 leafColor;
 uniform vec3 freshColor;
-uniform float isShadow;
-out vec4 color;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
@@ -118,13 +130,8 @@ void main() {
   gl_Position = seen(p);
 }`;
 
-export const SOLID_FRAGMENT = `#version 300 es
-precision highp float;
-in vec3 normal;
+export const SOLID_FRAGMENT = `${LIT}
 in vec3 base;
-uniform vec3 light;
-uniform float isShadow;
-out vec4 color;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);

@@ -66,7 +66,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             told |= own_names([*sys.argv, *(options.get("cli_args") or ())], name)
         Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)
         self.failure: Exception | None = None
-        self.is_done = False
+        self.is_done = self.is_active = False
         self._alone: dict[str, set[str]] = {}
         self._closers: list[Callable[[], None]] = []
         try:
@@ -77,7 +77,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
                 self.check_values,
                 lambda parameter: parameter in told,
             )
-            self.is_active = False
             if self.values.get("lifecycle"):
                 self._be_managed()
             else:

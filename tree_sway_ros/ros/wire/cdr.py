@@ -13,6 +13,7 @@ memory as well.
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Sequence
 from typing import Any
@@ -40,6 +41,9 @@ class CdrTemplate:
         How many stamps are marked, with numbers 0 .. n_stamps - 1.
     shapes
         Shape of each marked block, in the order of their numbers; an empty block needs no mark.
+    tail
+        Bytes of the message after its last block, where the serialiser leaves some behind them that
+        strict readers refuse; None to keep all.
 
     Raises
     ------
@@ -48,12 +52,23 @@ class CdrTemplate:
 
     """
 
-    def __init__(self, message: Any, n_stamps: int, shapes: Sequence[tuple[int, ...]]) -> None:
+    def __init__(
+        self,
+        message: Any,
+        n_stamps: int,
+        shapes: Sequence[tuple[int, ...]],
+        *,
+        tail: int | None = None,
+    ) -> None:
         from rclpy.serialization import serialize_message
 
         data = bytes(serialize_message(message))
         if data[1] != _LITTLE_ENDIAN:
             raise TransportError("the middleware writes big endian messages")
+        if tail is not None:
+            last = len(shapes) - 1
+            size = 8 * math.prod(shapes[last])
+            data = data[: _find(data, struct.pack("<d", _NUMBER + last)) + size + tail]
         self._size = len(data)
         backing = np.zeros(self._size + 8, dtype=np.uint8)
         # Byte 4 of the message at a multiple of 8 in memory.

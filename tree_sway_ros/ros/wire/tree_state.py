@@ -4,7 +4,7 @@
 The state of a tree as `sensor_msgs/JointState`: a name per coordinate, the wind first.
 
 With the ``state`` of `tree_description` it is all that poses are rebuilt from; a bag of it plots
-anywhere and takes some MB per hour.
+anywhere and takes some 50 MB per hour.
 
 """
 
@@ -34,7 +34,8 @@ def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
     mark_stamp(message.header.stamp)
     message.name = [*WIND_NAMES, *coordinate_names]
     message.position = [block_mark(), *[0.0] * (len(message.name) - 1)]
-    return CdrTemplate(message, 1, [(len(message.name),)])
+    # Velocities and efforts: two empty lists.
+    return CdrTemplate(message, 1, [(len(message.name),)], tail=8)
 
 
 def read_state(message: Any) -> tuple[Floats, Floats]:

@@ -72,6 +72,7 @@ def run_battery(
         for row in rows:
             print(f"    {row.case:<58} {row.must_hold:<46} {row.measured:<40} {row.verdict}")
             failed += not row.good
+        failed += not rows  # a case that measures nothing has shown nothing
         total += len(rows)
         report.append(
             {

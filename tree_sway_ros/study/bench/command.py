@@ -22,6 +22,7 @@ from tree_sway_ros.study.bench.forest import forest_table
 from tree_sway_ros.study.bench.latency import time_latency
 from tree_sway_ros.study.bench.measured import Measured, as_json, draw, read_baseline, table
 from tree_sway_ros.study.bench.setup_time import setup_table
+from tree_sway_ros.study.bench.shards import time_shards
 from tree_sway_ros.study.bench.sizes import time_sizes
 from tree_sway_ros.study.bench.stand import time_stand
 from tree_sway_ros.study.bench.step import StepTiming, time_steps
@@ -35,9 +36,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=("step", "cut", "forest", "setup", *_FIGURES),
         help="step: solve and place one step of a tree of 121 branches; cut: solve it cut in 3 "
         "to 24 segments per branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees "
-        "of 121 and 1,021 branches up; sizes: the model wind_basis on trees of 121 to 10,105 "
-        "branches; stand: 1,000 trees of 1,000 segments; stream: 10,000 poses at 60 Hz to another "
-        "process; latency: from a wind's stamp to its pose; engines: beside MuJoCo",
+        "of 121 and 1,021 branches up; sizes: wind_basis on trees of 121 to 10,105 "
+        "branches, its cost and its error; stand: 1,000 trees of 1,000 segments; stream: 10,000 "
+        "poses at 60 Hz to another process; latency: from a wind's stamp to its pose; "
+        "engines: beside MuJoCo; "
+        "shards: a stand on two hosts, cut apart and with a shard killed",
     )
     parser.add_argument("--rounds", type=int, default=20, help="of 200 steps each (%(default)s)")
     parser.add_argument("--segments", type=int, default=6, help="a branch, for step (%(default)s)")
@@ -48,7 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="instead of the benchmark's own: a tree for sizes, latency and engines, a stand for "
         "stand",
     )
-    parser.add_argument("--size", type=int, metavar="N", help="trees of stand, poses of stream")
+    parser.add_argument(
+        "--size", type=int, metavar="N", help="trees of stand and shards, poses of stream"
+    )
     parser.add_argument(
         "--seconds", type=float, metavar="S", help="how long stream, latency and engines run"
     )
@@ -150,6 +155,7 @@ _FIGURES: dict[str, Callable[[argparse.Namespace], list[Measured]]] = {
     "stream": _stream,
     "latency": _latency,
     "engines": _engines,
+    "shards": lambda arguments: time_shards(**_given(n_trees=arguments.size)),
 }
 
 

@@ -12,14 +12,22 @@ import importlib.util
 
 import numpy as np
 
-from tree_sway_ros.core.reference.measure import frame_means
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.reference.measure import frame_means, tip_error
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import MissingDependencyError
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.study.bench.measured import Measured
 from tree_sway_ros.study.chart.fidelity import simulated_wind
-from tree_sway_ros.study.compare.with_mujoco import FRAME, compare_with_mujoco
+from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
+from tree_sway_ros.study.compare.with_mujoco import (
+    DAMPING_RATIO,
+    FRAME,
+    compare_with_mujoco,
+    mujoco_tips,
+    without_twist,
+)
 from tree_sway_ros.tools.progress import bar
 
 _SECONDS = 5.0
@@ -27,7 +35,7 @@ _SECONDS = 5.0
 
 def race_engines(tree: Tree | None = None, seconds: float = _SECONDS) -> list[Measured]:
     """
-    Run models of ours beside MuJoCo.
+    Run models of ours beside MuJoCo, and beside DART where it is installed.
 
     Parameters
     ----------
@@ -63,8 +71,21 @@ def race_engines(tree: Tree | None = None, seconds: float = _SECONDS) -> list[Me
             Measured(f"{model}, MuJoCo's time over its own", told.speed_up, "-"),
         ]
         engine[:] = told.mujoco_cost, told.error_at_60
-    return [
-        *rows,
+    rows += [
         Measured("MuJoCo at 1/60 s", float(1e6 * engine[0] * FRAME), "us"),
         Measured("MuJoCo at 1/60 s, error over motion", float(engine[1]), "-"),
+    ]
+    return rows + (_dart(tree, wind) if importlib.util.find_spec("dartpy") else [])
+
+
+def _dart(tree: Tree, wind: Floats) -> list[Measured]:
+    """Run DART on the same bodies, behind the same truth."""
+    from tree_sway_ros.study.compare.dart_tree import DartTree
+
+    wood = without_twist(species_named(tree.species))
+    truth = mujoco_tips(MujocoTree(tree, wood, DAMPING_RATIO), wind, 32)
+    tips, cost = DartTree(MujocoTree(tree, wood, DAMPING_RATIO, even=False), FRAME).race(wind)
+    return [
+        Measured("DART at 1/60 s", 1e6 * cost, "us"),
+        Measured("DART at 1/60 s, error over motion", tip_error(tree, tips, truth), "-"),
     ]

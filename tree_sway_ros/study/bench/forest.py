@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A forest timed: what share of a core it takes to solve and place it sixty times per second.
-
-"""
+"""A forest timed: what share of a core it takes to solve and place it sixty times per second."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 The model `wind_basis` timed by the size of the tree: the step alone, as the kernel runs it, and
-step and placing as a program calls them.
+step and placing as a program calls them; and how far it is from `modes`.
 
 """
 
@@ -19,6 +19,7 @@ from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.wind_basis import WindBasisBank, step_instance
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.study.bench.measured import Measured
 from tree_sway_ros.study.bench.step import gusts
@@ -29,6 +30,7 @@ SIZES = {121: (12, 3, 2), 1201: (12, 11, 8), 10105: (24, 20, 20)}
 
 _DT = 1.0 / 60.0
 _STEPS, _ROUNDS = 5000, 20
+_SPEEDS, _SECONDS = (2.0, 5.0, 8.0, 12.0), 20.0
 
 
 def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
@@ -43,12 +45,18 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
     Returns
     -------
     list of Measured
-        CPU times in [us], those of the quietest round.
+        CPU times in [us], those of the quietest round; set-up in [s] of CPU time; errors over the
+        motion of the segments, of `modes`, in gusts and turns.
 
     """
     if not trees:
         trees = [bench_tree(2, children) for children in SIZES.values()]
-    simulators = [SwaySimulator(tree, model="wind_basis") for tree in bar(trees, "tables of winds")]
+    SwaySimulator(bench_tree(2), model="wind_basis")  # kernels are there
+    simulators, set_up = [], []
+    for tree in bar(trees, "tables of winds"):
+        begun = time.process_time()
+        simulators.append(SwaySimulator(tree, model="wind_basis"))
+        set_up.append(time.process_time() - begun)
     winds = gusts(_STEPS)
     least = np.full((len(trees), 3), np.inf)
     poses = [np.empty((tree.n_segments, 7)) for tree in trees]
@@ -72,9 +80,53 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
     for tree, spent in zip(trees, (1e6 * least).tolist(), strict=True):
         for what, value in zip(("kernel of a step", "step", "place"), spent, strict=True):
             rows.append(Measured(f"{what}, {tree.n_branches} branches", value, "us"))
+    for tree, spent_once in zip(trees, set_up, strict=True):
+        rows.append(Measured(f"set-up, CPU, {tree.n_branches} branches", spent_once, "s"))
+    rows += errors(simulators)
     kernels = least[:, 0]
     rows.append(Measured("kernel, most over least", float(kernels.max() / kernels.min()), "-"))
     return rows
+
+
+def errors(simulators: Sequence[SwaySimulator]) -> list[Measured]:
+    """Tell how far tables are from `modes` in gusts and turns, over the motion of all segments."""
+    rows = []
+    for simulator in bar(simulators, "against modes"):
+        tree = simulator.tree
+        other = SwaySimulator(tree, simulator.species, simulator.settings, model="modes")
+        for speed in _SPEEDS:
+            error = against(simulator, other, gusts_and_turns(speed))
+            what = f"error in {speed:g} m/s, {tree.name}, {tree.n_branches} branches"
+            rows.append(Measured(what, error, "-"))
+    return rows
+
+
+def against(simulator: SwaySimulator, other: SwaySimulator, winds: Floats) -> float:
+    """Root mean square gap of all segments over that of the other's motion about its mean."""
+    simulator.reset()
+    other.reset()
+    placed, gaps = [], []
+    for number, wind in enumerate(winds):
+        simulator.step(wind, _DT)
+        other.step(wind, _DT)
+        if number >= 60 and number % 6 == 0:
+            placed.append(other.place()[:, :3].copy())
+            gaps.append(np.square(simulator.place()[:, :3] - placed[-1]).sum(axis=1).mean())
+    motion = np.array(placed) - np.mean(placed, axis=0)
+    return float(np.sqrt(np.mean(gaps) / np.square(motion).sum(axis=2).mean()))
+
+
+def gusts_and_turns(speed: float, seconds: float = _SECONDS, seed: int = 5) -> Floats:
+    """Turbulence of 60 Hz, a gust of 1.6 times, a slow turn and a sudden one by 90 degrees."""
+    n = round(seconds / _DT)
+    wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=np.random.default_rng(seed))
+    at = np.arange(n) * _DT
+    wind *= (1.0 + 0.6 * np.exp(-0.5 * ((at - 10.0) / 0.4) ** 2))[:, None]
+    turn = 0.65 + 0.03 * at + np.where(at > 14.0, 0.5 * np.pi, 0.0)
+    x, y, z = wind.T
+    cosine, sine = np.cos(turn), np.sin(turn)
+    turned: Floats = np.stack([cosine * x - sine * y, sine * x + cosine * y, z], axis=1)
+    return turned
 
 
 def _run(simulator: SwaySimulator, winds: Floats) -> None:

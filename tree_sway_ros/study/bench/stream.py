@@ -14,6 +14,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,11 +24,19 @@ from tree_sway_ros.study.bench.measured import Measured
 from tree_sway_ros.tools.progress import waiting
 
 _PATIENCE = 30.0
+_PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 
 
 def isolated(seed: int) -> dict[str, str]:
-    """Environment of a domain of its own on this machine."""
+    """
+    Environment of a domain of its own on this machine, with room for large frames in shared memory.
+
+    """
+    places = Path(__file__).parents[3], Path(sys.prefix, "share", "tree_sway_ros")
+    found = [place / "config" / "fastdds.xml" for place in places]
+    room = {name: str(path) for path in found if path.is_file() for name in _PROFILES}
     return {
+        **room,
         **os.environ,
         "ROS_DOMAIN_ID": str(100 + seed % 100),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",

@@ -13,6 +13,7 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.campaign.plan import read_study
 from tree_sway_ros.study.campaign.runner import run_study
 from tree_sway_ros.study.campaign.table import write_table
+from tree_sway_ros.tools.arguments import refuse_overwriting
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,6 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--workers", type=int, metavar="N", help="processes; one per core if left out"
     )
+    parser.add_argument(
+        "--force", action="store_true", help="write over a table that is of no study of yours"
+    )
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, tcp://HOST:PORT")
 
 
@@ -37,10 +41,13 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"{arguments.workers}", where="--workers", cure="give 1 to 1024")
     cases = read_study(arguments.study)
     output = Path(arguments.output).expanduser()
+    kept = output.with_suffix(".cases")
+    if not (arguments.force or kept.is_dir()):
+        refuse_overwriting(output, "--output")
     began = time.monotonic()
     rows = run_study(
         cases,
-        output.with_suffix(".cases"),
+        kept,
         workers=arguments.workers,
         scheduler=arguments.scheduler,
         progress=_told,

@@ -12,17 +12,18 @@ from typing import Any
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.progress import waiting
 
-_CHARTS = ("methods", "fidelity", "cost", "portraits", "film")
+_CHARTS = ("methods", "fidelity", "cost", "portraits", "habits")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "what",
-        choices=(*_CHARTS, "validation", "all"),
+        choices=(*_CHARTS, "validation", "slopes", "all"),
         help="methods: of integration; fidelity: models of a tree; cost: against its size; "
-        "portraits: trees at rest and in wind; film: a pot plant in gusts; all: every picture of "
-        "the documentation",
+        "portraits: trees at rest and in wind, and a film; habits: grown species; "
+        "slopes: of response spectra; "
+        "all: every picture of the documentation",
     )
     parser.add_argument(
         "-o", "--output", default=".", metavar="FOLDER", help="for PNG and CSV (%(default)s)"

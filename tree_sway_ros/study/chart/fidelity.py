@@ -49,6 +49,12 @@ LADDER: dict[str, dict[str, Any]] = {
 
 _COLOURS = ("#1f6fb4", "#c0682b", "#2f6b2f")
 _MARKERS = ("o", "s", "^")
+_LABELS = {
+    **dict.fromkeys(("branch", "subtree"), (-1, (10, -3), "left")),
+    "coupled": (-1, (0, 9), "center"),
+    "segments": (0, (0, -16), "center"),
+}
+"""Which point a name stands at, from the least error, and where; to the left of the least else."""
 
 
 @dataclass(frozen=True)
@@ -168,20 +174,19 @@ def articulated(tree: Tree, gravity: float, *, pieces: int) -> ArticulatedTree:
 
 def _draw(points: list[Model], path: Path) -> None:
     figure = new_figure(8.4, 5.2)
-    axes = figure.add_axes((0.09, 0.11, 0.88, 0.8))
+    axes = figure.add_axes((0.09, 0.11, 0.88, 0.77))
     names = list(dict.fromkeys(point.tree for point in points))
     for number, name in enumerate(names):
         here = [point for point in points if point.tree == name]
         x, y = [p.nanoseconds / 1e3 for p in here], [p.error for p in here]
         colour, marker = _COLOURS[number % 3], _MARKERS[number % 3]
-        axes.plot(x, y, marker=marker, color=colour, ms=7, lw=0.6, alpha=0.9, label=name)
+        axes.plot(x, y, marker=marker, color=colour, ms=7, lw=0.6, alpha=0.9, label=_told(name))
     for model in dict.fromkeys(point.model for point in points):
-        here = [point for point in points if point.model == model]
-        lowest = min(here, key=lambda p: p.error)
-        place = lowest.nanoseconds / 1e3, lowest.error
-        way, side = ((-9, -4), "right") if model.startswith("modes") else ((0, -15), "center")
+        here = sorted((p for p in points if p.model == model), key=lambda p: p.error)
+        which, way, side = _LABELS.get(model, (0, (-9, -4), "right"))
+        place = here[which].nanoseconds / 1e3, here[which].error
         text = axes.annotate(
-            model, place, xytext=way, textcoords="offset points", ha=side, fontsize=10
+            model, place, xytext=way, textcoords="offset points", ha=side, fontsize=10, zorder=5
         )
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8})
     errors, costs = [p.error for p in points], [p.nanoseconds / 1e3 for p in points]
@@ -197,6 +202,19 @@ def _draw(points: list[Model], path: Path) -> None:
     axes.yaxis.set_major_formatter("{x:g}")
     axes.grid(alpha=0.25)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(title="length and diameter ratio", frameon=False, loc="upper right")
-    figure.suptitle(f"Each model against every segment solved, in {points[0].wind}", fontsize=11)
+    legend = axes.legend(title="trees of 40 branches; children have", frameon=False)
+    legend.set_loc("upper right")
+    figure.suptitle(
+        f"Error of each model against its cost, in {points[0].wind}\n"
+        "the truth: every segment solved in two pieces, four substeps per frame",
+        fontsize=11,
+    )
     save_figure(figure, path.with_suffix(".png"), figures=path)
+
+
+def _told(tree: str) -> str:
+    """What the name of a forked tree says."""
+    kind, *ratios = tree.split()
+    if kind != "forked" or len(ratios) != 2:
+        return tree
+    return f"{ratios[0]} of the length, {ratios[1]} of the diameter"

@@ -5,11 +5,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.animation import animate_poses
@@ -35,8 +37,27 @@ def chart_film(out_dir: str | Path) -> Path:
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
     opened = open_tree(TREE)
+    frames, winds, _ = _swayed(opened)
+    file = folder / f"{TREE}_sways.gif"
+    leaves = opened.leaves(None, _LEAVES)
+    return animate_poses(
+        opened.tree, frames, winds, file, rate=RATE / EVERY, leaves=leaves, pixels=_PIXELS
+    )
+
+
+def film_figures() -> dict[str, Any]:
+    """Figures of what the film shows: segments, height and the farthest way of its tip in [m]."""
+    opened = open_tree(TREE)
+    tips = _swayed(opened)[2]
+    east, _, up = tips[np.argmax(np.linalg.norm(tips, axis=1))].tolist()
+    return {"segments": opened.tree.n_segments, "height": f"{opened.tree.height:.4f}",
+            "tip_east": f"{east:.4f}", "tip_up": f"{up:.4f}"}  # fmt: skip
+
+
+def _swayed(opened: TreeFile) -> tuple[list[Floats], Floats, Floats]:
+    """Poses, wind and displacement of the tip in every picture of one period."""
     simulator = make_simulator(opened.tree, opened.species)
-    frames, winds = [], []
+    frames, winds, tips = [], [], []
     steps = round(PERIOD * RATE)
     for step in bar(range((_SETTLING + 1) * steps), "swaying"):
         wind = gusts(step / RATE)
@@ -44,12 +65,8 @@ def chart_film(out_dir: str | Path) -> Path:
         if step >= _SETTLING * steps and step % EVERY == 0:
             frames.append(np.array(simulator.place()))
             winds.append(wind)
-    file = folder / f"{TREE}_sways.gif"
-    leaves = opened.leaves(None, _LEAVES)
-    rate = RATE / EVERY
-    return animate_poses(
-        opened.tree, frames, np.array(winds), file, rate=rate, leaves=leaves, pixels=_PIXELS
-    )
+            tips.append(simulator.tip_displacement)
+    return frames, np.array(winds), np.array(tips)
 
 
 def gusts(time: float) -> Floats:

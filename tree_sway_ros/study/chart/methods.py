@@ -12,21 +12,22 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.files.whole_file import whole_file
-from tree_sway_ros.study.battery.work_precision import Point, measure
+from tree_sway_ros.study.battery.work_precision import REFERENCE_RATE, Point, measure
 from tree_sway_ros.view.plotting import new_figure, save_figure
 
 SYSTEMS, WINDS = ("1 segment", "6 segments"), ("smooth", "gusty", "turning")
 NAMED = {
-    "exact_foh": ("#c2293a", "exact, linear load: the default"),
-    "exact_zoh": ("#2f8f5b", "exact, held load"),
-    "semi_implicit_euler": ("#3b6ea5", "semi-implicit Euler"),
-    "rk4": ("#7a4fa3", "Runge-Kutta 4"),
-    "tr_bdf2": ("#1b9aaa", "TR-BDF2"),
-    "baumgarte": ("#c8742c", "multipliers, Baumgarte on RK4"),
-    "radau_ggl": ("#8a6d3b", "multipliers, Radau IIA: the reference"),
+    "exact_foh": ("#c2293a", "exact, linear load:\nthe default", 2, (-8, -32), "center"),
+    "exact_zoh": ("#2f8f5b", "exact, held load", 2, (0, -18), "right"),
+    "semi_implicit_euler": ("#3b6ea5", "semi-implicit Euler", 0, (0, 9), "left"),
+    "rk4": ("#7a4fa3", "Runge-Kutta 4", 2, (-4, -17), "left"),
+    "tr_bdf2": ("#1b9aaa", "TR-BDF2", 2, (9, -6), "left"),
+    "baumgarte": ("#c8742c", "multipliers,\nBaumgarte on RK4", 2, (-4, -32), "left"),
+    "radau_ggl": ("#8a6d3b", "multipliers,\nRadau IIA", 2, (4, -32), "right"),
 }
-"""Methods with a line of their own: colour and name; the others are grey."""
+"""Methods with a name at their line: colour, name, at which point, how far off it, alignment."""
 
+_MAIN = ("1 segment", "gusty")
 _GREY = "#c9c9c9"
 _TOP, _LOWEST = 2.0, 1e-9
 
@@ -72,48 +73,65 @@ def chart_methods(out_dir: str | Path, points: list[Point] | None = None) -> lis
 
 
 def _draw(points: list[Point], table: Path) -> Path:
-    """Six panels: a line per method over its rates, named or grey; what blew up stands on top."""
-    figure = new_figure(12.0, 8.6)
-    grid = {"left": 0.075, "right": 0.985, "top": 0.9, "bottom": 0.17, "wspace": 0.06}
-    axes = figure.subplots(2, 3, sharey=True, gridspec_kw={**grid, "hspace": 0.22})
-    rates = sorted({p.rate for p in points})
-    for row, system in enumerate(SYSTEMS):
-        for column, wind in enumerate(WINDS):
-            ax = axes[row, column]
+    """One panel with names and five small ones: a line per method over its rates."""
+    figure = new_figure(13.0, 7.6)
+    grid = figure.add_gridspec(
+        3, 4, left=0.06, right=0.99, top=0.88, bottom=0.08, wspace=0.2, hspace=0.3,
+        width_ratios=(1.5, 1.5, 1.35, 1.35),
+    )  # fmt: skip
+    for column, system in enumerate(SYSTEMS):
+        for row, wind in enumerate(WINDS):
+            is_main = (system, wind) == _MAIN
+            ax = figure.add_subplot(grid[:, :2] if is_main else grid[row, 2 + column])
             here = [p for p in points if p.system == system and p.wind == wind]
-            ax.set_title(f"{system}, {wind} wind", fontsize=12)
-            ax.set(xscale="log", yscale="log", ylim=(_LOWEST, 4 * _TOP))
+            ax.set_title(f"{system}, {wind} wind", fontsize=13 if is_main else 10)
+            ax.set(xscale="log", yscale="log", ylim=(1e-6 if is_main else _LOWEST, 4 * _TOP))
             ax.axhspan(0.5 * _TOP, 4 * _TOP, color="0.95", lw=0)
             for method in sorted({p.method for p in here}, key=lambda name: name in NAMED):
-                _line(ax, [p for p in here if p.method == method])
+                _line(ax, [p for p in here if p.method == method], with_name=is_main)
             ax.grid(color="0.9", lw=0.7)
             ax.set_axisbelow(True)
             ax.spines[["top", "right"]].set_visible(False)
-        axes[row, 0].set_ylabel("rms error of the angle [rad]", fontsize=11)
-    axes[0, 0].text(0.02, 0.97, "blew up", transform=axes[0, 0].transAxes, va="top", color="0.4")
-    for ax in axes[1]:
-        ax.set_xlabel("operations per second of wind [flop/s]", fontsize=11)
-    others = len({p.method for p in points} - set(NAMED))
-    told = [*NAMED.values(), (_GREY, f"{others} others")]
-    lines = [axes[0, 0].plot([], [], "o-", color=ink, label=name)[0] for ink, name in told]
-    figure.legend(handles=lines, loc="lower center", ncol=4, frameon=False, fontsize=11)
+            ax.tick_params(labelsize=10 if is_main else 8)
+            if is_main:
+                told: dict[str, Any] = {"transform": ax.transAxes, "color": "0.4"}
+                others = len({p.method for p in points} - set(NAMED))
+                ax.text(0.02, 0.985, "blew up", va="top", **told)
+                ax.text(0.98, 0.84, f"{others} others: grey", ha="right", va="top", **told)
+                ax.set_xlabel("operations per second of wind [flop/s]", fontsize=11)
+                ax.set_ylabel("rms error of the branch's angle [rad]", fontsize=11)
+    rates = ", ".join(map(str, sorted({p.rate for p in points})))
+    truth = " and ".join(f"{rate} (n = {n})" for n, rate in REFERENCE_RATE.items())
+    key = figure.add_subplot(grid[WINDS.index(_MAIN[1]), 2 + SYSTEMS.index(_MAIN[0])])
+    key.axis("off")
+    key.text(
+        0.0, 0.5, f"Each line is one method at\n{rates} steps per second,\nfrom left to right.\n"
+        f"\nThe truth is Radau IIA at\n{truth}\nsteps per second, n segments.",
+        va="center", fontsize=9.5, transform=key.transAxes,
+    )  # fmt: skip
     figure.suptitle(
-        f"Error against work at {', '.join(map(str, rates))} steps per second, branch of 2 Hz; "
-        "down and left is better",
+        "What accuracy costs: methods of integration on a branch of 2 Hz in wind; down and left is "
+        "better",
         fontsize=13,
     )
     return save_figure(figure, table.with_suffix(".png"), figures=table)
 
 
-def _line(ax: Any, points: list[Point]) -> None:
+def _line(ax: Any, points: list[Point], *, with_name: bool) -> None:
     """One method, from its fewest to its most steps per second."""
     points = sorted(points, key=lambda p: p.rate)
-    colour, _ = NAMED.get(points[0].method, (_GREY, ""))
-    named = points[0].method in NAMED
+    named = NAMED.get(points[0].method)
+    colour = named[0] if named else _GREY
     work = np.array([p.flops * p.rate for p in points], dtype=float)
     error = np.array([p.error for p in points])
     gone = np.isnan(error)
-    size, order = (6.0, 3) if named else (3.5, 2)
+    size, order = (6.0 if with_name else 4.0, 3) if named else (3.0, 2)
     shown = np.maximum(error, 1.5 * _LOWEST)
     ax.plot(work, shown, "o-", color=colour, ms=size, lw=1.8 if named else 0.8, zorder=order)
     ax.plot(work[gone], np.full(gone.sum(), _TOP), "x", color=colour, ms=size, zorder=order)
+    if named and with_name:
+        _, name, at, offset, side = named
+        place = work[at], shown[at]
+        ax.annotate(
+            name, place, xytext=offset, textcoords="offset points", ha=side, color=colour, zorder=4
+        )

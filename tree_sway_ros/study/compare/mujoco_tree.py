@@ -115,6 +115,16 @@ class MujocoTree:
         self.data.qvel[:] = 0.0
         self._forward(self.model, self.data)
 
+    def take(self, q: Floats, v: Floats) -> None:
+        """Go to joint angles in [rad] and rates in [rad/s], in the engine's order."""
+        self.data.qpos[:], self.data.qvel[:] = q, v
+        self._forward(self.model, self.data)
+
+    def moments(self, wind: Floats) -> Floats:
+        """Moments of a wind in [m/s], (3,), on the joints as they are in [N m]."""
+        self.blow(wind)
+        return self._generalised() + np.asarray(self.data.qfrc_applied)
+
     def step(self, wind: Floats, dt: float) -> None:
         """Advance by dt in [s] under a wind in [m/s], (3,)."""
         self.blow(wind)
@@ -264,14 +274,18 @@ def _mjcf(bodies: Bodies) -> str:
     return "\n".join(lines)
 
 
-def _body(bodies: Bodies, i: int) -> str:
-    t = bodies.axis[i]
-    aside = np.array([0.0, 0.0, 1.0]) if abs(t[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
-    first = np.cross(t, aside)
+def hinge_axes(along: Floats) -> tuple[Floats, Floats]:
+    """Axes of the two hinges of a segment that points along a unit vector."""
+    aside = np.array([0.0, 0.0, 1.0]) if abs(along[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
+    first = np.cross(along, aside)
     first /= np.linalg.norm(first)
+    return first, np.cross(along, first)
+
+
+def _body(bodies: Bodies, i: int) -> str:
     hinges = "".join(
         f'<joint type="hinge" axis="{_text(axis)}" stiffness="{bodies.bend[i]:.17g}"/>'
-        for axis in (first, np.cross(t, first))
+        for axis in hinge_axes(bodies.axis[i])
     )
     J = bodies.inertia[i]
     inertia = _text(J[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])

@@ -30,6 +30,7 @@ from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 from tree_sway_ros.tools.progress import bar, waiting
 
 FRAME = 1.0 / 60.0
+DAMPING_RATIO = 0.05
 AUTO = 0.1
 """
 Error over motion that a model may say it has, where the cheapest is asked for; both root mean
@@ -106,7 +107,7 @@ def compare_with_mujoco(
     wind: Floats,
     *,
     model: str = "modes",
-    damping_ratio: float = 0.05,
+    damping_ratio: float = DAMPING_RATIO,
     steps: int = 32,
 ) -> Comparison:
     """
@@ -133,7 +134,7 @@ def compare_with_mujoco(
         If MuJoCo is not installed.
 
     """
-    wood = _without_twist(species)
+    wood = without_twist(species)
     with waiting("building MuJoCo's model"):
         truth_model = MujocoTree(tree, wood, damping_ratio)
     first_frequency, static_sway = truth_model.agreement()
@@ -208,5 +209,6 @@ def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float
     return tips, float(cost), float(cost_there)
 
 
-def _without_twist(species: Species) -> Species:
+def without_twist(species: Species) -> Species:
+    """Return wood that does not twist, as the engines' hinges do not."""
     return replace(species, shear_ratio=500.0)

@@ -34,13 +34,14 @@ class FrameModel:
     tree
         The tree it stands for.
     node
-        Rest position of each node in [m], (m, 3); node 0 is the clamped root.
+        Rest position of each node in [m], (m, 3); node 0 is the root.
     end_node
         Node at the end of each segment, (n,).
     base_node, base_offset
         Node each segment is fixed to, (n,), and its start from there in [m], (n, 3).
     stiffness, mass
-        Of the free coordinates, six per node without the root's.
+        Of the free coordinates, six per node; of the root none if it is clamped, and its rotation
+        if a spring holds it.
     load
         Maps forces spread over the segments, 3 n, to the free coordinates.
 
@@ -87,9 +88,14 @@ class FrameModel:
             self.stiffness, k=count, M=self.mass, sigma=0.0, OPinv=operator, v0=start
         )
         order = np.argsort(square)
-        shapes = np.zeros((count, len(self.node), 3))
-        shapes[:, 1:] = vectors[:, order].T.reshape(count, -1, 6)[:, :, :3]
+        shapes = self._whole(vectors[:, order].T)[..., :3]
         return np.sqrt(square[order]) / (2.0 * np.pi), shapes
+
+    def _whole(self, free: Floats) -> Floats:
+        """Displacements and rotations of all nodes, (..., m, 6), from the free coordinates."""
+        held = np.zeros((*free.shape[:-1], 6 * len(self.node) - free.shape[-1]))
+        out: Floats = np.concatenate([held, free], axis=-1)
+        return out.reshape(*free.shape[:-1], -1, 6)
 
     def static(self, force: Floats) -> Floats:
         """
@@ -99,17 +105,14 @@ class FrameModel:
 
         """
         solution = self._factor().solve(self.load @ np.asarray(force, dtype=np.float64).ravel())
-        out = np.zeros((len(self.node), 3))
-        out[1:] = solution.reshape(-1, 6)[:, :3]
-        return out
+        return self._whole(solution)[:, :3]
 
     def static_nodal(self, force: Floats) -> Floats:
         """Displacement of the nodes in [m], (m, 3), by a force on each in [N], (m, 3)."""
-        load = np.zeros((len(self.node) - 1, 6))
-        load[:, :3] = np.asarray(force, dtype=np.float64)[1:]
-        out = np.zeros((len(self.node), 3))
-        out[1:] = self._factor().solve(load.ravel()).reshape(-1, 6)[:, :3]
-        return out
+        load = np.zeros((len(self.node), 6))
+        load[:, :3] = np.asarray(force, dtype=np.float64)
+        free = load.ravel()[-self.mass.shape[0] :]
+        return self._whole(self._factor().solve(free))[:, :3]
 
     def _factor(self) -> linalg.SuperLU:
         # Without pivoting the pivots' signs are those of the eigenvalues (Sylvester's law of
@@ -134,7 +137,7 @@ class FrameModel:
         for _ in range(30):
             shape = factor.solve(self.mass @ shape)
             shape /= np.abs(shape).max()
-        turned = np.vstack([np.zeros(3), shape.reshape(-1, 6)[:, 3:]])
+        turned = self._whole(shape)[:, 3:]
         first, last = self.tree.branch_first[:-1], self.tree.branch_first[1:] - 1
         bend = turned[self.end_node[last]] - turned[self.base_node[first]]
         return self.tree.branch_names[int(np.argmax(np.linalg.norm(bend, axis=1)))]
@@ -147,6 +150,7 @@ def frame_model(
     gravity: float = 0.0,
     subdivisions: int = 2,
     shear_ratio: float = 1.0 / 2.6,
+    root_stiffness: float = np.inf,
 ) -> FrameModel:
     """
     Assemble the frame of a tree.
@@ -164,6 +168,9 @@ def frame_model(
     shear_ratio
         Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic rod of Poisson ratio 0.3,
         about 1/14 for wood along the grain (Wood Handbook FPL-GTR-282, table 5-1).
+    root_stiffness
+        Of a spring that holds the root against tilting in [N m/rad], and 2 G/E times that against
+        twist, as the stem itself; infinite if it is clamped.
 
     """
     n, sub = tree.n_segments, subdivisions
@@ -207,15 +214,21 @@ def frame_model(
     columns = np.concatenate([_coordinates(start_node), _coordinates(end_node)], axis=1)
     segment = 3 * np.repeat(np.arange(n), sub)[:, None] + np.arange(3)
     size = 6 * len(node)
+    is_clamped = np.isinf(root_stiffness)
+    if not is_clamped:
+        along = np.outer(tree.direction[0], tree.direction[0])
+        spring = root_stiffness * (np.eye(3) + (2.0 * shear_ratio - 1.0) * along)
+        stiffness[0, 3:6, 3:6] += spring
+    held = 6 if is_clamped else 3
     return FrameModel(
         tree=tree,
         node=node,
         end_node=1 + sub * np.arange(n, dtype=np.int64) + sub - 1,
         base_node=base_node,
         base_offset=base_offset,
-        stiffness=_assembled(stiffness, columns, columns, (size, size))[6:, 6:].tocsc(),
-        mass=_assembled(mass, columns, columns, (size, size))[6:, 6:].tocsc(),
-        load=_assembled(load, columns, segment, (size, 3 * n))[6:].tocsc(),
+        stiffness=_assembled(stiffness, columns, columns, (size, size))[held:, held:].tocsc(),
+        mass=_assembled(mass, columns, columns, (size, size))[held:, held:].tocsc(),
+        load=_assembled(load, columns, segment, (size, 3 * n))[held:].tocsc(),
     )
 
 

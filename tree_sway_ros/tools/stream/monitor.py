@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Listens to a swaying tree as any other program would: poses as bytes, over DDS.
-
-"""
+"""Listens to a swaying tree as any other program would: poses as bytes, over DDS."""
 
 from __future__ import annotations
 

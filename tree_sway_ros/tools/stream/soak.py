@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway soak``: the whole chain through every fault of a sensor, for hours; what it costs.
-
-"""
+"""``tree-sway soak``: the whole chain through every fault of a sensor, for hours; what it costs."""
 
 from __future__ import annotations
 

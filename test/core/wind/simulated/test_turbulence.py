@@ -75,12 +75,29 @@ class TestSimulatedHour:
         assert abs(slopes[1] + 5 / 3) < 0.15
         # At 10 m and 7 m/s the small eddies of w leave the subrange below 3 Hz by the closed form.
 
-    def test_it_is_close_to_gaussian_and_the_components_are_independent(self, hour):
+    def test_it_is_close_to_gaussian(self, hour):
         _, wind = hour
         assert np.abs(scipy.stats.skew(wind)).max() < 0.2
         assert np.abs(scipy.stats.kurtosis(wind)).max() < 0.4
+
+    def test_gusts_come_from_above_and_lulls_from_below(self, hour):
+        """The stress over level ground: -0.3 to -0.4 of the deviations (Kaimal & Finnigan 1994)."""
+        _, wind = hour
         correlation = np.corrcoef(wind.T)
-        assert np.abs(correlation[np.triu_indices(3, 1)]).max() < 0.1
+        assert -0.4 < correlation[0, 2] < -0.3
+        assert abs(correlation[0, 1]) < 0.1
+        assert abs(correlation[1, 2]) < 0.1
+
+    def test_slow_gusts_carry_the_stress(self, hour):
+        """Coherency of u and w falls with frequency, and both keep their spectra (V9)."""
+        _, wind = hour
+        frequency, coherency = scipy.signal.coherence(
+            wind[:, 0], wind[:, 2], RATE, nperseg=round(50.0 * RATE)
+        )
+        slow = coherency[(frequency > 0.02) & (frequency < 0.2)].mean()
+        fast = coherency[(frequency > 2.0) & (frequency < 8.0)].mean()
+        assert math.sqrt(slow) > 0.4
+        assert math.sqrt(fast) < 0.2
 
 
 def test_vertical_slope_too_where_the_subrange_reaches_the_band():

@@ -1,5 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import math
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +34,14 @@ def test_wood_replaces_the_tables_values():
     assert species.modulus == 8e9
     assert species.density == oak.density
     assert (species.damping_bare, species.damping_in_leaf) == (0.05, 0.05)
+
+
+def test_a_tree_tells_its_own_shear_and_roots():
+    told = parse_yaml_tree(STEM + "wood: {shear_ratio: 0.05, root_stiffness: 2.5e6}\n").species
+    assert (told.shear_ratio, told.root_stiffness) == (0.05, 2.5e6)
+    assert parse_yaml_tree(STEM).species.root_stiffness == math.inf
+    with pytest.raises(FormatError, match=r"wood\.root_stiffness is 0; give more than 0"):
+        parse_yaml_tree(STEM + "wood: {root_stiffness: 0}\n")
 
 
 def test_a_measured_modulus_is_no_estimate():

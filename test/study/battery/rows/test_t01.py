@@ -11,12 +11,16 @@ from tree_sway_ros.study.methods.registry import method_named
 
 
 def test_every_row_is_as_it_should_be():
-    assert [row for row in case.run() if not row.good] == []
+    rows = case.run()
+    assert rows
+    assert [row for row in rows if not row.good] == []
 
 
 @pytest.mark.long
 def test_every_row_in_full():
-    assert [row for row in case.run(full=True) if not row.good] == []
+    rows = case.run(full=True)
+    assert rows
+    assert [row for row in rows if not row.good] == []
 
 
 def test_energy_that_grows_is_seen():

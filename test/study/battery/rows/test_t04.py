@@ -10,7 +10,9 @@ from tree_sway_ros.study.battery.rows import t04_gains as case
 
 
 def test_every_row_is_as_it_should_be():
-    assert [row for row in case.run() if not row.good] == []
+    rows = case.run()
+    assert rows
+    assert [row for row in rows if not row.good] == []
 
 
 def test_a_gain_beyond_the_limit_blows_up():

@@ -11,12 +11,16 @@ from tree_sway_ros.study.battery.rows import t18_adversary as case
 
 
 def test_every_row_is_as_it_should_be():
-    assert [row for row in case.run() if not row.good] == []
+    rows = case.run()
+    assert rows
+    assert [row for row in rows if not row.good] == []
 
 
 @pytest.mark.long
 def test_every_row_in_full():
-    assert [row for row in case.run(full=True) if not row.good] == []
+    rows = case.run(full=True)
+    assert rows
+    assert [row for row in rows if not row.good] == []
 
 
 def test_the_bound_is_the_resonance_of_a_switching_load():

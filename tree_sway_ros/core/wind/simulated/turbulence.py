@@ -5,8 +5,9 @@ Turbulent wind at one point: records drawn from a spectrum of `SPECTRA`.
 
 A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
 Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by line
-and its variance exactly, and tends to a Gaussian process. The three components are independent (IEC
-61400-1 asks for no shear stress at a point).
+and its variance exactly, and tends to a Gaussian process. Gusts come from above and lulls from
+below: u and w are correlated by `STRESS`, most in slow gusts, as the cospectrum of Kaimal &
+Finnigan has it; v is independent of both.
 
 A sampled record cannot hold what lies above half its rate, nor below one over its period. That
 variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz, 10
@@ -35,6 +36,13 @@ Floats = NDArray[np.float64]
 
 # IEC 61400-1: standard deviations over that of u, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
+
+STRESS = -1.0 / 3.0
+"""
+Correlation of u and w in [-]: -u*^2 over their deviations, 2.4 and 1.25 times u*, over level ground
+(Kaimal & Finnigan 1994, chapter 1).
+
+"""
 
 SHORTEST_PERIOD = 600.0
 """Shortest period of a record in [s]: the ten minutes over which IEC defines the deviations."""
@@ -137,13 +145,44 @@ class Turbulence:
 
         """
         n_lines = (n_samples - 1) // 2  # without the mean, nor the line at half the rate
-        frequency = np.arange(1, n_lines + 1) * (rate / n_samples)
+        frequency: Floats = np.arange(1, n_lines + 1, dtype=np.float64) * (rate / n_samples)
         power = self.spectrum(frequency)
         power *= self.deviations**2 / np.maximum(power.sum(axis=0), np.finfo(np.float64).tiny)
         phase = rng.uniform(0.0, 2.0 * np.pi, size=(3, n_lines)).T
+        # Where u and w are to have a coherency c, w is against u but for a phase of up to +-a, the
+        # mean of whose cosine is sin a / a = c.
+        widest = _widest_phase(self._coherency(frequency, power))
+        phase[:, 2] = phase[:, 0] + np.pi + widest * (phase[:, 2] / np.pi - 1.0)
         lines = np.zeros((n_samples // 2 + 1, 3), dtype=np.complex128)
         lines[1 : n_lines + 1] = n_samples * np.sqrt(0.5 * power) * np.exp(1j * phase)
         return np.fft.irfft(lines, n=n_samples, axis=0)
+
+    def _coherency(self, frequency: Floats, power: Floats) -> Floats:
+        """
+        Coherency of u and w on lines of these powers (n, 3), (n,), less its sign.
+
+        As the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter 2)
+        has it, no more than 1, and in all as much as `STRESS`.
+
+        """
+        shape = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
+        both = np.sqrt(power[:, 0] * power[:, 2])
+        wanted = -STRESS * float(np.prod(self.deviations[[0, 2]]))
+        if not wanted > 0.0:
+            return np.zeros(len(frequency))
+        ratio = np.divide(shape, both, out=np.zeros_like(both), where=both > 0.0)
+        low, high = 0.0, 1.0 / max(float(ratio[ratio > 0.0].min(initial=1.0)), 1e-300)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            is_less = float(np.minimum(middle * ratio, 1.0) @ both) < wanted
+            low, high = (middle, high) if is_less else (low, middle)
+        return np.minimum(high * ratio, 1.0)
+
+
+def _widest_phase(coherency: Floats) -> Floats:
+    """Angle a in [rad] of ``sin a / a = coherency``, (n,)."""
+    angle = np.linspace(0.0, np.pi, 2001)
+    return np.interp(-coherency, -np.sinc(angle / np.pi), angle)
 
 
 def turbulence_scale(height: float) -> float:

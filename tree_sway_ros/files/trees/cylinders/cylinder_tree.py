@@ -87,18 +87,18 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
     source, notes = str(path), list(cylinders.notes)
     species = species_named(options.species)
     _check(cylinders, source)
-    if (loose := join_loose_branches(cylinders)) is not None:
-        cylinders = replace(cylinders, parent=loose.parent)
+    if (joined := join_loose_branches(cylinders)) is not None:
+        cylinders = replace(cylinders, parent=joined.parent)
         notes.append(
-            f"{loose.count} branches had no parent and were set on the nearest cylinder, "
-            f"at most {loose.distance:.3g} m away"
+            f"{joined.loose} branches had no parent and were set on the nearest cylinder, "
+            f"at most {joined.distance:.3g} m away"
         )
     order = checked_order(cylinders.parent, cylinders.labels)
     merged = merge_tiny(cylinders, order, options.merge_below)
     cylinders = merged.cylinders
-    if merged.count:
+    if merged.tiny:
         notes.append(
-            f"{merged.count} cylinders shorter than {options.merge_below:g} m were merged, "
+            f"{merged.tiny} cylinders shorter than {options.merge_below:g} m were merged, "
             f"{merged.dropped} of them branches of nothing else, left out"
         )
     tree = _table(cylinders).build(source, cylinders.name or path.stem, species.key)

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Ints
 from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import TreeError
+from tree_sway_ros.files.trees.assembly import nearest_axis
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
 _MAX_LOOSE = 1000
@@ -18,24 +19,11 @@ _MAX_LOOSE_VOLUME = 0.2
 """A loose part of more than this of the stem's volume is a tree of its own."""
 
 
-@dataclass(slots=True)
-class JoinedBranches:
-    """
-    Parents after loose branches were joined.
-
-    Parameters
-    ----------
-    parent
-        Parent of each cylinder, -1 only at the stem, (n,).
-    count
-        Number of branches that were loose.
-    distance
-        Largest distance from the base of one to the axis it was set on, in [m].
-
-    """
+class JoinedBranches(NamedTuple):
+    """Parents after loose branches were joined, how many, and how far from the axis at most [m]."""
 
     parent: Ints
-    count: int
+    loose: int
     distance: float
 
 
@@ -97,20 +85,12 @@ def join_loose_branches(cylinders: Cylinders) -> JoinedBranches | None:
     on_stem = np.flatnonzero(root_of == stem)
     joined, farthest = parent.copy(), 0.0
     for index in loose:
-        nearest, distance = _nearest(cylinders, on_stem, cylinders.start[index])
-        joined[index] = nearest
+        nearest, distance = nearest_axis(
+            cylinders.start[on_stem], cylinders.end[on_stem], cylinders.start[index]
+        )
+        joined[index] = on_stem[nearest]
         farthest = max(farthest, distance)
     return JoinedBranches(joined, len(loose), farthest)
-
-
-def _nearest(cylinders: Cylinders, among: Ints, point: Floats) -> tuple[int, float]:
-    start = cylinders.start[among]
-    axis = cylinders.end[among] - start
-    squared = np.maximum(np.einsum("ij,ij->i", axis, axis), 1e-24)
-    along = np.clip(np.einsum("ij,ij->i", point - start, axis) / squared, 0.0, 1.0)
-    distance = np.linalg.norm(start + along[:, None] * axis - point, axis=1)
-    best = int(np.argmin(distance))
-    return int(among[best]), float(distance[best])
 
 
 def heirs(cylinders: Cylinders) -> Ints:

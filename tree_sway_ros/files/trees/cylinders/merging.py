@@ -7,7 +7,8 @@ Merge cylinders that are too short to have a direction into their neighbours of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,24 +18,11 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.joining import heirs
 
 
-@dataclass(slots=True)
-class MergedCylinders:
-    """
-    Cylinders without the tiny ones.
-
-    Parameters
-    ----------
-    cylinders
-        Those that remain.
-    count
-        Number of those that do not.
-    dropped
-        How many of them were a branch on their own, with no neighbour to go to.
-
-    """
+class MergedCylinders(NamedTuple):
+    """Cylinders without the tiny ones; how many those were, and how many a branch on their own."""
 
     cylinders: Cylinders
-    count: int = 0
+    tiny: int = 0
     dropped: int = 0
 
 

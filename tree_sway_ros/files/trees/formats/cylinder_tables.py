@@ -24,18 +24,8 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders, cylinder_ax
 from tree_sway_ros.files.trees.tree_format import TreeFormat, has_columns
 
 
-def read_archi_csv(path: Path) -> tuple[Cylinders, ...]:
-    """
-    Read the cylinders of an aRchi table.
-
-    Raises
-    ------
-    FormatError
-        A column that is missing, a cell that is no finite number, a number that stands twice.
-    TreeError
-        A parent that is not there.
-
-    """
+def _read_archi(path: Path) -> tuple[Cylinders, ...]:
+    """Cylinders of an aRchi table."""
     table = parse_table(read_lines(path), str(path))
     labels, parent = table.family("cyl_ID", "parent_ID", [0, -1], "cylinder")
     number, after = table.strict(["cyl_ID", "extension_ID"]).T
@@ -44,8 +34,8 @@ def read_archi_csv(path: Path) -> tuple[Cylinders, ...]:
     return (Cylinders(*cylinder_axes(table, "radius_cyl"), parent, continues, labels),)
 
 
-def read_simpleforest_csv(path: Path) -> tuple[Cylinders, ...]:
-    """Read the cylinders of a SimpleForest table; errors as of `read_archi_csv`."""
+def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
+    """Cylinders of a SimpleForest table."""
     table = parse_table(read_lines(path), str(path))
     labels, parent = table.family("ID", "parentID", [-1], "cylinder")
     order, growth = table.strict(["branchOrder", "growthLength"]).T
@@ -57,7 +47,7 @@ def read_simpleforest_csv(path: Path) -> tuple[Cylinders, ...]:
     return (Cylinders(*cylinder_axes(table, "radius"), parent, continues, labels),)
 
 
-ARCHI = TreeFormat("archi", (), has_columns("cyl_ID", "extension_ID"), read_archi_csv)
+ARCHI = TreeFormat("archi", (), has_columns("cyl_ID", "extension_ID"), _read_archi)
 SIMPLEFOREST = TreeFormat(
-    "simpleforest", (), has_columns("ID", "parentID", "growthLength"), read_simpleforest_csv
+    "simpleforest", (), has_columns("ID", "parentID", "growthLength"), _read_simpleforest
 )

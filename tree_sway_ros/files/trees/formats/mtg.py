@@ -51,33 +51,15 @@ class _Vertex:
     features: dict[str, float] = field(default_factory=dict)
 
 
-def looks_like_mtg(head: str) -> bool:
+def _is_mtg(head: str) -> bool:
     """Whether the beginning of a file is that of an MTG file."""
     return any(line.startswith("CODE") and "FORM-" in line for line in head.splitlines())
 
 
-def read_mtg(
+def _read(
     path: Path, length_unit: float = 0.01, diameter_unit: float = 0.001
 ) -> tuple[Cylinders, ...]:
-    """
-    Read a digitised tree.
-
-    Parameters
-    ----------
-    path
-        The file.
-    length_unit, diameter_unit
-        Unit of its positions and of its diameters in [m].
-
-    Raises
-    ------
-    FormatError
-        No FORM-A, a section that is missing, a class or code that is not known, or no vertices with
-        position and diameter.
-    TreeError
-        A vertex that sits on nothing.
-
-    """
+    """Segments of a digitised tree; the units of positions and of diameters are in [m]."""
     for unit in (length_unit, diameter_unit):
         if not 0.0 < unit < 1e6:
             raise ParameterError(f"a unit is {unit:g} m", cure="give more than 0")
@@ -231,4 +213,4 @@ def _add(
     return reference
 
 
-FORMAT = TreeFormat("mtg", (".mtg",), looks_like_mtg, read_mtg)
+FORMAT = TreeFormat("mtg", (".mtg",), _is_mtg, _read)

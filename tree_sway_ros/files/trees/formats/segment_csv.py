@@ -21,25 +21,8 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_format import TreeFormat, has_columns
 
 
-def read_csv_tree(path: Path, species: str = "broadleaf") -> TreeFile:
-    """
-    Read a tree from a table of segments.
-
-    Parameters
-    ----------
-    path
-        The file.
-    species
-        Key of its wood.
-
-    Raises
-    ------
-    FormatError
-        A column that is missing, a cell that is no finite number, a segment that stands twice.
-    TreeError
-        A tree that cannot be.
-
-    """
+def _read(path: Path, species: str = "broadleaf") -> TreeFile:
+    """Tree from a table of segments."""
     text = parse_table(read_lines(path), str(path))
     columns = {column.lower() for column in text.columns}
     labels, parents = text.family("segment", "parent", [-1], "segment")
@@ -58,4 +41,4 @@ def read_csv_tree(path: Path, species: str = "broadleaf") -> TreeFile:
     return TreeFile(table.build(str(path), path.stem, wood.key), wood, str(path))
 
 
-FORMAT = TreeFormat("csv", (".csv",), has_columns("x0", "y0", "z0", "x1", "d0"), read_csv_tree)
+FORMAT = TreeFormat("csv", (".csv",), has_columns("x0", "y0", "z0", "x1", "d0"), _read)

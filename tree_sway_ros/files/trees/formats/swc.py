@@ -25,32 +25,15 @@ from tree_sway_ros.files.trees.tree_format import TreeFormat
 _COLUMNS = ("number", "type", "x", "y", "z", "radius", "parent")
 
 
-def looks_like_swc(head: str) -> bool:
+def _is_swc(head: str) -> bool:
     """Whether the beginning of a file is that of an SWC file."""
     _, lines = filled_lines(head.splitlines())
     cells = lines[0].split() if lines else []
     return len(cells) == 7 and None not in map(finite, cells)
 
 
-def read_swc(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
-    """
-    Read the trees of an SWC file.
-
-    Parameters
-    ----------
-    path
-        The file.
-    unit
-        Length of its unit in [m].
-
-    Raises
-    ------
-    FormatError
-        A row that is no node, a number that stands twice, no nodes.
-    TreeError
-        A parent that is not there, or a cycle.
-
-    """
+def _read(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
+    """Trees of an SWC file, whose unit is so many [m]."""
     if not 0.0 < unit < 1e6:
         raise ParameterError(f"unit is {unit:g} m", cure="give more than 0")
     table = parse_columns(read_lines(path), str(path), _COLUMNS)
@@ -74,4 +57,4 @@ def read_swc(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
     return tuple(trees)
 
 
-FORMAT = TreeFormat("swc", (".swc",), looks_like_swc, read_swc)
+FORMAT = TreeFormat("swc", (".swc",), _is_swc, _read)

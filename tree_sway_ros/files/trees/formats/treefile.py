@@ -28,27 +28,8 @@ _FIELDS = ("x", "y", "z", "radius", "parent_id")
 _HEADER = re.compile(r"^(?!#).*\bx,y,z,radius\b", re.MULTILINE)
 
 
-def read_treefile(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
-    """
-    Read the trees of a RayCloudTools tree file.
-
-    Parameters
-    ----------
-    path
-        The file.
-    tree
-        Which of its trees, from 1; all of them if 0.
-
-    Raises
-    ------
-    ParameterError
-        A tree that the file does not hold.
-    FormatError
-        No header, trunks without branches, a line that does not hold whole nodes.
-    TreeError
-        A node whose parent is not there, or a second root in a line.
-
-    """
+def _read(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
+    """Trees of a file, or the one of a number from 1 on."""
     numbers, lines = filled_lines(read_lines(path))
     if not lines:
         raise FormatError("no header", where=str(path), cure=f"a header names {','.join(_FIELDS)}")
@@ -107,4 +88,4 @@ def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
     return Skeleton(values[:, :3], 2.0 * values[:, 3], np.maximum(parent, -1), labels)
 
 
-FORMAT = TreeFormat("treefile", (), lambda head: _HEADER.search(head) is not None, read_treefile)
+FORMAT = TreeFormat("treefile", (), lambda head: _HEADER.search(head) is not None, _read)

@@ -44,14 +44,8 @@ _MANY = 15
 """Rows from the beginning of a text that are judged."""
 
 
-def looks_like_cylinders(table: NDArray[np.generic]) -> bool:
-    """
-    Whether a matrix is a table of cylinders, judged by all its rows: seven of ten must fit.
-
-    A fitting row has a positive radius, a length, an axis of some direction and whole numbers from
-    -1 for its parent and extension. Axes need not be of length 1.
-
-    """
+def _are_cylinders(table: NDArray[np.generic]) -> bool:
+    """Whether a matrix is a table of cylinders: seven of ten of its rows must fit."""
     if len(table) == 0 or not _LEAST_COLUMNS <= table.shape[1] <= 2 * _LEAST_COLUMNS:
         return False
     used = table[:, :_COLUMNS].astype(np.float64)
@@ -62,8 +56,8 @@ def looks_like_cylinders(table: NDArray[np.generic]) -> bool:
     return bool(np.mean(fits) >= 0.7) and bool((numbers > 0.0).any() or len(table) == 1)
 
 
-def looks_like_treeqsm_text(head: str) -> bool:
-    """Whether the beginning of a file is that of a TreeQSM text, judged by many rows."""
+def _is_text(head: str) -> bool:
+    """Whether a file is a TreeQSM text, judged by many rows of its beginning."""
     lines = [line for line in head.splitlines() if line.strip()]
     if lines and lines[0].lower().startswith("radius") and "axis_direction" in lines[0]:
         return True
@@ -72,21 +66,11 @@ def looks_like_treeqsm_text(head: str) -> bool:
     whole = [row for row in rows if None not in row]
     width = max(map(len, whole), default=0)
     table = np.array([row for row in whole if len(row) == width], dtype=np.float64)
-    return width > 0 and len(table) >= 0.7 * (len(rows) - 1) and looks_like_cylinders(table)
+    return width > 0 and len(table) >= 0.7 * (len(rows) - 1) and _are_cylinders(table)
 
 
-def read_treeqsm_mat(path: Path) -> tuple[Cylinders, ...]:
-    """
-    Read every cylinder model of a MATLAB file.
-
-    Raises
-    ------
-    FormatError
-        Not a MATLAB file, damaged, or without a cylinder model.
-    MissingDependencyError
-        If it is of version 7.3 and h5py is not installed.
-
-    """
+def _read_mat(path: Path) -> tuple[Cylinders, ...]:
+    """Every cylinder model of a MATLAB file."""
     source, trees = str(path), list[Cylinders]()
     for name, model in _models(read_mat(path)):
         is_matrix = isinstance(model, np.ndarray)
@@ -104,15 +88,7 @@ def read_treeqsm_mat(path: Path) -> tuple[Cylinders, ...]:
 
 
 def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
-    """
-    Read the cylinders of a TreeQSM text.
-
-    Raises
-    ------
-    FormatError
-        A row that is too short or holds something that is not a finite number.
-
-    """
+    """Read the cylinders of a TreeQSM text."""
     lines = read_lines(path)
     first = next((i for i, line in enumerate(lines) if line.strip()), 0)
     if lines and all(finite(cell) is None for cell in _cells(lines[first])):
@@ -150,7 +126,7 @@ def _models(variables: dict[str, Any]) -> Iterator[tuple[str, Any]]:
         yield "QSM", variables
     for name, value in variables.items():
         if isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.ndim == 2:
-            if looks_like_cylinders(value):
+            if _are_cylinders(value):
                 yield name, value
 
 
@@ -206,5 +182,5 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
 
 
-MAT = TreeFormat("treeqsm-mat", (".mat",), looks_like_mat, read_treeqsm_mat)
-TEXT = TreeFormat("treeqsm-text", (".cyl",), looks_like_treeqsm_text, read_treeqsm_text)
+MAT = TreeFormat("treeqsm-mat", (".mat",), looks_like_mat, _read_mat)
+TEXT = TreeFormat("treeqsm-text", (".cyl",), _is_text, read_treeqsm_text)

@@ -13,7 +13,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import FormatError, TreeError
-from tree_sway_ros.files.trees.assembly import SegmentTable
+from tree_sway_ros.files.trees.assembly import SegmentTable, nearest_axis
 from tree_sway_ros.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]
@@ -173,15 +173,11 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
 
 def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:
     """Segment of the parent nearest to a point, which must touch the parent or nearly so."""
-    axis = on.end - on.start
-    squared = np.maximum(np.einsum("ij,ij->i", axis, axis), 1e-24)
-    along = np.clip(np.einsum("ij,ij->i", point - on.start, axis) / squared, 0.0, 1.0)
-    distance = np.linalg.norm(on.start + along[:, None] * axis - point, axis=1)
-    segment = int(np.argmin(distance))
-    allowed = on.diameter[segment].max() + 0.01 * float(np.sqrt(squared).sum())
-    if distance[segment] > allowed:
+    segment, distance = nearest_axis(on.start, on.end, point)
+    size = float(np.linalg.norm(on.end - on.start))
+    if distance > on.diameter[segment].max() + 0.01 * size:
         raise TreeError(
-            f"starts {distance[segment]:.3g} m off its parent '{branch['parent']}'",
+            f"starts {distance:.3g} m off its parent '{branch['parent']}'",
             where=where,
             cure="move its first node onto the parent, or say where with 'at' or 'segment'",
         )

@@ -81,6 +81,10 @@ class ForestFile:
             TreeFile(each.tree, species, f"{self.source}: {each.name}").checked()
         return self
 
+    def with_trees(self, trees: Sequence[PlacedTree]) -> ForestFile:
+        """Return the same forest of some of its trees, which may stand elsewhere."""
+        return replace(self, trees=tuple(trees))
+
     def of_species(self, species: Species) -> ForestFile:
         """Return the same forest, all of one wood."""
         trees = [

@@ -1,0 +1,145 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Damping, stiffness and gravity changed while a tree sways: effect, no jump, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.scene.forest import Forest
+from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.scene.placed_tree import PlacedTree
+from tree_sway_ros.core.simulator.live_tuning import GLIDE
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.study.bench.bench_tree import bench_tree
+from tree_sway_ros.study.validation.judge import WOOD
+
+DT = 1.0 / 120.0
+CALM, BREEZE = (0.0, 0.0, 0.0), (5.0, 1.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return bench_tree()
+
+
+def free_sway(sim, seconds=12.0):
+    """Tip along x after a blow, from the glide's end on, (t,)."""
+    for _ in range(round(2.0 * GLIDE / DT)):
+        sim.step(CALM, DT)
+    for _ in range(30):
+        sim.step((12.0, 0.0, 0.0), DT)
+    tips = []
+    for _ in range(round(seconds / DT)):
+        sim.step(CALM, DT)
+        tips.append(float(sim.tip_displacement[0]))
+    return np.array(tips)
+
+
+def frequency(tips):
+    power = np.abs(np.fft.rfft(tips * np.hanning(len(tips)), 16 * len(tips)))
+    return float(np.argmax(power)) / (16 * len(tips) * DT)
+
+
+@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled", "segments"])
+def test_a_stiffer_tree_sways_as_one_made_so(tree, model):
+    stiff = WOOD.__class__(
+        "stiff", "stiff", 2.0 * WOOD.modulus, WOOD.density,
+        damping_bare=WOOD.damping_bare, shear_ratio=WOOD.shear_ratio,
+    )  # fmt: skip
+    made = make_simulator(tree, stiff, model=model)
+    tuned = make_simulator(tree, WOOD, model=model)
+    before = frequency(free_sway(make_simulator(tree, WOOD, model=model)))
+    tuned.tune(stiffness_factor=2.0)
+    wanted = frequency(free_sway(made))
+    assert frequency(free_sway(tuned)) == pytest.approx(wanted, rel=0.01)
+    assert abs(wanted / before - 1.0) > 0.3
+
+
+@pytest.mark.parametrize("model", ["subtree", "wind_basis", "modes", "segments"])
+def test_more_damping_ends_the_sway_as_in_a_tree_made_so(tree, model):
+    tuned = make_simulator(tree, WOOD, model=model)
+    tuned.tune(damping_ratio=0.3)
+    made = free_sway(make_simulator(tree, WOOD, model=model, damping_ratio=0.3), 3.0)
+    found = free_sway(tuned, 3.0)
+    light = free_sway(make_simulator(tree, WOOD, model=model), 3.0)
+    assert np.abs(found - made).max() < 0.02 * np.abs(made).max()
+    assert np.abs(light - made).max() > 0.2 * np.abs(made).max()
+
+
+@pytest.mark.parametrize("model", ["modes", "segments"])
+def test_weight_changes_as_in_a_tree_made_with_it(tree, model):
+    tuned = make_simulator(tree, WOOD, model=model, gravity=9.81)
+    tuned.tune(gravity=2.0)
+    wanted = frequency(free_sway(make_simulator(tree, WOOD, model=model, gravity=2.0)))
+    assert frequency(free_sway(tuned)) == pytest.approx(wanted, rel=0.01)
+
+
+def test_the_constants_of_the_volume_rule(tree):
+    rule = {"model": "branch", "stiffness": "volume_rule"}
+    tuned = make_simulator(tree, WOOD, **rule)
+    tuned.tune(volume_stiffness=6.0e5, volume_damping=9.0e3)
+    made = make_simulator(tree, WOOD, **rule, volume_stiffness=6.0e5, volume_damping=9.0e3)
+    assert free_sway(tuned, 1.0) == pytest.approx(free_sway(made, 1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("model", ["subtree", "modes", "segments"])
+def test_no_pose_jumps(tree, model):
+    sim = make_simulator(tree, WOOD, model=model)
+    for _ in range(600):
+        sim.step(BREEZE, DT)
+    before = [sim.place()]
+    for _ in range(60):
+        sim.step(BREEZE, DT)
+        before.append(sim.place())
+    usual = np.abs(np.diff(before, axis=0)[..., :3]).max()
+    sim.tune(stiffness_factor=0.7, damping_ratio=0.02, gravity=12.0)
+    after = [sim.place()]
+    for _ in range(60):
+        sim.step(BREEZE, DT)
+        after.append(sim.place())
+    second = np.abs(np.diff(after, 2, axis=0)[..., :3]).max()
+    assert np.array_equal(after[0], before[-1])
+    assert second < max(usual, 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"damping_ratio": -0.1}, "damping_ratio"),
+        ({"damping_ratio": float("nan")}, "damping_ratio"),
+        ({"stiffness_factor": 0.0}, "stiffness_factor"),
+        ({"gravity": 31.0}, "gravity"),
+        ({"volume_stiffness": 1.0e5}, "volume rule"),
+        ({"modulus": 1e9}, "cannot change while the tree sways"),
+        ({"stiffness_factor": 0.1, "gravity": 30.0}, "buckles"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_changes(tree, changes, why):
+    sim, other = (SwaySimulator(tree, WOOD) for _ in range(2))
+    with pytest.raises(ParameterError, match=why):
+        sim.tune(**changes)
+    for _ in range(90):
+        sim.step(BREEZE, DT)
+        other.step(BREEZE, DT)
+    assert np.array_equal(sim.place(), other.place())
+
+
+def test_weight_needs_a_tree_that_was_made_with_it(tree):
+    with pytest.raises(ParameterError, match="without weight"):
+        SwaySimulator(tree, WOOD, gravity=0.0).tune(gravity=9.81)
+
+
+def test_a_table_holds_for_one_stiffness(tree):
+    with pytest.raises(ParameterError, match="wind_basis"):
+        SwaySimulator(tree, WOOD, model="wind_basis").tune(stiffness_factor=2.0)
+
+
+def test_a_forest_takes_a_change_as_a_whole(tree):
+    forest = Forest([PlacedTree(f"t{k}", tree, species=WOOD, x=9.0 * k) for k in range(2)])
+    forest.tune(damping_ratio=0.2)
+    assert [each.check_tuning().damping_ratio for each in forest.simulators] == [0.2, 0.2]
+    with pytest.raises(ParameterError):
+        forest.tune(damping_ratio=2.0)

@@ -1,0 +1,185 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A server and a client of the stream in two networks, and between them a line of our own.
+
+    python test/page/lossy_line.py --delay 0.04 --loss 0.01 --seconds 60
+
+Each side lives in a network namespace whose only way out is a TUN device; its packets come here,
+are lost by chance, and go on after a delay. So TCP meets what it meets on a long line.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import fcntl
+import heapq
+import json
+import os
+import random
+import select
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+VECTORS = Path(__file__).parent / "vectors"
+TOKEN = "a-long-line"
+HERE, THERE = "10.93.0.1", "10.93.0.2"
+PORT = 8765
+PLAYOUT = 0.2
+RATE, SOLVED = 30.0, 60.0
+_SET_TUN, _TUN_WITHOUT_HEAD = 0x400454CA, 0x1001
+_LARGEST = 2048
+
+
+def main() -> None:
+    """Run the line, or one side of it, and print what the client saw as JSON."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--delay", type=float, default=0.04, help="one way [s]")
+    parser.add_argument("--loss", type=float, default=0.01, help="of packets, either way")
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--side", nargs=2)
+    given = parser.parse_args()
+    if given.side:
+        join_line(int(given.side[1]), HERE if given.side[0] == "serve" else THERE)
+        if given.side[0] == "serve":
+            serve(given.seconds + 60.0)
+        else:
+            print(json.dumps(listen(given.seconds)))
+        return
+    print(json.dumps(run_line(given.delay, given.loss, given.seconds)))
+
+
+def run_line(delay: float, loss: float, seconds: float) -> dict[str, float]:
+    """What a client sees over a line of such delay [s] and loss."""
+    ends = [socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(2)]
+    sides = []
+    for name, (_, inner) in zip(("serve", "listen"), ends, strict=True):
+        command = ["unshare", "-rn", sys.executable, __file__, "--seconds", str(seconds)]
+        command += ["--side", name, str(inner.fileno())]
+        sides.append(
+            subprocess.Popen(command, pass_fds=[inner.fileno()], stdout=subprocess.PIPE, cwd=ROOT)
+        )
+        inner.close()
+    ended = threading.Event()
+    outer = [end for end, _ in ends]
+    carrier = threading.Thread(target=_carry, args=(outer, delay, loss, ended), daemon=True)
+    carrier.start()
+    try:
+        told, _ = sides[1].communicate(timeout=seconds + 60.0)
+    finally:
+        ended.set()
+        carrier.join()
+        for side in sides:
+            side.kill()
+            side.wait()
+            assert side.stdout is not None
+            side.stdout.close()
+        for end in outer:
+            end.close()
+    found: dict[str, float] = json.loads(told)
+    return found
+
+
+def _carry(*given: Any) -> None:
+    with contextlib.suppress(ConnectionError):  # of a side that has done its part
+        carry(*given)
+
+
+def carry(ends: list[socket.socket], delay: float, loss: float, ended: threading.Event) -> None:
+    """Hand packets from one end to the other, late, or not at all."""
+    chance, number = random.Random(1), 0
+    waiting: list[tuple[float, int, int, bytes]] = []
+    while not ended.is_set():
+        left = max(0.0, waiting[0][0] - time.monotonic()) if waiting else 0.05
+        for end in select.select(ends, [], [], min(left, 0.05))[0]:
+            packet = end.recv(_LARGEST)
+            if packet and chance.random() >= loss:
+                number += 1
+                to = 1 - ends.index(end)
+                heapq.heappush(waiting, (time.monotonic() + delay, number, to, packet))
+        while waiting and waiting[0][0] <= time.monotonic():
+            _, _, to, packet = heapq.heappop(waiting)
+            ends[to].send(packet)
+
+
+def join_line(descriptor: int, address: str) -> None:
+    """Make this process's network one device whose packets go over a socket."""
+    tun = os.open("/dev/net/tun", os.O_RDWR)
+    fcntl.ioctl(tun, _SET_TUN, struct.pack("16sH", b"line", _TUN_WITHOUT_HEAD))
+    for told in (f"addr add {address}/24 dev line", "link set line mtu 1400 up", "link set lo up"):
+        subprocess.run(["ip", *told.split()], check=True)
+    end = socket.socket(fileno=descriptor)
+
+    def out() -> None:
+        while packet := os.read(tun, _LARGEST):
+            end.send(packet)
+
+    def back() -> None:
+        while packet := end.recv(_LARGEST):
+            os.write(tun, packet)
+
+    for pump in (out, back):
+        threading.Thread(target=pump, daemon=True).start()
+
+
+def serve(seconds: float) -> None:
+    """Publish a state 60 times per second."""
+    from tree_sway_ros.page.protocol import Frame, decode_description, encode_frame
+    from tree_sway_ros.page.server import PageServer, PageSettings
+
+    data = (VECTORS / "description.bin").read_bytes()
+    description = decode_description(data)
+    steps = np.zeros(len(description.arrays["basis_scale"]), dtype=np.int16)
+    end, pause = time.monotonic() + seconds, threading.Event()
+    with PageServer(PageSettings(HERE, PORT, TOKEN)) as server:
+        server.describe(data)
+        due, sequence = time.monotonic(), 0
+        while due < end:
+            now = time.time_ns()
+            frame = Frame(description.short_identity, sequence, now, 0, np.zeros(3), steps)
+            server.publish(encode_frame(frame))
+            due, sequence = due + 1.0 / SOLVED, sequence + 1
+            pause.wait(max(0.0, due - time.monotonic()))
+
+
+def listen(seconds: float) -> dict[str, Any]:
+    """Count the states that are there when they are to be shown."""
+    from tree_sway_ros.page.client import StreamClient
+
+    seen: list[tuple[float, float]] = []
+    with StreamClient(
+        f"http://{HERE}:{PORT}/?token={TOKEN}",
+        rate=RATE,
+        delay=PLAYOUT,
+        on_frame=lambda frame, arrival: seen.append((1e-9 * frame.stamp, arrival)),
+    ) as client:
+        client.wait(30.0, frames=round(2 * RATE))  # the window of TCP has opened
+        seen.clear()
+        client.wait(seconds + 30.0, frames=round((seconds + 2) * RATE))
+        round_trip = client.round_trip
+    stamps, arrivals = np.array(seen).T
+    late = arrivals - stamps - (arrivals - stamps).min()
+    expected = RATE * (stamps[-1] - stamps[0]) + 1.0
+    return {
+        "expected": round(expected),
+        "missing": float(1.0 - np.sum(late <= PLAYOUT) / expected),
+        "late_p99_ms": float(1e3 * np.quantile(late, 0.99)),
+        "late_most_ms": float(1e3 * late.max()),
+        "quickest_ms": float(1e3 * (arrivals - stamps).min()),
+        "round_trip_ms": 1e3 * round_trip,
+    }
+
+
+if __name__ == "__main__":
+    main()

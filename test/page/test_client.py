@@ -1,0 +1,205 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The Python client: poses as the sender has them, a line that comes back, the page's playout."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.errors import TransportError
+from tree_sway_ros.page.client import StreamClient
+from tree_sway_ros.page.controls import Control, ControlPanel
+from tree_sway_ros.page.placer import Placer
+from tree_sway_ros.page.playout import ClockOffset, Moment, Playout
+from tree_sway_ros.page.protocol import (
+    RESTARTED,
+    Frame,
+    decode_description,
+    encode_frame,
+)
+from tree_sway_ros.page.server import PageServer, PageSettings
+
+DEADLINE = 20.0
+HERE = Path(__file__).parent
+STATIC = HERE.parents[1] / "tree_sway_ros" / "page" / "static"
+DESCRIPTION = (HERE / "vectors" / "description.bin").read_bytes()
+PLACER = Placer(decode_description(DESCRIPTION))
+N = len(PLACER.description.arrays["basis_scale"])
+
+
+def shape(time_s: float) -> Floats:
+    """Coordinates as shares of their scale at a time [s]."""
+    return 0.05 * np.sin(2.0 * time_s + np.arange(N))
+
+
+class Sender(threading.Thread):
+    """Publishes a smooth motion, 60 times per second."""
+
+    def __init__(self, server: PageServer) -> None:
+        super().__init__(daemon=True)
+        self.server, self.ended = server, threading.Event()
+        self.sequence = 0
+
+    def run(self) -> None:
+        while not self.ended.wait(1.0 / 60.0):
+            now = time.time_ns()
+            steps = np.rint(FULL_SCALE * shape(1e-9 * now % 1e4)).astype(np.int16)
+            identity = PLACER.description.short_identity
+            frame = Frame(identity, self.sequence, now, 0, np.array([3.0, 0.0, 0.0]), steps)
+            self.sequence += 1
+            self.server.publish(encode_frame(frame))
+
+
+def until(holds: Callable[[], bool]) -> None:
+    """Wait for a condition, no longer than the deadline."""
+    end = time.monotonic() + DEADLINE
+    while not holds():
+        assert time.monotonic() < end, "it did not come to pass"
+        time.sleep(0.005)
+
+
+def serving(port: int = 0) -> tuple[PageServer, Sender]:
+    refuse = Control("mean_speed", "Wind", 3.0, minimum=0.0, maximum=9.0)
+    server = PageServer(PageSettings(port=port), ControlPanel((refuse,), lambda *_: None))
+    server.start()
+    server.describe(DESCRIPTION)
+    sender = Sender(server)
+    sender.start()
+    return server, sender
+
+
+def end(server: PageServer, sender: Sender) -> None:
+    sender.ended.set()
+    sender.join()
+    server.close()
+
+
+@pytest.fixture
+def server() -> Iterator[PageServer]:
+    made = serving()
+    yield made[0]
+    end(*made)
+
+
+def test_poses_are_those_of_the_sender_a_delay_ago(server: PageServer) -> None:
+    with StreamClient(server.url) as client:
+        client.wait(DEADLINE, frames=20)
+        now = time.time()
+        moment, poses = client.sample(now), client.poses(now)
+        assert moment is not None and poses is not None  # noqa: PT018
+        assert 0.1 < now - moment.stamp < 0.5
+        scale = PLACER.description.arrays["basis_scale"]
+        exact = PLACER.place_coordinates(scale * shape(moment.stamp % 1e4))
+        assert np.linalg.norm(poses[:, :3] - exact[:, :3], axis=1).max() < 1e-3
+        assert client.round_trip < 1.0
+        assert client.state == "open"
+        client.set("mean_speed", 99.0)
+        until(lambda: "out of range" in client.problem)
+
+
+def test_a_line_that_is_lost_is_made_again() -> None:
+    server, sender = serving()
+    with StreamClient(server.url) as client:
+        client.wait(DEADLINE)
+        end(server, sender)
+        until(lambda: client.state == "lost")
+        came = client.playout.received
+        assert client.poses() is not None  # the last state stays
+        again = serving(server.port)
+        client.wait(DEADLINE, frames=came + 5)
+        assert client.state == "open"
+        end(*again)
+
+
+def test_who_is_not_there_or_sends_nonsense_is_told(server: PageServer) -> None:
+    with StreamClient("http://127.0.0.1:9/") as client:
+        with pytest.raises(TransportError, match="0 frames within"):
+            client.wait(0.2)
+        until(lambda: bool(client.problem))
+    server.describe(b"TSWD" + bytes(80))
+    with StreamClient(server.url) as client:
+        until(lambda: "version 0" in client.problem)
+        assert client.poses() is None
+
+
+def arrivals() -> list[dict[str, object]]:
+    """A stream as it comes: late, twice, out of order, cut, from another clock."""
+    rng = np.random.default_rng(4)
+    frames: list[dict[str, object]] = []
+    moment = latest = 1_000.0
+    for number in range(240):
+        moment += 1.2 if number == 90 else 1.0 / 30.0
+        stamp = moment - (7.0 if number > 200 else 0.0)  # the sender's clock is set back
+        flags = RESTARTED if number == 150 else 0
+        held_up = 0.25 * (number % 50 == 49)
+        at = moment + 5.04 + 0.05 * float(rng.exponential()) + held_up
+        if held_up:  # and so is what comes behind it
+            latest = at
+        at = max(at, latest)
+        values = np.sin(moment + np.arange(4)).tolist()
+        frames.append({"stamp": stamp, "at": at, "values": values, "flags": flags})
+        if rng.random() < 0.1:
+            frames.append({**frames[-1], "at": at + 0.001})
+    return sorted(frames, key=lambda each: each["at"])  # type: ignore[arg-type,return-value]
+
+
+def test_javascript_plays_out_the_same() -> None:
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not installed here")
+    told = arrivals()
+    program = f"""
+      import {{ Playout }} from "{(STATIC / "playout.js").as_uri()}";
+      let text = "";
+      for await (const chunk of process.stdin) text += chunk;
+      const playout = new Playout(170), out = [];
+      for (const f of JSON.parse(text)) {{
+        const at = 1000 * f.at;
+        playout.push({{ stamp: 1000 * f.stamp, flags: f.flags, wind: [f.values[0], 1, 2],
+          coordinates: Float32Array.from(f.values) }}, at);
+        for (const later of [0, 11]) {{
+          out.push([...playout.sample(at + later), playout.wind[0]]);
+        }}
+      }}
+      console.log(JSON.stringify({{ out, late: playout.late, received: playout.received }}));
+    """
+    done = subprocess.run(
+        [node, "--input-type=module", "-e", program], input=json.dumps(told), text=True,
+        capture_output=True, check=True, timeout=60,
+    )  # fmt: skip
+    theirs = json.loads(done.stdout)
+    playout, ours = Playout(0.17), []
+    for each in told:
+        values = np.array(each["values"])
+        wind = np.array([values[0], 1.0, 2.0])
+        at = float(each["at"])  # type: ignore[arg-type]
+        playout.push(Moment(float(each["stamp"]), values, wind, int(each["flags"])), at)  # type: ignore[arg-type,call-overload]
+        for later in (0.0, 0.011):
+            shown = playout.sample(at + later)
+            assert shown is not None
+            ours.append([*shown.coordinates, shown.wind[0]])
+    np.testing.assert_allclose(ours, theirs["out"], atol=2e-5)
+    assert (playout.late, playout.received) == (theirs["late"], theirs["received"])
+    assert playout.late > 0
+
+
+def test_the_offset_is_the_least_of_the_last_half_minute() -> None:
+    clock = ClockOffset()
+    for k in range(100):
+        clock.add(float(k), k + 2.0 + 0.01 * (k % 7))
+    assert clock.value == pytest.approx(2.0)
+    clock.add(200.0, 202.5)
+    assert clock.value == pytest.approx(2.5)

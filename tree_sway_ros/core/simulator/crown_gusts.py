@@ -1,0 +1,89 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Gusts that reach the limbs of a tree one after another, handed to the model in use.
+
+`segments` and the models that step branches give each limb its own wind. `wind_basis` knows even
+winds alone and takes the mean of the limbs' winds, weighted by their loads.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of
+from tree_sway_ros.core.motion.numpy_passes import into_lanes
+from tree_sway_ros.core.motion.tree_passes import blow
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.crown_wind import CrownDelays, CrownWind, crown_delays
+
+
+def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
+    """Deal delays to the branches of a tree, whose leaves catch as much as areas (b,) of wood."""
+    first = tree.branch_first[:-1]
+    area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
+    middle = 0.5 * (tree.start + tree.end) * area[:, None]
+    wood = np.add.reduceat(area, first)
+    centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
+    return crown_delays(tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area)
+
+
+class CrownGusts:
+    """
+    The wind of a crown, and the loads that it goes to.
+
+    Parameters
+    ----------
+    delays
+        Of the branches that are stepped.
+    coherence
+        As of `CrownWind`.
+    loads
+        Records of `load_fields`, written; None for a model that knows even winds alone.
+
+    """
+
+    def __init__(self, delays: CrownDelays, coherence: float, loads: Any | None) -> None:
+        """Start without wind."""
+        self.wind, self._delays = CrownWind(delays.spread, coherence), delays
+        self._hand_out: Callable[[Floats], None] | None = None
+        if loads is not None:
+            into_lanes(delays.of_branch, loads["delay"])
+            self._hand_out = self._plainly(loads)
+            if not WHY_PLAIN:
+                self._hand_out = partial(entry_of(blow, loads, np.zeros((1, 3))), loads)
+
+    def _plainly(self, loads: Any) -> Callable[[Floats], None]:
+        return lambda apart: into_lanes(apart[self._delays.of_branch], loads["gust"])
+
+    def felt(self, wind: Floats, dt: float) -> tuple[float, float, float]:
+        """
+        Hand the wind of a step to the limbs.
+
+        Parameters
+        ----------
+        wind
+            Mean over the step at the anemometer in [m/s], (3,).
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        tuple of float
+            The wind to step with in [m/s]: what was given, or the mean of the limbs' where the
+            model knows even winds alone.
+
+        """
+        x, y, z = wind.tolist()
+        apart = self.wind.push(x, y, z, dt)
+        if self._hand_out is not None:
+            self._hand_out(apart)
+            return x, y, z
+        ax, ay, az = (self._delays.share @ apart).tolist()
+        return x + ax, y + ay, z + az

@@ -1,0 +1,201 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Wind over a crown: the limbs of a tree do not meet a gust at the same moment.
+
+Two places r apart share a gust of frequency f by the root coherence ``exp(-C f r / U)``, C near 8
+(Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211). An anemometer
+tells of one place. Of its wind a share c reaches the whole crown at once; the rest reaches each
+limb after a delay of its own, spread from 0 to ``3 C r / (2 pi U)``, so that among limbs this rest
+fades with f r / U as the source has it. Long gusts reach all limbs alike. Of short ones a limb
+feels, in the mean over limbs, ``c^2 + (1 - c)^2`` of the power, as an area does of gusts smaller
+than itself.
+
+Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and the
+same in every run. Delays follow the mean wind as in `gust_travel`.
+
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.wind.gust_travel import (
+    LARGEST_STRETCH,
+    follow_mean,
+    remember,
+    run_until,
+)
+
+DECAY = 8.0
+"""Davenport's C in [-], for places across the wind and over each other."""
+
+USUAL_COHERENCE = 0.7
+"""
+Share of a gust that reaches the whole crown at once, where gusts are met limb by limb.
+
+With it the response spectra of grown conifers fall above their first frequency with powers of -4 to
+-6, and those of most broadleaved trees less steeply than in one wind (``tree-sway chart slopes``).
+
+"""
+
+N_DELAYS = 16
+"""Delays that limbs choose from."""
+
+LONGEST_DELAY = 8.0
+"""In [s]; of a wide crown in a light wind."""
+
+_SLOWEST = 2.0
+_AVERAGING = 30.0
+_CAPACITY = 256
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+
+
+class CrownDelays(NamedTuple):
+    """
+    Which delay each branch has, and how much load.
+
+    Parameters
+    ----------
+    of_branch
+        Which of `N_DELAYS` each branch has, (b,).
+    share
+        Of the load that has each delay, (`N_DELAYS`,).
+    spread
+        Longest delay times the wind speed in [m].
+
+    """
+
+    of_branch: Ints
+    share: Floats
+    spread: float
+
+
+def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
+    """
+    Deal the delays: the stem has none, and what a limb carries has the limb's.
+
+    Parameters
+    ----------
+    parent
+        Of each branch, -1 for the stem, (b,).
+    centre
+        Centre of the wind load of each in [m], (b, 3).
+    load
+        Wind load of each in any unit, (b,).
+
+    """
+    on_stem = parent == 0
+    limb = np.where(on_stem, np.cumsum(on_stem), 0)
+    for branch, below in enumerate(parent.tolist()):
+        if below > 0:
+            limb[branch] = limb[below]
+    n = int(on_stem.sum()) + 1
+    total = np.maximum(np.bincount(limb, load, n), 1e-12)
+    middle = np.stack([np.bincount(limb, load * x, n) / total for x in centre.T], axis=1)
+    away = np.linalg.norm(middle - np.average(centre, axis=0, weights=load + 1e-12), axis=1)
+    away[0] = 0.0
+    farthest = max(float(away.max()), 1e-9)
+    wanted = (np.arange(n) * _GOLDEN % 1.0) * away / farthest
+    of_branch = np.rint(wanted * (N_DELAYS - 1)).astype(np.int64)[limb]
+    share = np.bincount(of_branch, load, N_DELAYS)
+    spread = 3.0 * DECAY * farthest / (2.0 * math.pi)
+    return CrownDelays(of_branch, share / max(float(share.sum()), 1e-12), spread)
+
+
+class CrownWind:
+    """
+    The wind of the last seconds, and what of it each limb feels now.
+
+    Parameters
+    ----------
+    spread
+        As of `CrownDelays`.
+    coherence
+        Share of the wind that reaches all at once in [-], 0 to 1.
+
+    Raises
+    ------
+    ParameterError
+        If the coherence is out of its range.
+
+    """
+
+    def __init__(self, spread: float, coherence: float) -> None:
+        """Start without wind."""
+        self._spread = spread
+        self._coherence = within("crown_coherence", coherence, 0.0, 1.0)
+        self._run = np.zeros((_CAPACITY, 4))
+        self._at = np.zeros(2, dtype=np.int64)
+        self._mean, self._delay = np.zeros(3), np.zeros(1)
+        self._apart = np.zeros((N_DELAYS, 3))
+
+    def push(self, x: float, y: float, z: float, dt: float) -> Floats:
+        """
+        Take the wind of a step at the anemometer and find how that of each delay differs from it.
+
+        Parameters
+        ----------
+        x, y, z
+            Mean of the wind over the step in [m/s].
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        Floats
+            In [m/s], (`N_DELAYS`, 3); the same array each time.
+
+        """
+        _push(
+            self._run, self._at, self._mean, self._delay, self._spread, self._coherence,
+            x, y, z, dt, self._apart,
+        )  # fmt: skip
+        return self._apart
+
+    def memory(self) -> tuple[NDArray[Any], ...]:
+        """Views of what is carried from one step to the next."""
+        return self._run, self._at, self._mean, self._delay
+
+    def follow(self, other: CrownWind) -> None:
+        """Go on with the wind that another has felt."""
+        for own, theirs in zip(self.memory(), other.memory(), strict=True):
+            own[...] = theirs
+
+    def reset(self) -> None:
+        """Forget the wind."""
+        for array in self.memory():
+            array[...] = 0
+        self._apart[:] = 0.0
+
+
+@kernel
+def _push(
+    run: Floats, at: Ints, mean: Floats, delay: Floats, spread: float, coherence: float,
+    x: float, y: float, z: float, dt: float, apart: Floats,
+) -> None:  # fmt: skip
+    """Remember a step, let the longest delay follow the mean wind, and read all delays."""
+    is_first = at[1] == 0
+    remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
+    follow_mean(mean, x, y, dt, _AVERAGING)
+    speed = max(math.hypot(mean[0], mean[1]), _SLOWEST)
+    goal, most, before = min(spread / speed, LONGEST_DELAY), LARGEST_STRETCH * dt, delay[0]
+    delay[0] = goal if is_first else min(max(goal, before - most), before + most)
+    before = goal if is_first else before
+    now, rest = run[at[0], 0], 1.0 - coherence
+    for j in range(1, len(apart)):
+        share = j / (len(apart) - 1)
+        begin, end = now - dt - share * before, now - share * delay[0]
+        ax, ay, az = run_until(run, at, begin)
+        bx, by, bz = run_until(run, at, end)
+        span = end - begin
+        apart[j, 0] = rest * ((bx - ax) / span - x)
+        apart[j, 1] = rest * ((by - ay) / span - y)
+        apart[j, 2] = rest * ((bz - az) / span - z)

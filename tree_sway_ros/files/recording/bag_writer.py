@@ -1,0 +1,127 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A rosbag2 bag that messages are written to as the bytes that they came as, through rosbags.
+
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import TracebackType
+
+from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
+
+FORMATS = ("mcap", "sqlite3")
+"""Kinds of storage."""
+
+
+class BagWriter:
+    """
+    Writes a bag, which can be played by ``ros2 bag play`` and opened in Foxglove and PlotJuggler.
+
+    Parameters
+    ----------
+    path
+        Folder to make.
+    format
+        One of `FORMATS`.
+
+    Raises
+    ------
+    MissingDependencyError
+        If rosbags is not installed.
+    ParameterError
+        An unknown format.
+    FormatError
+        A folder that is there already.
+
+    Examples
+    --------
+    >>> with BagWriter(Path("bag")) as bag:
+    ...     bag.add("/wind", "geometry_msgs/msg/Vector3Stamped")
+    ...     bag.write("/wind", stamp, data)
+
+    """
+
+    def __init__(self, path: Path, format: str = "mcap") -> None:
+        try:
+            from rosbags.rosbag2 import StoragePlugin, Writer
+            from rosbags.typesys import Stores, get_typestore
+        except ImportError as error:
+            raise MissingDependencyError(
+                "bags need rosbags", where=str(path), cure="pip install rosbags"
+            ) from error
+        if format not in FORMATS:
+            raise ParameterError(f"unknown format '{format}'", cure=f"use {' or '.join(FORMATS)}")
+        if path.exists():
+            raise FormatError("it is there already", where=str(path), cure="name another folder")
+        self._writer = Writer(path, version=9, storage_plugin=StoragePlugin[format.upper()])
+        self._types = get_typestore(Stores.ROS2_JAZZY)
+        self._connections: dict[str, object] = {}
+        self.counts: dict[str, int] = {}
+
+    def add(
+        self,
+        topic: str,
+        type_name: str,
+        *,
+        reliable: bool = True,
+        latched: bool = False,
+        depth: int = 1,
+    ) -> None:
+        """
+        Add a topic, with the quality of service that it is to be played with.
+
+        Parameters
+        ----------
+        topic
+            Its name.
+        type_name
+            As ``package/msg/Name``, of the common interfaces.
+        reliable, latched, depth
+            As `Topic` of the nodes has them.
+
+        """
+        from rosbags.interfaces import (
+            Qos,
+            QosDurability,
+            QosHistory,
+            QosLiveliness,
+            QosReliability,
+            QosTime,
+        )
+
+        never = QosTime(9223372036, 854775807)
+        quality = Qos(
+            QosHistory.KEEP_LAST,
+            depth,
+            QosReliability.RELIABLE if reliable else QosReliability.BEST_EFFORT,
+            QosDurability.TRANSIENT_LOCAL if latched else QosDurability.VOLATILE,
+            never,
+            never,
+            QosLiveliness.AUTOMATIC,
+            never,
+            False,
+        )
+        self._connections[topic] = self._writer.add_connection(
+            topic, type_name, typestore=self._types, offered_qos_profiles=[quality]
+        )
+        self.counts[topic] = 0
+
+    def write(self, topic: str, stamp: int, data: bytes) -> None:
+        """Write a message that was received at a time [ns], as its CDR bytes."""
+        self._writer.write(self._connections[topic], stamp, data)  # type: ignore[arg-type]
+        self.counts[topic] += 1
+
+    def __enter__(self) -> BagWriter:
+        self._writer.open()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._writer.close()

@@ -1,0 +1,62 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A stand or forest dealt over several solvers, each of which has its own trees and no others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.trees.placement import Scene
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+
+
+def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
+    """
+    Return the trees of one shard: a run of those of the file, about as many segments in each.
+
+    Names and order are kept, so that the pose blocks of all shards, one after another, are that of
+    the whole. All time gusts from one place: the anemometer, or the first tree of the file.
+
+    Parameters
+    ----------
+    scene
+        The whole.
+    shard, shards
+        Which, from 0 on, of how many.
+
+    Raises
+    ------
+    ParameterError
+        A shard that there is not, a scene of one tree, or more shards than trees.
+
+    """
+    if shards == 1 and shard == 0:
+        return scene
+    if not 0 <= shard < shards:
+        raise ParameterError(
+            f"shard {shard} of {shards}", where="shard", cure=f"give 0 to {shards - 1}"
+        )
+    if not isinstance(scene, ForestFile):
+        raise ParameterError(
+            f"'{scene.tree.name}' is one tree",
+            where="shards",
+            cure="leave shards at 1, or give the file of a forest or a stand",
+        )
+    if shards > len(scene.trees):
+        raise ParameterError(
+            f"{shards} shards of {len(scene.trees)} trees", where="shards", cure="ask for fewer"
+        )
+    reached = np.cumsum([each.tree.n_segments for each in scene.trees])
+    marks = reached[-1] * np.arange(shards + 1) / shards
+    cuts = np.searchsorted(reached, marks[1:-1]) + 1
+    # None is left without a tree, however large its neighbours are.
+    order = np.arange(1, shards)
+    cuts = np.maximum.accumulate(np.maximum(cuts, order) - order) + order
+    cuts = np.minimum(cuts, len(scene.trees) - shards + order)
+    first, end = [0, *cuts.tolist(), len(scene.trees)][shard : shard + 2]
+    one = scene.trees[0]
+    where = scene.anemometer or (one.x, one.y, one.z)
+    return replace(scene.with_trees(scene.trees[first:end]), anemometer=where)

@@ -1,0 +1,240 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A client of the stream in Python: connects, keeps the line, tells where every segment is now.
+
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import random
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+from urllib.parse import urlsplit, urlunsplit
+
+import aiohttp
+
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.errors import TransportError, TreeSwayError
+from tree_sway_ros.page.placer import Placer
+from tree_sway_ros.page.playout import DELAY, Moment, Playout
+from tree_sway_ros.page.protocol import (
+    MAGIC,
+    Description,
+    Frame,
+    decode_description,
+    decode_frame,
+)
+
+_CREDIT, _GRANT_EVERY = 24, 4
+_SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
+_PING_EVERY, _SILENCE = 2.0, 6.0
+
+
+class StreamClient:
+    """
+    Follows a tree or a scene that ``tree-sway show`` or the node ``viewer`` serves.
+
+    It runs on a thread of its own. A line that is lost is made again, after waits that grow.
+
+    Parameters
+    ----------
+    url
+        Of the page, with its token if it has one: ``http://127.0.0.1:8765/``.
+    rate
+        Frames per second that are asked for [Hz].
+    delay
+        Of the playout [s].
+    on_frame
+        Called on the client's thread with every frame and its arrival [s] by the own clock.
+
+    Examples
+    --------
+    >>> with StreamClient("http://127.0.0.1:8765/") as client:
+    ...     client.wait()
+    ...     poses = client.poses()
+
+    """
+
+    def __init__(
+        self,
+        url: str,
+        *,
+        rate: float = 30.0,
+        delay: float = DELAY,
+        on_frame: Callable[[Frame, float], None] | None = None,
+    ) -> None:
+        parts = urlsplit(url)
+        path = parts.path.rstrip("/") + "/stream"
+        scheme = {"https": "wss", "wss": "wss"}.get(parts.scheme, "ws")
+        self.url = urlunsplit((scheme, parts.netloc, path, parts.query, ""))
+        self.playout = Playout(delay)
+        self.state = "connecting"
+        """One of connecting, open, lost."""
+        self.problem = ""
+        """Why the line was lost, or why something could not be read; empty if nothing was."""
+        self.round_trip = float("nan")
+        """To the server and back [s]."""
+        self.status: dict[str, Any] = {}
+        """What the server last told of itself."""
+        self._rate, self._on_frame = rate, on_frame
+        self._placer: Placer | None = None
+        self._more = threading.Condition()
+        self._loop = asyncio.new_event_loop()
+        self._task: asyncio.Task[None] | None = None
+        self._thread = threading.Thread(target=self._run, name="stream", daemon=True)
+        self._socket: aiohttp.ClientWebSocketResponse | None = None
+        self._ungranted = 0
+
+    def __enter__(self) -> StreamClient:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the line and end the thread; may be called twice."""
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(lambda: self._task and self._task.cancel())
+            self._thread.join(timeout=5.0)
+
+    def wait(self, seconds: float = 30.0, *, frames: int = 1) -> None:
+        """
+        Wait until so many frames have come.
+
+        Raises
+        ------
+        TransportError
+            If they have not within so long [s].
+
+        """
+        with self._more:
+            if not self._more.wait_for(lambda: self.playout.received >= frames, seconds):
+                raise TransportError(
+                    f"{self.playout.received} frames within {seconds:g} s ({self.problem})",
+                    where=self.url,
+                    cure="start tree-sway show, or look at the address",
+                )
+
+    def set(self, name: str, value: Any) -> None:
+        """Change a control of the server; a refusal comes as `problem`."""
+        self._loop.call_soon_threadsafe(self._say, {"set": {"name": name, "value": value}})
+
+    @property
+    def description(self) -> Description | None:
+        """What the server described; None before that."""
+        placer = self._placer
+        return None if placer is None else placer.description
+
+    def sample(self, now: float | None = None) -> Moment | None:
+        """State to show at a time [s] of this machine's clock, now if None; None before any."""
+        with self._more:
+            return self.playout.sample(time.time() if now is None else now)
+
+    def poses(self, now: float | None = None) -> Floats | None:
+        """
+        Poses of all segments at a time, (n, 7): x y z in [m] and the quaternion's x y z w.
+
+        None before the first state.
+
+        """
+        moment, placer = self.sample(now), self._placer
+        if moment is None or placer is None:
+            return None
+        return placer.place_coordinates(moment.coordinates)
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        self._task = self._loop.create_task(self._keep())
+        try:
+            self._loop.run_until_complete(self._task)
+        except asyncio.CancelledError:
+            pass
+        finally:
+            self._loop.close()
+
+    async def _keep(self) -> None:
+        """Connect again and again."""
+        wait = _SHORTEST_WAIT
+        async with aiohttp.ClientSession() as session:
+            while True:
+                self.state = "connecting"
+                try:
+                    async with session.ws_connect(self.url, max_msg_size=0) as socket:
+                        self._socket, self._ungranted = socket, 0
+                        wait, self.state = _SHORTEST_WAIT, "open"
+                        await self._follow(socket)
+                        self.problem = f"the server closed the line ({socket.close_code})"
+                except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
+                    self.problem = str(error) or type(error).__name__
+                self._socket, self.state = None, "lost"
+                # Many clients that lose one server do not come back in one instant.
+                await asyncio.sleep(wait * random.uniform(0.75, 1.25))
+                wait = min(2.0 * wait, _LONGEST_WAIT)
+
+    async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
+        """Take what comes until the line ends, or is silent for too long."""
+        self._say({"rate": self._rate, "credit": _CREDIT, "ping": time.monotonic()})
+        pinged = time.monotonic()
+        while True:
+            message = await asyncio.wait_for(socket.receive(), _SILENCE)
+            if message.type is aiohttp.WSMsgType.TEXT:
+                self._hear(json.loads(message.data))
+            elif message.type is aiohttp.WSMsgType.BINARY:
+                self._take(message.data, time.time())
+            else:
+                return
+            if time.monotonic() - pinged > _PING_EVERY:
+                pinged = time.monotonic()
+                self._say({"ping": pinged})
+
+    def _say(self, message: dict[str, Any]) -> None:
+        if self._socket is not None and not self._socket.closed:
+            task = self._loop.create_task(self._socket.send_json(message))
+            task.add_done_callback(lambda done: done.cancelled() or done.exception())
+
+    def _hear(self, message: dict[str, Any]) -> None:
+        if "pong" in message:
+            self.round_trip = time.monotonic() - message["pong"]
+        if "refused" in message:
+            self.problem = message["refused"]["reason"]
+        self.status = message.get("status", self.status)
+
+    def _take(self, data: bytes, arrival: float) -> None:
+        try:
+            if data[:4] == MAGIC:
+                placer = Placer(decode_description(data))
+                with self._more:
+                    self._placer = placer
+                    self.playout.clear()
+                return
+            self._ungranted += 1
+            if self._ungranted >= _GRANT_EVERY:
+                self._say({"credit": self._ungranted})
+                self._ungranted = 0
+            frame = decode_frame(data)
+        except TreeSwayError as error:
+            self.problem = str(error)
+            return
+        description = self.description
+        if description is None or frame.identity != description.short_identity:
+            return
+        values = frame.coordinates * (description.arrays["basis_scale"] / FULL_SCALE)
+        with self._more:
+            moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
+            self.playout.push(moment, arrival)
+            self._more.notify_all()
+        if self._on_frame is not None:
+            self._on_frame(frame, arrival)
