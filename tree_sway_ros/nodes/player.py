@@ -4,12 +4,9 @@
 
 from __future__ import annotations
 
-<<<<<<< HEAD
 import time
-=======
 from collections.abc import Callable
 from pathlib import Path
->>>>>>> main
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
