@@ -12,9 +12,10 @@ import pytest
 
 from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
-from tree_sway_ros.core.simulator.assembly import build_bank
+from tree_sway_ros.core.simulator.assembly import CalibratedTree, build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.study.validation.crooked_trees import crooked_tree
 
 pytestmark = pytest.mark.compiled
 
@@ -50,7 +51,7 @@ class Loaded:
         out = []
         for branch, work in zip(self.branches, self.work, strict=True):
             base = work["velocity"]
-            at = base[:3] + np.cross(base[3:], branch["centre"])
+            at = base[:3] + branch["couple"].T @ base[3:]
             own = slice(branch["coordinate"], branch["coordinate"] + branch["n_coordinates"])
             out.append(at + v[own] @ branch["push"][: branch["n_coordinates"]])
         return np.array(out)
@@ -73,10 +74,10 @@ def test_moments_do_the_work_of_the_forces(loaded, seed):
 def test_the_stem_feels_all_force_and_moment(loaded):
     force = np.random.default_rng(1).normal(size=(4, 3))
     loaded.handed(force)
-    centre = loaded.branches["centre"]
-    total = np.concatenate([force.sum(axis=0), np.cross(centre, force).sum(axis=0)])
+    moment = np.einsum("bij,bj->bi", loaded.branches["couple"], force)
+    total = np.concatenate([force.sum(axis=0), moment.sum(axis=0)])
     assert loaded.work["wrench"][0] == pytest.approx(total, abs=1e-12)
-    one = np.concatenate([force[2], np.cross(centre[2], force[2])])
+    one = np.concatenate([force[2], moment[2]])
     assert loaded.work["wrench"][2] == pytest.approx(one, abs=1e-12)
 
 
@@ -104,11 +105,10 @@ def test_pull_is_along_the_chord_times_how_far_up_it_acts(stem):
 def test_what_is_carried_pulls_at_its_own_height(sketch):
     drawn = sketch()
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.02, 4)
-    drawn.add(0, 4, (1, 0, 0), 0.4, 0.01, 0.01, 2)
-    drawn.add(0, 4, (0, 1, 1), 1.0, 0.01, 0.01, 2)
+    for way, length in (((1, 0, 0), 0.4), ((0, 1, 1), 1.0), ((-1, 0, 0), 0.4), ((0, -1, 1), 1.0)):
+        drawn.add(0, 4, way, length, 0.01, 0.01, 2)
     tree = Loaded(drawn.tree())
-    slope = tree.branches["twist"][1, 0, 3:]
-    turn = np.linalg.norm(slope)
+    turn = np.linalg.norm(tree.branches["twist"][1, :2, 3:], axis=1).mean()
     # A level child swings with the tip; one that rises by h further by its parent's slope there
     # times h.
     assert tree.branches["axial_lever"][1] == pytest.approx(1.0, rel=1e-9)
@@ -144,3 +144,24 @@ def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
     tree.work["rotation"][0] = [0.0, 2.0 * np.tan(np.pi / 4), 0.0]
     tree.blow((6.0, 0.0, 0.0))
     assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
+    tree = crooked_tree(4)
+    layer = CalibratedTree(tree, species_named("oak"), Settings(in_leaf=False)).coupled
+    for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
+        true, fitted, centred = np.zeros((3, tree.n_branches, 3))
+        for b, (model, record) in enumerate(zip(layer.models, layer.branches, strict=True)):
+            tangent = model.beam.tangent
+            across = wind - (tangent @ wind)[:, None] * tangent
+            piece = np.linalg.norm(across, axis=1)[:, None] * across
+            force = (model.drag_area * model.beam.weight)[..., None] * piece[:, None]
+            true[b] = np.cross(model.beam.point, force).sum(axis=(0, 1))
+            projector = record["projector"][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+            drag = np.sqrt(wind @ projector @ wind) * (projector @ wind)
+            drag *= record["area"] * record["speed"] ** 2
+            fitted[b] = record["couple"] @ drag
+            centred[b] = np.cross(record["centre"], force.sum(axis=(0, 1)))
+        error = np.linalg.norm(fitted - true) / np.linalg.norm(true)
+        assert error < 0.01
+        assert error < 0.5 * np.linalg.norm(centred - true) / np.linalg.norm(true)

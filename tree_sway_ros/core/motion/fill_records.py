@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import cross_matrix
+from tree_sway_ros.core.branch.beam import cross, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
 from tree_sway_ros.core.branch.shapes import across, exposure
 from tree_sway_ros.core.motion.records import (
@@ -231,6 +231,7 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     total = weight.sum()
     share = weight / total
     record["centre"] = np.einsum("sg,sgk->k", share, beam.point)
+    record["couple"] = cross_matrix(record["centre"])
     speed = float((share * speed_profile[:, None]).sum())
     record["speed"] = speed
     record["area"] = total / speed**2 if speed > 0.0 else 0.0
@@ -254,7 +255,34 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
             moved -= np.square(np.einsum("sgk,sk->sg", field, beam.tangent))
             square += float((share * moved).sum())
             cube += float((share * np.maximum(moved, 0.0) ** 1.5).sum())
+    if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
+        _fit_load(model, share, record)
     _fill_flow(record, mean, square, cube)
+
+
+def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
+    """
+    Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
+    all winds, push and couple in those along the ground (least squares).
+
+    """
+    tangent = model.beam.tangent
+    outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
+    drag = np.maximum(_WINDS @ outer[:, [0, 4, 8, 1, 2, 5]].T, 0.0) ** 1.5 @ share.sum(axis=1)
+    record["projector"] = _NEAREST @ drag ** (2.0 / 3.0)
+    projector = record["projector"][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+    across = _LEVEL @ projector
+    force = np.sqrt(np.maximum((_LEVEL * across).sum(axis=1), 0.0))[:, None] * across
+    fit = np.linalg.pinv(force, rcond=_STRAIGHT)
+    pieces = _LEVEL[:, None] - (_LEVEL @ tangent.T)[..., None] * tangent
+    pieces *= np.linalg.norm(pieces, axis=-1, keepdims=True)
+    point = (share[..., None] * model.beam.point).sum(axis=1)
+    moment = cross(point, pieces).sum(axis=1)
+    record["couple"] += (fit @ (moment - force @ record["couple"].T)).T
+    k = len(model.fields)
+    moved = np.stack([(share[..., None] * one.points).sum(axis=1) for one in model.fields])
+    pushed = np.einsum("dsk,csk->dc", pieces, moved)
+    record["push"][:k] += (fit @ (pushed - force @ record["push"][:k].T)).T
 
 
 def _fill_flow(record: Any, mean: Floats, square: float, cube: float) -> None:
@@ -374,6 +402,7 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     centre = loads["centre"]
     moved = twists[:, :, :3] + np.cross(twists[:, :, 3:], centre[:, None])
     record["centre"] = share[0] * own["centre"] + share[1:] @ centre
+    record["couple"] = share[0] * own["couple"] + np.tensordot(share[1:], loads["couple"], axes=1)
     record["push"] = share[0] * own["push"] + np.tensordot(share[1:], moved, axes=1)
     record["turn"] = share[0] * own["turn"] + np.tensordot(share[1:], twists[:, :, 3:], axes=1)
     xx, yy, zz, xy, xz, yz = own["projector"]
@@ -396,15 +425,16 @@ def _squares(directions: Floats) -> Floats:
     return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
 
 
-_WINDS = _squares(
-    np.array(
-        [
-            (np.cos(rise) * np.cos(bearing), np.cos(rise) * np.sin(bearing), np.sin(rise))
-            for rise in np.deg2rad([-20.0, 0.0, 20.0])
-            for bearing in np.arange(16) * np.pi / 8.0
-        ]
-    )
-)
+def _sides(rise: float) -> Floats:
+    """Directions from all sides, so much upwards in [deg], (16, 3)."""
+    bearing, up = np.arange(16) * np.pi / 8.0, np.full(16, math.radians(rise))
+    return np.stack([np.cos(up) * np.cos(bearing), np.cos(up) * np.sin(bearing), np.sin(up)], 1)
+
+
+_LEVEL = _sides(0.0)
+"""Winds along the ground."""
+
+_WINDS = _squares(np.concatenate([_sides(-20.0), _LEVEL, _sides(20.0)]))
 """Winds from all sides, along the ground and, as branches bend, aslant."""
 
 _NEAREST = np.linalg.pinv(_WINDS)

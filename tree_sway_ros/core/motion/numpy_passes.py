@@ -36,7 +36,7 @@ class NumpyPasses:
         names = ("parent", "source", "twist", "centre", "flow", "turn", "push", "lever", "speed")
         self._of: dict[str, Any] = {
             name: np.ascontiguousarray(branches[name])
-            for name in (*names, "spread", "area", "axial_lever", "frame")
+            for name in (*names, "spread", "area", "axial_lever", "frame", "couple")
         }
         xx, yy, zz, xy, xz, yz = branches["projector"].T
         self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
@@ -96,7 +96,7 @@ class NumpyPasses:
         own = np.einsum("bck,bk->bc", of["push"], turned)
         pull: Floats = of["lever"] * np.einsum("bk,bk->b", chord, turned)
         if carries:
-            wrench = np.hstack([force, cross(of["centre"], force)])
+            wrench = np.hstack([force, np.einsum("bij,bj->bi", of["couple"], force)])
             total = np.vstack([np.zeros(6), np.cumsum(wrench, axis=0)])
             carried = (total[self._end] - total[:-1])[1:]
             parent = of["parent"][1:]
@@ -188,9 +188,7 @@ def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
     across = np.sqrt(np.maximum(level[:, None] + slant[:, None] * sides, 0.0)).mean(axis=1)
     force = np.stack([[xx, xy, xz], [xy, yy, yz]]).transpose(2, 1, 0)
     force = force * (branches["area"] * branches["speed"] ** 2 * across)[:, None, None]
-    wrench = np.concatenate(
-        [force, np.cross(branches["centre"][:, :, None], force, axis=1)], axis=1
-    )
+    wrench = np.concatenate([force, branches["couple"] @ force], axis=1)
     moments = np.zeros((n_coordinates, 2))
     for b in range(len(branches) - 1, -1, -1):
         i, k = int(branches["coordinate"][b]), int(branches["n_coordinates"][b])

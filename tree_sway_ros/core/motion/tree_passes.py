@@ -224,12 +224,13 @@ def inward_pass(branches: Any, work: Any) -> None:
 
     """
     for b in range(len(branches)):
-        here, centre = work[b], branches[b].centre
+        here, couple = work[b], branches[b].couple
         force, wrench = here.force, here.wrench
         wrench[0], wrench[1], wrench[2] = force[0], force[1], force[2]
-        wrench[3] = centre[1] * force[2] - centre[2] * force[1]
-        wrench[4] = centre[2] * force[0] - centre[0] * force[2]
-        wrench[5] = centre[0] * force[1] - centre[1] * force[0]
+        for k in range(3):
+            wrench[3 + k] = (
+                couple[k, 0] * force[0] + couple[k, 1] * force[1] + couple[k, 2] * force[2]
+            )
     for b in range(len(branches) - 1, 0, -1):
         wrench, below = work[b].wrench, work[branches[b].parent].wrench
         for k in range(6):

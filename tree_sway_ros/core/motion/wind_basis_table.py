@@ -80,7 +80,7 @@ class _Level(NamedTuple):
     rest: Floats
     turning: Floats
     damping: Floats
-    rest_slopes: Floats
+    rest_slopes: Floats | None
 
 
 class WindBasisTable:
@@ -123,13 +123,14 @@ class WindBasisTable:
         self._rests = self._fit_harmonics(table, degree)
         self._fill_slopes(table)
         levels = [self._level(0.0)]
-        levels += [self._level(_pressure(k, drag_law)) for k in (3, 2, 1, 0)]
+        levels += [self._level(_pressure(k, drag_law), lowest=k == 3) for k in (3, 2, 1, 0)]
         for lowest in range(N_LEVELS - 1, N_LEVELS + _LOWEST):
             self._fill_levels(table, levels)
             self.error = self._tried(table, degree)
             if self.error <= _MOST_WRONG:
                 break
-            levels = [levels[0], self._level(_pressure(lowest, drag_law)), *levels[1:-1]]
+            below = self._level(_pressure(lowest, drag_law), lowest=True)
+            levels = [levels[0], below, levels[1]._replace(rest_slopes=None), *levels[2:-1]]
 
     def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         """Moments of a wind of 1 kg/m^3 on a tree at x that moves at v, (N,)."""
@@ -190,13 +191,18 @@ class WindBasisTable:
         table["excess"][:, :m] = _between(excess)
         table["lean"][:, :m, :m] = _between(lean)
 
-    def _level(self, pressure: float) -> _Level:
-        """Ask the tree for its loads where it leans as a dynamic pressure [kg/m/s^2] holds it."""
+    def _level(self, pressure: float, *, lowest: bool = False) -> _Level:
+        """
+        Ask the tree for its loads where it leans as a dynamic pressure [kg/m/s^2] holds it.
+
+        The slopes of the rest are large, and wanted of the lowest lean alone.
+
+        """
         shapes, count = self._shapes, len(_ASKED)
         n, m = shapes.shape
         level = _Level(
             pressure, np.zeros((count, m)), np.zeros((count, n)), np.zeros((count, m, m)),
-            np.zeros((count, m, m)), np.zeros((2, count, m, n)),
+            np.zeros((count, m, m)), np.zeros((2, count, m, n)) if lowest else None,
         )  # fmt: skip
         for k, azimuth in enumerate(_ASKED):
             ahead = direction(azimuth, 0.0)
@@ -209,7 +215,8 @@ class WindBasisTable:
             for kind, into in enumerate((level.turning, level.damping)):
                 slopes = self._slopes(at, ahead, shapes.T, rates=kind == 1)
                 into[k] = slopes @ shapes
-                level.rest_slopes[kind, k] = self._rest_of(slopes)
+                if level.rest_slopes is not None:
+                    level.rest_slopes[kind, k] = self._rest_of(slopes)
         return level
 
     def _fill_levels(self, table: Any, levels: list[_Level]) -> None:
@@ -223,6 +230,7 @@ class WindBasisTable:
             table["turning"][:, j, :m, :m] = _between(level.turning)
             table["damping"][:, j, :m, :m] = _between(level.damping)
         rest = np.stack([level.rest for level in levels], axis=1)
+        assert levels[1].rest_slopes is not None
         self._fill_rest(table, rest, levels[1].rest_slopes)
 
     def _fill_rest(self, table: Any, rest: Floats, by_mode: Floats) -> None:

@@ -290,8 +290,8 @@ class SwaySimulator(OneTree, KeepsState):
         rest, in [N m], (3,).
 
         """
-        centre, force = self.bank.branches["centre"], self.bank.oscillators.forces()
-        moment: Floats = np.cross(centre, force).sum(axis=0)
+        couple, force = self.bank.branches["couple"], self.bank.oscillators.forces()
+        moment: Floats = np.einsum("bij,bj->i", couple, force)
         return moment
 
     def motion(self) -> tuple[Floats, Floats]:

@@ -19,9 +19,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "what",
-        choices=(*_CHARTS, "validation", "all"),
+        choices=(*_CHARTS, "validation", "slopes", "all"),
         help="methods: of integration; fidelity: models of a tree; cost: against its size; "
         "portraits: trees at rest and in wind, and a film; habits: grown species; "
+        "slopes: of response spectra; "
         "all: every picture of the documentation",
     )
     parser.add_argument(

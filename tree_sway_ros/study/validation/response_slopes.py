@@ -80,7 +80,7 @@ def response_slopes(
 
 def slope_above(signal: Floats, first: float, rate: float) -> float:
     """Slope in logarithms of the spectrum of a signal (n,) over `BAND` times a frequency [Hz]."""
-    frequency, power = welch(signal, rate, nperseg=round(30.0 * rate / first))
+    frequency, power = welch(signal, rate, nperseg=min(round(30.0 * rate / first), len(signal)))
     band = (frequency > BAND[0] * first) & (frequency < BAND[1] * first)
     # Even in the logarithm of the frequency: the many lines at its end must not outweigh the rest.
     weight = 1.0 / np.sqrt(frequency[band])
