@@ -160,6 +160,8 @@ def make_node(name, given, config, more=None, **options):
     # The player begins when the whole chain listens; a file of the user's may say otherwise.
     with_clock = " /clock:2" if given["use_sim_time"] in ("true", "True", "1") else ""
     chain = [{"wait_for": CHAIN + with_clock}] if name == "player" else []
+    if name == "solver" and given["source"] == "player" and with_clock:
+        chain = [{"exact_replay": True}]
     is_live = name == "wind" and given["source"] == "live"
     return Node(
         package=PACKAGE,

@@ -14,7 +14,7 @@ _spec.loader.exec_module(nodes_conftest)
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
-compose, observer = nodes_conftest.compose, nodes_conftest.observer
+compose, observer, run = nodes_conftest.compose, nodes_conftest.observer, nodes_conftest.run
 level, statuses, tree_file = (
     nodes_conftest.level,
     nodes_conftest.statuses,

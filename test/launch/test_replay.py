@@ -44,6 +44,7 @@ def replayed(launched, observer, folder, tree, speed, seconds):
     observer.until(lambda: frames and stamp_of(frames[-1]) >= last, "the last frame", 90.0)
     _, said = run.end()
     assert "escalating" not in said
+    assert "not be exact" not in said, said
     found = {stamp_of(data): hashlib.sha1(data[_POSES:]).digest() for data in frames}
     # While the clock still stands the rest pose comes once, and nobody has to have heard it.
     return {stamp: digest for stamp, digest in found.items() if BEGIN <= stamp <= last}
@@ -57,9 +58,20 @@ def stamp_of(data):
 
 def assert_alike(runs):
     first = min(runs[0])
-    for found in runs:
-        assert min(found) == first < BEGIN + 17_000_000
-        assert found == runs[0]
+    assert first < BEGIN + 17_000_000
+    differing = [
+        (
+            k,
+            [
+                stamp
+                for stamp in sorted({*found, *runs[0]})
+                if found.get(stamp) != runs[0].get(stamp)
+            ][:3],
+        )
+        for k, found in enumerate(runs)
+        if found != runs[0]
+    ]
+    assert differing == []
     assert len(set(runs[0].values())) > 0.9 * len(runs[0])  # it moves
 
 

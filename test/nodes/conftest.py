@@ -1,6 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import os
+import subprocess
+import sys
 import threading
 import time
 
@@ -22,6 +24,9 @@ segment,parent,branch,x0,y0,z0,x1,y1,z1,d0,d1
 5,1,3,0,0,1,-.3,0,1.3,.006,.004
 6,1,4,0,0,1,0,-.3,1.3,.006,.004
 """
+
+
+START = "from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())"
 
 
 class Observer:
@@ -158,3 +163,27 @@ def level(statuses):
         return None if status is None else status.level[0]
 
     return newest
+
+
+@pytest.fixture
+def run(domain):
+    """Start an executable in a process of its own."""
+    processes = []
+
+    def start(name, *parameters, remap=(), before="", **environment):
+        arguments = [part for p in parameters for part in ("-p", p)]
+        arguments += [part for r in remap for part in ("-r", r)]
+        process = subprocess.Popen(
+            [sys.executable, "-c", before + START.format(name), "--ros-args", *arguments],
+            env=os.environ | {"ROS_DOMAIN_ID": str(domain)} | environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        processes.append(process)
+        return process
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import os
 import signal
-import subprocess
-import sys
 
 import pytest
 
@@ -13,32 +10,7 @@ pytestmark = pytest.mark.ros
 from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
-START = "from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())"
 WITHOUT_ROS = "import sys; sys.modules['rclpy'] = None; "
-
-
-@pytest.fixture
-def run(domain):
-    """Start an executable in a process of its own."""
-    processes = []
-
-    def start(name, *parameters, remap=(), before="", **environment):
-        arguments = [part for p in parameters for part in ("-p", p)]
-        arguments += [part for r in remap for part in ("-r", r)]
-        process = subprocess.Popen(
-            [sys.executable, "-c", before + START.format(name), "--ros-args", *arguments],
-            env=os.environ | {"ROS_DOMAIN_ID": str(domain)} | environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        processes.append(process)
-        return process
-
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
 
 
 def ended(process):

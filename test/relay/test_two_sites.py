@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import signal
 import socket
 import subprocess
 import sys
@@ -53,10 +54,7 @@ def sites(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Floats, F
     folder = tmp_path_factory.mktemp("sites")
     place = f"tcp/127.0.0.1:{free_port()}"
     seconds = ["--seconds", str(SECONDS)]
-    sender = relay(
-        "send", folder / "sender", "--listen", place, "--wind", "canopy", "--seconds",
-        str(2 * SECONDS),
-    )  # fmt: skip
+    sender = relay("send", folder / "sender", "--listen", place, "--wind", "canopy")
     assert sender.stdout is not None
     assert "sending" in sender.stdout.readline()
     kinds = {
@@ -69,9 +67,12 @@ def sites(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Floats, F
         for kind, given in kinds.items()
     }
     try:
-        for process in (*others.values(), sender):
+        for process in others.values():
             _, errors = process.communicate(timeout=240)
             assert process.returncode == 0, errors
+        sender.send_signal(signal.SIGINT)  # it has sent for as long as they took to come
+        _, errors = sender.communicate(timeout=20)
+        assert sender.returncode == 0, errors
     finally:
         for process in (sender, *others.values()):
             process.kill()

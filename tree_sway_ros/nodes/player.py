@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -30,8 +31,14 @@ from tree_sway_ros.ros.wire.cdr import stamp_of
 from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD
 from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
 
-_SLACK = 200_000_000
+_SLACK = 100_000_000
 """The clock may be so much ahead of the frames of an exact replay [ns]."""
+_BACK, _HOLD = 300_000_000, 0.5
+"""So much [ns] the clock is set back before an exact replay, for so long [s]."""
+_PATIENCE = 15.0
+"""With a solver that shows no frame of that time [s]."""
+_MEETING = 2.0
+"""From the solver's frame to the first sample [s]: wind node and solver must have met as well."""
 
 
 class PlayerNode(TreeSwayNode):
@@ -79,9 +86,14 @@ class PlayerNode(TreeSwayNode):
             ahead=is_exact,
         )
         self._answers: Answers | None = None
+        self._is_waiting, self._deadline, self._met = True, 0.0, 0.0
+        self._has_begun = self._has_blown = False
         if is_exact:
             self._answers = Answers(_SLACK)
             self.subscription(SEGMENT_POSES, self._hear, raw=True)
+            self.subscription(WIND_FILTERED, self._hear_wind, raw=True)
+            for topic in {SEGMENT_POSES.name, WIND_FILTERED.name} & set(wanted):
+                wanted[topic] += 1  # our own
         self._thread = self._make_thread()
         self.report_with(self._record.source, self._report)
 
@@ -106,6 +118,7 @@ class PlayerNode(TreeSwayNode):
     def activate(self) -> None:
         """Play from the start, once those who must listen do."""
         self._thread = self._make_thread()
+        self._is_waiting, self._has_begun, self._has_blown = True, False, False
         self.on_close(self._thread.stop)
         self._thread.start()
 
@@ -143,19 +156,41 @@ class PlayerNode(TreeSwayNode):
         if row >= 0:
             self._send(row, stamp)
             return
-        if self._answers is not None:
+        if self._answers is not None and self._is_waiting:
+            # Time goes back again and again, until the solver has begun anew there.
+            stamp -= _BACK if int(time.monotonic() / _HOLD) % 2 else 0
+        elif self._answers is not None:
             self._answers.wait()
             self._answers.sent(stamp)
         self._clock_publisher.publish(clock_message(stamp))
 
     def _hear(self, data: bytes) -> None:
+        stamp = stamp_of(data)
+        self._has_begun |= stamp <= self._playback.epoch - _BACK
         if self._answers is not None:
-            self._answers.heard(stamp_of(data))
+            self._answers.heard(stamp)
+
+    def _hear_wind(self, data: bytes) -> None:
+        self._has_blown |= stamp_of(data) == self._playback.epoch
 
     def _may_start(self) -> bool:
-        return self._audience.is_there() and (
-            self._answers is None or self.count_publishers(SEGMENT_POSES.name) > 0
-        )
+        now = time.monotonic()
+        if not self._audience.is_there():
+            self._deadline, self._met = now + _PATIENCE, now + _MEETING
+            return False
+        if self._answers is None or (self._has_begun and self._has_blown):
+            self._is_waiting = False
+            return True
+        if now > self._deadline:
+            self.get_logger().warning("no frames come back: this replay will not be exact")
+            self._is_waiting = False
+            return True
+        if not self._has_begun:
+            self._met = now + _MEETING
+        self._is_waiting = not self._has_begun
+        if now > self._met:  # the first sample is sent until it has come through
+            self._publish(self._playback.first_row, self._playback.epoch)
+        return False
 
     def _end(self) -> None:
         self.get_logger().info("the record has ended")

@@ -15,6 +15,7 @@ from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.season import LEAVES
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.averaging import WindAverage
+from tree_sway_ros.core.wind.gate import LARGEST_LEAD
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.errors import ParameterError
@@ -77,6 +78,8 @@ class SolverNode(TreeSwayNode):
         """Sway, from rest."""
         self.pacer = self._make_pacer()
         self.on_close(self.pacer.stop)
+        self._reach = Reach()
+        self.on_close(self._reach.end)
         self.pacer.start()
 
     def _make_pacer(self) -> Pacer:
@@ -133,8 +136,10 @@ class SolverNode(TreeSwayNode):
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
-        arrival = self.get_clock().now().nanoseconds
-        self._reach.add(sample.stamp, arrival)
+        arrival = self._now()
+        if self.pacer.is_simulated and sample.stamp > arrival + LARGEST_LEAD:
+            return  # of before the clock was set back
+        self._reach.add(sample.stamp)
         components = (sample.u, sample.v, sample.w)
         good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
         if good is not None:
@@ -183,15 +188,23 @@ class SolverNode(TreeSwayNode):
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._stepper.restart(tick.time)
+            self._intake.gate.reset()
             self._reach.forget()
         if self.pacer.is_simulated:  # of a replay every frame comes, however late
             for later in range(tick.periods - 1, -1, -1):
                 time = tick.time - later * self.pacer.period
-                self._reach.wait(time - round(1e9 * self.values["wind_delay"]), self._take)
+                if self.values["exact_replay"]:
+                    felt = time - round(1e9 * self.values["wind_delay"])
+                    self._reach.wait(felt, self._take, self._now)
+                else:
+                    self._take()
                 self._frame(time, 1, may_join=False)
         else:
             self._take()
             self._frame(tick.time, tick.periods, may_join=True)
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
 
     def _take(self) -> None:
         for message in self._new_wind():

@@ -7,6 +7,8 @@ from __future__ import annotations
 from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
+from rclpy.clock import JumpThreshold
+from rclpy.duration import Duration
 
 from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.core.wind.gate import WindGate
@@ -25,6 +27,9 @@ from tree_sway_ros.ros.wire.wind_messages import (
 
 _CONVENTION = ("direction_convention", "speed_scale", "yaw_offset", "plane_normal")
 _GATE = ("max_speed", "max_rate", "longest_refusal", "frozen_after")
+
+_BACK = 100_000_000
+"""From so much on time is set back [ns]; less is jitter."""
 
 
 class WindNode(TreeSwayNode):
@@ -54,6 +59,16 @@ class WindNode(TreeSwayNode):
         self.report_with("wind", self._statuses)
         self.get_logger().info(self._convention.describe())
 
+    def activate(self) -> None:
+        """Where simulated time is set back, samples of before say nothing of those to come."""
+        back = JumpThreshold(
+            min_forward=None, min_backward=Duration(nanoseconds=-_BACK), on_clock_change=False
+        )
+        jumps = self.get_clock().create_jump_callback(
+            back, post_callback=lambda _jump: self._intake.gate.reset()
+        )
+        self.on_close(jumps.unregister)
+
     def on_change(self, values: dict[str, Any]) -> None:
         """Read the wind otherwise from the next sample on."""
         self._convention = WindConvention(**self.values(*_CONVENTION))
@@ -69,7 +84,7 @@ class WindNode(TreeSwayNode):
                 f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'", once=True
             )
         components = (sample.u, sample.v, sample.w)
-        arrival = self.get_clock().now().nanoseconds
+        arrival = self.get_clock().now().nanoseconds or None  # simulated time has not come yet
         good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
         self._report.add(good is not None)
         if good is None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.wind.convention import CALM_SPEED, WindConvention
+from tree_sway_ros.core.wind.convention import CALM_SPEED, WindConvention, velocity_of_bearing
 from tree_sway_ros.errors import ParameterError
 
 speeds = st.floats(-40.0, 40.0)
@@ -25,9 +25,8 @@ def test_a_westerly_blows_to_the_east_from_every_kind_of_source():
     east = (5.0, 0.0, 0.0)
     np.testing.assert_allclose(WindConvention("to").vector(5.0, 0.0, 0.0), east)
     np.testing.assert_allclose(WindConvention("from").vector(-5.0, 0.0, 0.0), east)
-    for convention in (WindConvention("to"), WindConvention("from")):
-        wind = convention.from_speed_and_bearing(5.0, 270.0)
-        np.testing.assert_allclose(wind, east, atol=1e-14)
+    np.testing.assert_allclose(velocity_of_bearing(5.0, 1.5 * math.pi), east, atol=1e-14)
+    np.testing.assert_allclose(velocity_of_bearing(5.0, 0.5 * math.pi, "to"), east, atol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -41,15 +40,13 @@ def test_a_westerly_blows_to_the_east_from_every_kind_of_source():
     ],
 )
 def test_meteorological_bearings(bearing, blows_to):
-    wind = WindConvention().from_speed_and_bearing(1.0, bearing)
+    wind = velocity_of_bearing(1.0, math.radians(bearing))
     np.testing.assert_allclose(wind, blows_to, atol=1e-14)
 
 
 @pytest.mark.parametrize(("scale", "kmh"), [(0.514444, 1.852), (0.277778, 1.0)])
 def test_units(scale, kmh):
     wind = WindConvention(speed_scale=scale).vector(10.0, 0.0, 0.0)
-    assert wind[0] == pytest.approx(10.0 * kmh / 3.6, rel=1e-5)
-    wind = WindConvention(speed_scale=scale).from_speed_and_bearing(10.0, 270.0)
     assert wind[0] == pytest.approx(10.0 * kmh / 3.6, rel=1e-5)
 
 
@@ -128,8 +125,6 @@ def test_a_bad_number_comes_out_as_not_finite_and_without_a_warning(bad):
         warnings.simplefilter("error")
         assert not np.isfinite(convention.vector(1.0, bad, 0.0)).all()
         assert not np.isfinite(convention.velocity(1.0, 0.0, bad)).all()
-        assert not np.isfinite(convention.from_speed_and_bearing(1.0, bad)).all()
-        assert not np.isfinite(convention.from_speed_and_bearing(bad, 10.0)).all()
 
 
 @pytest.mark.parametrize(

@@ -70,25 +70,36 @@ MS = 1_000_000
 
 def test_samples_that_go_ahead_are_waited_for():
     reach, coming = Reach(patience=30.0), [1100, 1150]
-    reach.add(1000 * MS, now=1000 * MS)
-    reach.add(1050 * MS, now=1000 * MS)
-    reach.wait(1140 * MS, lambda: reach.add(coming.pop(0) * MS, now=1200 * MS))
+    reach.add(1000 * MS)
+    reach.add(1050 * MS)
+    reach.wait(1140 * MS, lambda: reach.add(coming.pop(0) * MS), lambda: 0)
     assert coming == []
 
 
-def test_samples_that_come_with_the_clock_or_rarely_are_not():
-    for step in (50, 1000):
-        reach, taken = Reach(patience=30.0), []
-        for time in (1000, 1000 + step):
-            reach.add(time * MS, now=(time if step == 50 else 1000) * MS)
-        reach.wait(5000 * MS, lambda: taken.append(1))  # noqa: B023
-        assert taken == [1]
-
-
-def test_a_sample_that_never_comes_is_waited_for_once():
-    reach, taken = Reach(patience=0.01), []
-    for time in (1000, 1050):
-        reach.add(time * MS, now=900 * MS)
-    reach.wait(2000 * MS, lambda: None)
-    reach.wait(2000 * MS, lambda: taken.append(1))
+@pytest.mark.parametrize("stamps", [[], [1000], [1000, 2000]])
+def test_those_before_and_after_a_gap_are_not(stamps):
+    reach, taken = Reach(patience=30.0), []
+    for stamp in stamps:
+        reach.add(stamp * MS)
+    reach.wait(5000 * MS, lambda: taken.append(1), lambda: 0)
     assert taken == [1]
+
+
+@pytest.mark.parametrize(("patience", "clock"), [(0.01, 0), (30.0, 2451)])
+def test_a_sample_that_never_comes_is_waited_for_once(patience, clock):
+    """Until the clock goes on without it, or all patience is at its end."""
+    reach, taken = Reach(patience), []
+    for stamp in (1000, 1050):
+        reach.add(stamp * MS)
+    reach.wait(2000 * MS, lambda: None, lambda: clock * MS)
+    reach.wait(2000 * MS, lambda: taken.append(1), lambda: 0)
+    assert taken == [1]
+
+
+def test_a_wait_ends_with_the_node():
+    reach = Reach(patience=30.0)
+    for stamp in (1000, 1050):
+        reach.add(stamp * MS)
+    threading.Timer(0.02, reach.end).start()
+    reach.wait(2000 * MS, lambda: None, lambda: 0)
+    assert reach._newest == 1050 * MS

@@ -350,9 +350,23 @@ def _bend_in_plane(segment: Any, scratch: Any) -> None:
 @fused
 def _bend(segment: Any, scratch: Any, n_rows: int) -> None:
     """Turn sixteen segments of branches with further coordinates."""
+    turn, half_key, half_turn, half = (
+        segment.turn, scratch.half_key, scratch.half_turn, scratch.half,
+    )  # fmt: skip
+    for j in range(LANES):
+        far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
+        for k in range(3):
+            half[k, j] = far * half_turn[k, j]
+    # Lane by lane within each coordinate, so that the loop is one of vectors.
+    for row in range(n_rows):
+        for j in range(LANES):
+            key = half_key[row, j]
+            half[0, j] += key * turn[row, 0, j]
+            half[1, j] += key * turn[row, 1, j]
+            half[2, j] += key * turn[row, 2, j]
     base = scratch.base
     for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, scratch, n_rows, j)
+        hx, hy, hz = half[0, j], half[1, j], half[2, j]
         c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)

@@ -170,6 +170,7 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ),  # half the rotation vector at the base, from the parent's base
             ("bent", "f8", (2, LANES)),  # half the key rotation, stretched, as children see it
             ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
+            ("half", "f8", (3, LANES)),  # half the rotation vector of a segment
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
             ("half_turn", "f8", (3, LANES)),  # half the rotation vector per unit of slope
             ("half_key", "f8", (n_coordinates, LANES)),  # half of each coordinate, stretched

@@ -175,26 +175,6 @@ class WindConvention:
         """Return `velocity`, projected on the force plane: blowing to, ENU in [m/s], (3,)."""
         return self.project(self.velocity(u, v, w))
 
-    def from_speed_and_bearing(self, speed: float, bearing_degrees: float) -> Floats:
-        """
-        Return the wind of a speed and a meteorological direction, whatever the vectors' convention.
-
-        Parameters
-        ----------
-        speed
-            Wind speed, in the unit of the source.
-        bearing_degrees
-            Where the wind comes from, clockwise from north in [degree]: a westerly has 270.
-
-        Returns
-        -------
-        Floats
-            Wind velocity, blowing to, ENU in [m/s], projected on the force plane, (3,).
-
-        """
-        bearing = math.radians(bearing_degrees) if math.isfinite(bearing_degrees) else math.nan
-        return self.project(self._enu(*velocity_of_bearing(speed, bearing), self.speed_scale))
-
     def force_plane_quaternion(self, vector: Floats, previous: Floats | None = None) -> Floats:
         """
         Return the attitude of the force plane: x along the wind, z along the plane's normal.

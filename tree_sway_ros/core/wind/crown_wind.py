@@ -19,6 +19,8 @@ same in every run. Delays follow the mean wind as in `gust_travel`.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +28,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.checks import within
-from tree_sway_ros.core.kernel import kernel
+from tree_sway_ros.core.kernel import entry_of, kernel
 from tree_sway_ros.core.wind.gust_travel import (
     LARGEST_STRETCH,
     follow_mean,
@@ -154,11 +156,16 @@ class CrownWind:
             In [m/s], (`N_DELAYS`, 3); the same array each time.
 
         """
-        _push(
-            self._run, self._at, self._mean, self._delay, self._spread, self._coherence,
-            x, y, z, dt, self._apart,
-        )  # fmt: skip
+        self._compiled(x, y, z, dt)
         return self._apart
+
+    @cached_property
+    def _compiled(self) -> Callable[[float, float, float, float], None]:
+        arrays = (
+            self._run, self._at, self._mean, self._delay, self._apart, self._spread,
+            self._coherence,
+        )  # fmt: skip
+        return partial(entry_of(_push, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
         """Views of what is carried from one step to the next."""
@@ -178,8 +185,8 @@ class CrownWind:
 
 @kernel
 def _push(
-    run: Floats, at: Ints, mean: Floats, delay: Floats, spread: float, coherence: float,
-    x: float, y: float, z: float, dt: float, apart: Floats,
+    run: Floats, at: Ints, mean: Floats, delay: Floats, apart: Floats,
+    spread: float, coherence: float, x: float, y: float, z: float, dt: float,
 ) -> None:  # fmt: skip
     """Remember a step, let the longest delay follow the mean wind, and read all delays."""
     is_first = at[1] == 0

@@ -422,6 +422,11 @@ SOLVER: Table = (
         live=True,
     ),
     Parameter(
+        "exact_replay",
+        False,
+        "In simulated time a frame waits until the wind reaches beyond it, as a player sends it.",
+    ),
+    Parameter(
         "timeout", 2.0, "When samples stop, the last wind is held for so long.", "s", 0.1, 60.0
     ),
     Parameter(

@@ -18,6 +18,8 @@ from tree_sway_ros.errors import ParameterError
 
 LONGEST_LEAD = 0.4
 """A sample goes ahead by no more than this [s]; gates take what is farther ahead for a fault."""
+_GIVE_UP = 450_000_000
+"""A clock so far beyond a wait [ns] is no longer held; below the longest step of a pacer."""
 _POLL = 0.0005
 SETTLING = 0.5
 """From the moment all are seen to the first sample [s]: they must see us as well."""
@@ -105,7 +107,7 @@ class Answers:
 
     """
 
-    def __init__(self, slack: int, patience: float = 1.0) -> None:
+    def __init__(self, slack: int, patience: float = 3.0) -> None:
         self._slack = slack
         self._patience = patience
         self._more = threading.Condition()
@@ -144,31 +146,38 @@ class Reach:
     Parameters
     ----------
     patience
-        Longest wait for a sample in [s]: what is refused on the way never comes.
+        Longest wait for a sample in [s].
 
     """
 
-    def __init__(self, patience: float = 1.0) -> None:
+    def __init__(self, patience: float = 3.0) -> None:
         self._patience = patience
         self._newest = 0
         self._is_ahead = False
-        self._tick = threading.Event()
+        self._is_over = threading.Event()
 
-    def add(self, stamp: int, now: int) -> None:
-        """Note a sample's stamp, and the clock when it came, in [ns]."""
-        is_dense = 0 < stamp - self._newest <= LONGEST_LEAD * 1e9
-        self._is_ahead = is_dense and (self._is_ahead or stamp > now)
+    def add(self, stamp: int) -> None:
+        """Note a sample's stamp in [ns]; after a long gap it was not sent with the one before."""
+        self._is_ahead = 0 < stamp - self._newest <= LONGEST_LEAD * 1e9
         self._newest = stamp
 
-    def wait(self, time_ns: int, take: Callable[[], None]) -> None:
-        """Take samples until they reach a time in [ns]; just once where none goes ahead."""
+    def wait(self, time_ns: int, take: Callable[[], None], now: Callable[[], int]) -> None:
+        """
+        Take samples until they reach a time in [ns]; just once before the first two of them.
+
+        What was refused on the way never comes: there the clock is let go on, and so is the wait.
+
+        """
         end = time.monotonic() + self._patience
         take()
-        while self._is_ahead and self._newest < time_ns:
-            self._tick.wait(_POLL)
+        while self._is_ahead and self._newest < time_ns and not self._is_over.wait(_POLL):
             take()
-            if time.monotonic() > end:
+            if now() > time_ns + _GIVE_UP or time.monotonic() > end:
                 self._is_ahead = False
+
+    def end(self) -> None:
+        """Wait no more; another thread calls this."""
+        self._is_over.set()
 
     def forget(self) -> None:
         """Begin anew, at another time."""

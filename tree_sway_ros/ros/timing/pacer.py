@@ -106,7 +106,7 @@ class Pacer:
         self._on_error = on_error
         self._on_slip = on_slip
         self._slips = 0
-        self._last_steady = 0
+        self._last_steady = self._late = 0
         self._last: int | None = None
         self._wake = threading.Event()
         self._stopping = False
@@ -196,13 +196,14 @@ class Pacer:
         if self._last is None or now < self._last * self.period - _BACK:
             self._restarts += self._last is not None
             self._last, self._last_steady = index, time.monotonic_ns()
+            self._late = now % self.period
             return Tick(index * self.period, 1, True)
         periods = index - self._last
         if periods <= 0:
             return None
         steady = time.monotonic_ns()
-        passed = steady - self._last_steady
-        self._last, self._last_steady = index, steady
+        passed = steady - self._last_steady + self._late  # since the last tick's time on the grid
+        self._last, self._last_steady, self._late = index, steady, now % self.period
         most = max(1, LONGEST_STEP // self.period)
         if not self.is_simulated:
             # A wall clock that was set forward skips nothing; one that went on as time does, does.

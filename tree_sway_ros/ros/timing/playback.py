@@ -103,8 +103,8 @@ class Playback:
         clock_period: float = 0.0,
         ahead: bool = False,
     ) -> None:
-        self._first_row = int(np.searchsorted(time, time[0] + start)) if len(time) else 0
-        self._time = time[self._first_row :]
+        self.first_row = int(np.searchsorted(time, time[0] + start)) if len(time) else 0
+        self._time = time[self.first_row :]
         if not len(self._time):
             raise FormatError(f"no sample {start:g} s into the record", cure="give a smaller start")
         self._epoch = epoch
@@ -141,7 +141,7 @@ class Playback:
     def _samples(self) -> Iterator[Event]:
         relative, before = (self._time - self._time[0]).tolist(), 0.0
         for turn in itertools.count() if self._loop else range(1):
-            for row, since in enumerate(relative, start=self._first_row):
+            for row, since in enumerate(relative, start=self.first_row):
                 time = turn * self.round + since
                 yield Event(
                     time, row, max(before, time - LONGEST_LEAD) if self.goes_ahead else time

@@ -61,7 +61,7 @@ def extreme_operating_gust(
     Return the speed of the IEC extreme operating gust, the "Mexican hat".
 
     It is -0.37 A sin(3 pi t/T) (1 - cos(2 pi t/T)): a dip, a peak of 0.74 A, a dip. IEC
-    61400-1:2005, 6.3.2.2; `extreme_gust_speed` gives its A.
+    61400-1:2005, 6.3.2.2, where A = 3.3 s/(1 + 0.1 D/Lambda1).
 
     Parameters
     ----------
@@ -89,33 +89,6 @@ def extreme_operating_gust(
     x = _progress(time, duration, start)
     hat = -0.37 * amplitude * np.sin(3.0 * np.pi * x) * (1.0 - np.cos(2.0 * np.pi * x))
     return np.asarray(hat, dtype=np.float64)
-
-
-def extreme_gust_speed(deviation: float, scale: float, width: float = 0.0) -> float:
-    """
-    Return the magnitude of the IEC extreme operating gust, 3.3 s/(1 + 0.1 D/Lambda1).
-
-    Parameters
-    ----------
-    deviation
-        Standard deviation s of the wind along its mean in [m/s].
-    scale
-        Turbulence scale Lambda1 in [m].
-    width
-        Width D of what the gust must cover, such as the crown, in [m].
-
-    Returns
-    -------
-    float
-        Magnitude A in [m/s]; IEC 61400-1:2005, 6.3.2.2, without its cap by the yearly extreme.
-
-    Raises
-    ------
-    ParameterError
-        If a value is out of its range.
-
-    """
-    return 3.3 * _spread_over(deviation, scale, width)
 
 
 def step(time: ArrayLike, amplitude: float, rise: float = 0.0, start: float = 0.0) -> Floats:
@@ -162,7 +135,7 @@ def direction_change(
     time
         Times in [s], any shape.
     angle
-        Angle a turned in the end in [rad]; `extreme_direction_angle` gives the standard's.
+        Angle a turned in the end in [rad]; the standard's is 4 atan(s/(U (1 + 0.1 D/Lambda1))).
     duration
         Duration T in [s].
     start
@@ -181,34 +154,6 @@ def direction_change(
     """
     within("angle", angle, -_LARGEST_ANGLE, _LARGEST_ANGLE, "rad")
     return 0.5 * angle * (1.0 - np.cos(np.pi * _progress(time, duration, start)))
-
-
-def extreme_direction_angle(
-    mean_speed: float, deviation: float, scale: float, width: float = 0.0
-) -> float:
-    """
-    Return the angle of the IEC extreme direction change, 4 atan(s/(U (1 + 0.1 D/Lambda1))).
-
-    Parameters
-    ----------
-    mean_speed
-        Mean wind speed U in [m/s].
-    deviation, scale, width
-        As in `extreme_gust_speed`.
-
-    Returns
-    -------
-    float
-        Angle in [rad], at most pi; IEC 61400-1:2005, 6.3.2.4.
-
-    Raises
-    ------
-    ParameterError
-        If a value is out of its range.
-
-    """
-    within("mean_speed", mean_speed, 0.0, _LARGEST_SPEED, "m/s", above=True)
-    return float(min(np.pi, 4.0 * np.arctan(_spread_over(deviation, scale, width) / mean_speed)))
 
 
 def turn(time: ArrayLike, angle: float, duration: float, start: float = 0.0) -> Floats:
@@ -249,10 +194,3 @@ def _progress(time: ArrayLike, duration: float, start: float) -> Floats:
 
 def _check_speed(amplitude: float) -> None:
     within("amplitude", amplitude, -_LARGEST_SPEED, _LARGEST_SPEED, "m/s")
-
-
-def _spread_over(deviation: float, scale: float, width: float) -> float:
-    within("deviation", deviation, 0.0, _LARGEST_SPEED, "m/s")
-    within("scale", scale, 0.0, _LONGEST, "m", above=True)
-    within("width", width, 0.0, _LONGEST, "m")
-    return deviation / (1.0 + 0.1 * width / scale)
