@@ -18,7 +18,7 @@ import pytest
 pytest.importorskip("aiohttp", reason="aiohttp is not installed")
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import TransportError
 from tree_sway_ros.page.client import StreamClient
 from tree_sway_ros.page.controls import Control, ControlPanel

@@ -20,7 +20,7 @@ from urllib.parse import urlsplit, urlunsplit
 import aiohttp
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import TransportError, TreeSwayError
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.playout import DELAY, Moment, Playout

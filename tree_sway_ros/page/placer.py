@@ -16,7 +16,7 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import head_records, lanes
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import BRANCH, SEGMENT, WORK
-from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.page.protocol import Description, Frame
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 
 VERSION = 1

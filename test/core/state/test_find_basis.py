@@ -14,7 +14,7 @@ from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.motion.response import tip_motion
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.find_basis import state_basis, tip_moments
-from tree_sway_ros.core.state.state_basis import FULL_SCALE
+from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
 

@@ -267,14 +267,15 @@ def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
 
     """
     tangent = model.beam.tangent
+    slanting = _SlantingWinds(model.beam.chord)
     outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
-    drag = np.maximum(_WINDS @ outer[:, [0, 4, 8, 1, 2, 5]].T, 0.0) ** 1.5 @ share.sum(axis=1)
-    record["projector"] = _NEAREST @ drag ** (2.0 / 3.0)
+    drag = slanting.squares(outer[:, [0, 4, 8, 1, 2, 5]]) ** 1.5 @ share.sum(axis=1)
+    record["projector"] = slanting.nearest(drag ** (2.0 / 3.0))
     projector = record["projector"][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
-    across = _ASLANT @ projector
-    force = np.sqrt(np.maximum((_ASLANT * across).sum(axis=1), 0.0))[:, None] * across
+    across = slanting.winds @ projector
+    force = np.sqrt(np.maximum((slanting.winds * across).sum(axis=1), 0.0))[:, None] * across
     fit = np.linalg.pinv(force, rcond=_STRAIGHT)
-    pieces = _ASLANT[:, None] - (_ASLANT @ tangent.T)[..., None] * tangent
+    pieces = slanting.winds[:, None] - (slanting.winds @ tangent.T)[..., None] * tangent
     pieces *= np.linalg.norm(pieces, axis=-1, keepdims=True)
     point = (share[..., None] * model.beam.point).sum(axis=1)
     moment = cross(point, pieces).sum(axis=1)
@@ -393,10 +394,11 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     if not pressed.any():
         return
     projectors = np.vstack([own["projector"], loads["projector"]])
-    drag = np.maximum(_WINDS @ projectors.T, 0.0) ** 1.5 * pressed
+    slanting = _SlantingWinds(pressed @ np.vstack([own["centre"], loads["centre"]]))
+    drag = slanting.squares(projectors) ** 1.5 * pressed
     share = drag.sum(axis=0) / drag.sum()
     both = (drag.sum(axis=1) / pressed.sum()) ** (2.0 / 3.0)
-    record["projector"] = _NEAREST @ both
+    record["projector"] = slanting.nearest(both)
     record["speed"] = share @ speed
     record["area"] = pressed.sum() / record["speed"] ** 2
     centre = loads["centre"]
@@ -416,27 +418,37 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     _fill_flow(record, mean, float(square), float(cube))
 
 
-def _squares(directions: Floats) -> Floats:
+class _SlantingWinds:
     """
-    Weights of xx, yy, zz, xy, xz, yz of a projector P in ``u . P u``, for winds u (d, 3), (d, 6).
+    Winds from all sides, along the ground and, as branches bend, aslant.
+
+    The first comes from the side that a direction (3,) points to, so that a tree that is turned as
+    a whole has the same load from the side that is turned with it.
 
     """
-    x, y, z = directions.T
-    return np.stack([x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z], axis=1)
 
+    def __init__(self, direction: Floats) -> None:
+        """Lay 16 bearings on each of three rises."""
+        x, y, _ = direction
+        points = math.hypot(x, y) > 1e-6 * float(np.linalg.norm(direction))
+        bearing = (math.atan2(y, x) if points else 0.0) + np.arange(16) * np.pi / 8.0
+        rise = np.radians([-20.0, 0.0, 20.0])[:, None]
+        level, up = np.cos(rise), np.broadcast_to(np.sin(rise), (3, 16))
+        winds = np.stack([level * np.cos(bearing), level * np.sin(bearing), up], axis=2)
+        self.winds = winds.reshape(48, 3)
+        x, y, z = self.winds.T
+        weights = [x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z]
+        self._weights = np.stack(weights, axis=1)
 
-def _sides(rise: float) -> Floats:
-    """Directions from all sides, so much upwards in [deg], (16, 3)."""
-    bearing, up = np.arange(16) * np.pi / 8.0, np.full(16, math.radians(rise))
-    return np.stack([np.cos(up) * np.cos(bearing), np.cos(up) * np.sin(bearing), np.sin(up)], 1)
+    def squares(self, projectors: Floats) -> Floats:
+        """Return ``u . P u`` of projectors (k, 6) in each wind u, (48, k)."""
+        squares: Floats = np.maximum(self._weights @ projectors.T, 0.0)
+        return squares
 
-
-_ASLANT = np.concatenate([_sides(-20.0), _sides(0.0), _sides(20.0)])
-_WINDS = _squares(_ASLANT)
-"""Winds from all sides, along the ground and, as branches bend, aslant."""
-
-_NEAREST = np.linalg.pinv(_WINDS)
-"""From squares in those winds to the projector that fits them best, (6, d)."""
+    def nearest(self, squares: Floats) -> Floats:
+        """Return the projector (6,) whose squares come nearest to these, (48,)."""
+        projector: Floats = np.linalg.lstsq(self._weights, squares, rcond=None)[0]
+        return projector
 
 
 def _drawn_turns(model: BranchModel) -> Floats:

@@ -21,9 +21,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
-
-FULL_SCALE = 32767
-"""Greatest int16 that a coordinate is told by."""
+from tree_sway_ros.core.state.full_scale import FULL_SCALE
 
 
 @dataclass(frozen=True)
