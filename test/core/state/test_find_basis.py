@@ -52,10 +52,10 @@ def gaps(sim, basis, speed, steps=600):
 
 @pytest.fixture(scope="module")
 def fine_basis(benjamina):
-    return state_basis(benjamina, 28)
+    return state_basis(benjamina, 30)
 
 
-def test_twenty_eight_coordinates_hold_twelve_modes_and_their_static_rest(benjamina, fine_basis):
+def test_thirty_coordinates_hold_twelve_modes_and_their_static_rest(benjamina, fine_basis):
     gap, motion = gaps(benjamina, fine_basis, 2.0)
     assert 1.5e-3 < np.sqrt(np.square(motion).sum(axis=2).mean())
     assert gap.max() <= 1e-4

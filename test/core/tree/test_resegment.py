@@ -52,7 +52,7 @@ def limbs(sketch, cuts):
 
 KINK = pytest.mark.xfail(
     strict=True,
-    reason="a twist has a kink where a child sits within a segment: cut in 3 it errs by 0.1 to 0.3 %",
+    reason="a twist has a kink where a child sits within a segment: cut in 3 it errs by 0.1-0.3 %",
 )
 
 

@@ -48,8 +48,8 @@ def recorded(path: Path, format: str, text: str = '{"state":{}}') -> Path:
         bag.add("/oak/tree_description", DESCRIPTION_TYPE, latched=True)
         bag.add("/oak/tree_state", STATE_TYPE, depth=10)
         bag.write("/oak/tree_description", 0, description(text))
-        for k in (0, 1, 3, 2, 4):  # one comes out of order
-            bag.write("/oak/tree_state", k, state(10 * SECOND + k * 100_000_000, float(k)))
+        for at, k in enumerate((0, 1, 3, 2, 4)):  # one comes out of order
+            bag.write("/oak/tree_state", at, state(10 * SECOND + k * 100_000_000, float(k)))
     return path
 
 

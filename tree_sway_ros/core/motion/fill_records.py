@@ -242,7 +242,7 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     exposed /= float(share.sum(axis=1) @ exposed)
     into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
     mean = np.zeros_like(record["push"])
-    square = cube = 0.0
+    moved = np.zeros(share.shape)
     for i, one in enumerate(model.fields):
         field = one.points
         own = np.einsum("s,sg,sgk->sk", exposed, share, field)
@@ -251,13 +251,21 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
         record["push"][i] = into_push @ mean[i]
         record["turn"][i] = np.einsum("sg,sgk->k", share, one.slope)
         if i < 2:
-            moved = np.square(field).sum(axis=-1)
+            moved += np.square(field).sum(axis=-1)
             moved -= np.square(np.einsum("sgk,sk->sg", field, beam.tangent))
-            square += float((share * moved).sum())
-            cube += float((share * np.maximum(moved, 0.0) ** 1.5).sum())
     if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
         _fit_load(model, share, record)
-    _fill_flow(record, mean, square, cube)
+    _fill_flow(record, mean, float((share * moved).sum()), float((share * _cubes(moved)).sum()))
+
+
+def _cubes(squares: Floats) -> Floats:
+    """
+    Cubes of displacements of both axes together, from the sum of their squares: as if they were
+    alike, so that it does not matter how they are laid.
+
+    """
+    cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
+    return cubes
 
 
 def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
@@ -411,9 +419,9 @@ def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
     mean = own["push"] @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     damped = float((mean[:2] * own["flow"][:2]).sum())
     still = math.sqrt(own["spread"] + 0.5 * float(np.square(own["flow"][:2]).sum()))
-    squares = np.square(moved[:, :2]).sum(axis=-1)
-    square = share[0] * damped + share[1:] @ squares.sum(axis=1)
-    cube = share[0] * damped * still + share[1:] @ (squares**1.5).sum(axis=1)
+    squares = np.square(moved[:, :2]).sum(axis=(1, 2))
+    square = share[0] * damped + share[1:] @ squares
+    cube = share[0] * damped * still + share[1:] @ _cubes(squares)
     mean = share[0] * mean + np.tensordot(share[1:], moved, axes=1)
     _fill_flow(record, mean, float(square), float(cube))
 

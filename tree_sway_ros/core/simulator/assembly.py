@@ -40,12 +40,10 @@ from tree_sway_ros.core.reduction.modes import (
     with_static,
 )
 from tree_sway_ros.core.reduction.one_thread import one_thread
-from tree_sway_ros.core.simulator.crown_gusts import delays_of
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.core.wind.crown_wind import CrownDelays
 from tree_sway_ros.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -54,6 +52,7 @@ if TYPE_CHECKING:
     from tree_sway_ros.core.motion.rigid_placing import RigidParts
     from tree_sway_ros.core.motion.uncoupled import UncoupledBank
     from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
+    from tree_sway_ros.core.wind.crown_wind import CrownDelays
 
 
 class Oscillators(Protocol):
@@ -292,6 +291,8 @@ class CalibratedTree:
     @cached_property
     def crown_delays(self) -> CrownDelays:
         """When each branch meets a gust."""
+        from tree_sway_ros.core.simulator.crown_gusts import delays_of
+
         return delays_of(self.tree, self.leaf_load_area)
 
     @one_thread()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +20,6 @@ from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
-from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
-from tree_sway_ros.core.simulator.live_tuning import LiveTuning, Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
@@ -30,6 +28,10 @@ from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
+    from tree_sway_ros.core.simulator.live_tuning import LiveTuning, Tuning
 
 OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
 """What `SwaySimulator.step` tells, as bits."""
@@ -118,6 +120,8 @@ class SwaySimulator(OneTree, KeepsState):
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
         if self.settings.crown_coherence < 1.0:
+            from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
+
             self._gusts = CrownGusts(
                 calibrated.crown_delays,
                 self.settings.crown_coherence,
@@ -304,6 +308,8 @@ class SwaySimulator(OneTree, KeepsState):
 
     def check_tuning(self, **changes: float) -> Tuning:
         """Refuse what `tune` would refuse; returns all values as they would be."""
+        from tree_sway_ros.core.simulator.live_tuning import LiveTuning, Tuning
+
         of = self.bank.oscillators
         if isinstance(of, Frozen):
             return Tuning.of(self.settings, 0.0).changed(**changes)
