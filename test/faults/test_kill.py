@@ -96,6 +96,7 @@ def digests(observer, frames, last):
     return {stamp: digest for stamp, digest in found.items() if 10**9 <= stamp <= last}
 
 
+@pytest.mark.long
 def test_killed_amid_a_replay_the_next_one_is_the_same_bit_for_bit(
     chain, observer, tree_file, tmp_path
 ):
