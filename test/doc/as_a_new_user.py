@@ -5,8 +5,8 @@ The README's commands in a bare Debian, as a new user of it: how long until a tr
 
     sudo .venv/bin/python test/doc/as_a_new_user.py
 
-Needs debootstrap and, to look at the page, Chromium on this machine. The Debian has Python, its venv
-and git; what it fetches packages with (pip's settings, certificates) is this machine's.
+Needs debootstrap and, to look at the page, Chromium on this machine. The Debian has Python, its
+venv and git; what it fetches packages with (pip's settings, certificates) is this machine's.
 
 """
 
@@ -29,7 +29,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = "python3,python3-venv,git,ca-certificates"
-OF_THIS_MACHINE = ("/etc/pip.conf", "/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs")
+OF_THIS_MACHINE = ("/etc/pip.conf", "/etc/resolv.conf", "/etc/ssl/certs/ca-certificates.crt")
 SHOW = "python3 .ci/in_venv.py tree-sway show"
 DEMO = "python3 .ci/in_venv.py tree-sway demo --no-page --seconds 4"
 Browser = runpy.run_path(str(ROOT / "test" / "page" / "conftest.py"))["Browser"]
@@ -65,8 +65,6 @@ def debian(folder: str, suite: str) -> Iterator[object]:
     for path in map(Path, OF_THIS_MACHINE):
         if path.is_file():
             shutil.copy(path, folder + str(path))
-        elif path.is_dir():
-            shutil.copytree(path, folder + str(path), dirs_exist_ok=True)
     kept = f"{folder}/srv/tree_sway_ros.git"
     subprocess.run(["git", "clone", "-q", "--bare", str(ROOT), kept], check=True)
     places = ("proc", "sys", "dev")
