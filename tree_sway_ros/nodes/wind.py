@@ -55,7 +55,7 @@ class WindNode(TreeSwayNode):
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
         kind = wind_class(self.values["input_type"])
-        self._topic = self.subscription(WIND, self._receive, kind).topic_name
+        self._topic = self.subscription(WIND, self._receive, kind, alone=True).topic_name
         self.report_with("wind", self._statuses)
         self.get_logger().info(self._convention.describe())
 

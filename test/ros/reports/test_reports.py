@@ -7,7 +7,7 @@ pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402
 
-from tree_sway_ros.core.wind.gate import SECOND, WindGate  # noqa: E402
+from tree_sway_ros.core.wind.gate import SECOND, GateCounts, WindGate  # noqa: E402
 from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
 from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status, status_array  # noqa: E402
@@ -114,7 +114,9 @@ def test_a_stream_that_stands_is_a_warning_unless_simulated_time_does():
 def test_every_state_of_the_wind_has_a_level(state, level):
     from tree_sway_ros.ros.reports.sway_report import _wind
 
-    assert _wind(state).level == level
+    status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))
+    assert status.level == level
+    assert (status.values["refused"], status.values["spike"]) == (3, 2)
 
 
 def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
