@@ -68,6 +68,20 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.status(TIMEOUT, gate).level == OK
 
 
+def test_a_slow_sensor_is_late_by_its_own_periods(clock):
+    report, gate, timeout = WindReport(), WindGate(), 0.5
+    for _ in range(5):
+        for burst in (0.001, 0.001, 0.998):  # as a logger that sends three at once
+            clock.now += burst
+            report.add(True)
+    clock.now += 0.99
+    assert report.status(timeout, gate).level == OK
+    clock.now += 2.1
+    assert report.status(timeout, gate).level == WARN
+    clock.now += 3.0 * STALE_AFTER
+    assert report.status(timeout, gate).level == STALE
+
+
 def test_refused_samples_are_no_wind(clock):
     report, gate = WindReport(), WindGate()
     gate.offer(SECOND, (float("nan"), 0.0, 0.0))
