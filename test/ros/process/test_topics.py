@@ -12,7 +12,6 @@ from tree_sway_ros.ros.process.topics import (
     TOPICS,
     TREE_DESCRIPTION,
     WIND,
-    markdown_table,
     message_class,
     qos_profile,
 )
@@ -37,11 +36,6 @@ def test_any_driver_matches_the_wind():
 def test_the_description_waits_for_late_joiners():
     assert TREE_DESCRIPTION.latched
     assert TREE_DESCRIPTION.reliable
-
-
-def test_the_table_for_people_has_every_topic():
-    text = markdown_table()
-    assert all(f"`{topic.name}`" in text for topic in TOPICS)
 
 
 @pytest.mark.ros

@@ -143,15 +143,6 @@ TOPICS = (
 )
 
 
-def markdown_table() -> str:
-    """Render the topics for the reference."""
-    lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
-    for topic in TOPICS:
-        cells = (f"`{topic.name}`", f"`{topic.type_name}`", topic.qos_text, topic.description)
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
-
-
 def qos_profile(topic: Topic) -> Any:
     """Quality of service of a topic as rclpy's object."""
     from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
