@@ -88,10 +88,19 @@ def debian(folder: str, suite: str) -> Iterator[object]:
 def start(folder: str, line: str) -> subprocess.Popen[str]:
     """Start a line as the new user, in their home."""
     kept = {key: value for key, value in os.environ.items() if "PIP" in key or "CERT" in key}
-    own = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": "/home/newcomer", "LANG": "C.UTF-8", **kept}
-    words = ["/usr/sbin/chroot", "--userspec=newcomer", folder, "/bin/bash", "-ec", f"cd; {line}"]
+    own = {
+        "PATH": "/usr/bin:/bin:/usr/sbin:/sbin",
+        "HOME": "/home/newcomer",
+        "LANG": "C.UTF-8",
+        **kept,
+    }
+    shell = ["/bin/bash", "-ec", f"cd; {line}"]
     return subprocess.Popen(
-        words, env=own, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        ["/usr/sbin/chroot", "--userspec=newcomer", folder, *shell],
+        env=own,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
     )
 
 
