@@ -52,5 +52,5 @@ def notebook(script: Path) -> str:
 
 
 def _cell(kind: str, text: str) -> dict[str, object]:
-    outputs = {"execution_count": None, "outputs": []} if kind == "code" else {}
+    outputs: dict[str, object] = {"execution_count": None, "outputs": []} if kind == "code" else {}
     return {"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True), **outputs}
