@@ -73,10 +73,14 @@ def debian(folder: str, suite: str) -> Iterator[object]:
         subprocess.run(["mount", "--bind", f"/{place}", f"{folder}/{place}"], check=True)
     subprocess.run(["mount", "--bind", "/dev/shm", f"{folder}/dev/shm"], check=True)
     try:
-        subprocess.run(["chroot", folder, "useradd", "-m", "newcomer"], check=True)
+        for line in ("useradd -m newcomer", "chown -R newcomer /srv/tree_sway_ros.git"):
+            subprocess.run(["chroot", folder, *line.split()], check=True)
 
         def run(line: str) -> str:
-            told = start(folder, line).communicate()[0]
+            process = start(folder, line)
+            told = process.communicate()[0]
+            if process.returncode:
+                sys.exit(f"{line}\n{told}")
             return str(told)
 
         yield run
