@@ -40,6 +40,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--suite", default="bookworm", help="of Debian (bookworm)")
     given = parser.parse_args()
+    # Who is started in the background ignores Ctrl-C, and so would all that it starts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with (
         tempfile.TemporaryDirectory(prefix="debian-") as folder,
         debian(folder, given.suite) as run,
@@ -105,6 +107,7 @@ def start(folder: str, line: str) -> subprocess.Popen[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        start_new_session=True,
     )
 
 
@@ -118,7 +121,7 @@ def look(folder: str, began: float) -> float:
             if found := re.search(r"http://\S+", line):
                 return asyncio.run(moving(found[0])) - began
     finally:
-        process.send_signal(signal.SIGINT)
+        os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does
         process.communicate(timeout=30)
     sys.exit("no page was served")
 
