@@ -52,6 +52,7 @@ class WindNode(TreeSwayNode):
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
         self._attitude: Any = None
+        self._has_told_frame = False
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
         kind = wind_class(self.values["input_type"])
@@ -79,10 +80,9 @@ class WindNode(TreeSwayNode):
             return
         sample = wind_from_message(message)
         frame_id = self.values["frame_id"]
-        if sample.frame_id not in ("", frame_id):
-            self.get_logger().warning(
-                f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'", once=True
-            )
+        if not self._has_told_frame and sample.frame_id not in ("", frame_id):
+            self._has_told_frame = True  # the logger's own `once` looks for its caller every time
+            self.get_logger().warning(f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'")
         components = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds or None  # simulated time has not come yet
         good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
