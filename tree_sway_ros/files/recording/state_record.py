@@ -15,6 +15,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError, MissingDependencyError
+from tree_sway_ros.files.text_file import reason_of
 from tree_sway_ros.files.wind.bag import bag_of
 
 STATE_TYPE = "sensor_msgs/msg/JointState"
@@ -103,8 +104,9 @@ def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
                 elif connection.msgtype == STATE_TYPE:
                     found.append((_stamp(bytes(data)), bytes(data)))
     except Exception as error:  # rosbags, sqlite3, lz4 or struct: it is the bag's fault
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
-        raise FormatError(f"not a bag that can be read: {reason}", where=source) from error
+        raise FormatError(
+            f"not a bag that can be read: {reason_of(error)}", where=source
+        ) from error
     if not found or b'"state"' not in description:
         raise FormatError(
             f"no '{name}' with the description that it is read by",

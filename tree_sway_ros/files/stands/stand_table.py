@@ -24,6 +24,7 @@ from tree_sway_ros.core.scene.stand import LARGEST, SMALLEST, StandKind, StandTr
 from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import FormatError, ParameterError, TreeSwayError
+from tree_sway_ros.files.file_format import has_columns
 from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
 from tree_sway_ros.files.table_file import TextTable, parse_table
 from tree_sway_ros.files.text_file import read_head, read_lines
@@ -36,13 +37,7 @@ _CLASS = 3.0
 
 def is_stand_table(path: Path) -> bool:
     """Whether a file is a table with the columns of a stand."""
-    if not path.is_file():
-        return False
-    for line in read_head(path).decode("utf-8", errors="replace").splitlines():
-        if line.strip() and not line.startswith("#"):
-            cells = {cell.strip(' "').lower() for cell in line.replace(";", ",").split(",")}
-            return set(COLUMNS) <= cells
-    return False
+    return path.is_file() and has_columns(*COLUMNS)(read_head(path))
 
 
 def read_stand_table(

@@ -17,6 +17,7 @@ from typing import Any
 
 from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.errors import FormatError, MissingDependencyError
+from tree_sway_ros.files.text_file import reason_of
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
 
 WIND_TYPES = tuple(
@@ -79,7 +80,7 @@ def read_bag_wind(
     except FormatError:
         raise
     except Exception as error:
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
+        reason = reason_of(error)
         if not rows.time:
             raise FormatError(
                 f"not a bag that can be read: {reason}",

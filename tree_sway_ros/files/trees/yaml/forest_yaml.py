@@ -16,7 +16,6 @@ Keys, kinds and ranges are those of ``forest_schema.json`` beside this file::
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -25,23 +24,24 @@ from typing import Any
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import FormatError, TreeSwayError
-from tree_sway_ros.files.text_file import path_of, read_head, read_text
+from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.files.yaml_document import YamlDocument, packaged_schema, read_yaml
+from tree_sway_ros.files.yaml_document import (
+    YamlDocument,
+    begins_with_key,
+    packaged_schema,
+    read_yaml,
+)
 
 OpenTree = Callable[[str, int], TreeFile]
 OpenSpecies = Callable[[str], Species]
-_SUFFIXES = (".yaml", ".yml", ".json")
-_TREES = re.compile(r"""^\{?\s*["']?trees["']?\s*:""", re.MULTILINE)
 
 
 def is_forest(path: Path) -> bool:
     """Whether a file looks like a forest: YAML with ``trees`` at its outermost."""
-    if path.suffix.lower() not in _SUFFIXES or not path.is_file():
-        return False
-    return _TREES.search(read_head(path).decode("utf-8", errors="replace")) is not None
+    return begins_with_key(path, "trees")
 
 
 def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) -> ForestFile:
