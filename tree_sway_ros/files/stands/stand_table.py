@@ -28,6 +28,7 @@ from tree_sway_ros.files.file_format import has_columns
 from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
 from tree_sway_ros.files.table_file import TextTable, parse_table
 from tree_sway_ros.files.text_file import read_head, read_lines
+from tree_sway_ros.files.trees.yaml.forest_file import refuse_same_names
 
 COLUMNS = ("x", "y", "species", "height")
 """Columns that a stand has."""
@@ -70,7 +71,7 @@ def read_stand_table(
     x, y, height = table.strict(["x", "y", "height"]).T
     species = _texts(table, "species")
     names = _texts(table, "name") or [f"tree{row + 1}" for row in range(len(x))]
-    _refuse_same(names, table)
+    refuse_same_names(names, table.where)
     given = dict(kinds or {})
     classes = _height_classes(species, height)
     standing, made = [], dict[str, StandKind]()
@@ -146,19 +147,3 @@ def _numbers(table: TextTable, column: str, otherwise: Floats) -> Floats:
         return otherwise
     numbers: Floats = table.strict([column])[:, 0]
     return numbers
-
-
-def _refuse_same(names: list[str], table: TextTable) -> None:
-    seen: dict[str, int] = {}
-    for row, name in enumerate(names):
-        if name in seen:
-            raise FormatError(
-                f"a second tree called '{name}', the first is in line {table.numbers[seen[name]]}",
-                where=table.where(row),
-                cure="name each",
-            )
-        if "/" in name:
-            raise FormatError(
-                f"a slash in the name '{name}'", where=table.where(row), cure="leave it out"
-            )
-        seen[name] = row
