@@ -115,8 +115,16 @@ CLOCK = Topic(
 TF = Topic(
     "/tf",
     "tf2_msgs/msg/TFMessage",
-    "One frame per segment, where `publish_tf` asks for it.",
+    "One frame per segment, where `publish_tf` asks for it; read where the wind is in another "
+    "frame.",
     depth=10,
+)
+TF_STATIC = Topic(
+    "/tf_static",
+    "tf2_msgs/msg/TFMessage",
+    "Read where the wind is in another frame.",
+    latched=True,
+    depth=100,
 )
 
 TOPICS = (
@@ -131,6 +139,7 @@ TOPICS = (
     DIAGNOSTICS,
     CLOCK,
     TF,
+    TF_STATIC,
 )
 
 
