@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
-from tree_sway_ros.core.scene.demand import tell_demand
+from tree_sway_ros.core.scene.demand import set_demand
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
@@ -141,7 +141,7 @@ class Session:
             self._resets = True
         elif name == "tolerance":
             self._tolerance = float(value or 0.0)
-            tell_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
+            set_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
         elif name in ("mean_speed", "intensity", "bearing_to"):
             if not isinstance(self.wind, SimulatedWind):
                 raise ParameterError(
@@ -172,7 +172,7 @@ class Session:
     def _made(self, choices: Choices) -> SceneState:
         simulator, leaves = self._build(choices)
         scene = SceneState(simulator, leaves, is_running=False)
-        tell_demand(simulators_of(simulator), tolerance=self._tolerance)
+        set_demand(simulators_of(simulator), tolerance=self._tolerance)
         simulator.reset()
         return scene
 

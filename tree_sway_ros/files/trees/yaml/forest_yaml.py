@@ -29,7 +29,6 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, refuse_same_names
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.files.yaml_document import (
-    YamlDocument,
     begins_with_key,
     packaged_schema,
     read_yaml,
