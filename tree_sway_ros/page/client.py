@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A client of the stream in Python: connects, keeps the line, tells where every segment is now.
-
-"""
+"""A client of the stream in Python: connects, keeps the line, tells where every segment is now."""
 
 from __future__ import annotations
 

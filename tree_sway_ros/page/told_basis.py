@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The basis that a tree is told in: that of its model, shared by trees of one shape.
-
-"""
+"""The basis that a tree is told in: that of its model, shared by trees of one shape."""
 
 from __future__ import annotations
 

@@ -261,10 +261,7 @@ def _write_bases(head: Any, scratch: Any, work: Any) -> bool:
 
 @fused
 def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
-    """
-    Set the further coordinates; return whether any branch with them bends beyond the series.
-
-    """
+    """Set the further coordinates; return whether any branch with them bends beyond the series."""
     is_far, half_key = False, scratch.half_key
     half_key[2:] = 0.0
     for j in range(head.n_lanes):

@@ -172,10 +172,7 @@ class GustHistory:
 def remember(
     run: Floats, at: NDArray[np.int64], finest: float, x: float, y: float, z: float, dt: float
 ) -> None:
-    """
-    Write time and run of the wind at the end of the step; the ring begins with its start.
-
-    """
+    """Write time and run of the wind at the end of the step; the ring begins with its start."""
     size = len(run)
     if at[1] == 0:
         run[0] = 0.0
