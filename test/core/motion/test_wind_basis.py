@@ -11,7 +11,6 @@ import pytest
 
 from tree_sway_ros.core.fidelity.ladder import TABLE_FLOOR, TABLE_MARGIN
 from tree_sway_ros.core.growth.builtin import builtin_tree
-from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import ParameterError
@@ -134,7 +133,6 @@ def test_a_degree_that_is_none_is_refused(fork, degree):
         SwaySimulator(fork(), model="wind_basis", degree=degree)
 
 
-@fused
 def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
     for tree in (crooked(1, n_branches=20), builtin_tree("broadleaf")):
