@@ -21,6 +21,7 @@ from typing import Any
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError
 from tree_sway_ros.files.recording.mcap import read_mcap
+from tree_sway_ros.files.text_file import reason_of
 
 _ZSTD = b"\x28\xb5\x2f\xfd"
 """What zstd begins with, as no message in CDR does."""
@@ -80,7 +81,7 @@ def read_bag(path: Path, types: Collection[str]) -> BagContent:
         except MissingDependencyError:
             raise
         except Exception as error:  # sqlite3, lz4, zstd or struct: it is the bag's fault
-            content.damage = f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
+            content.damage = reason_of(error)
     if content.damage and not content.types:
         raise FormatError(
             f"not a bag that can be read: {content.damage}",

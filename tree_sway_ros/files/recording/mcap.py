@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The messages of an MCAP file, record by record from its beginning (mcap.dev/spec, version 0).
-
-"""
+"""The messages of an MCAP file, record by record from its beginning (mcap.dev/spec, version 0)."""
 
 from __future__ import annotations
 

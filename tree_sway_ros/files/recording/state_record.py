@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The recorded state of a tree: its description and `tree_state` as the messages that were sent.
-
-"""
+"""The recorded state of a tree: its description and `tree_state` as the messages that were sent."""
 
 from __future__ import annotations
 
