@@ -22,7 +22,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError, MissingDependencyError
-from tree_sway_ros.files.text_file import MAX_BYTES, read_bytes
+from tree_sway_ros.files.text_file import MAX_BYTES, read_bytes, reason_of
 
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
@@ -78,8 +78,7 @@ def read_mat(path: Path) -> Variables:
         raise FormatError(what, where=str(path), cure="save it anew") from None
     except Exception as error:
         raise FormatError(
-            f"not a MATLAB file that can be read: {type(error).__name__}: "
-            f"{' '.join(str(error).split())}"[:200],
+            f"not a MATLAB file that can be read: {reason_of(error)}",
             where=str(path),
             cure="save it anew",
         ) from error
