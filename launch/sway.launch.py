@@ -33,7 +33,12 @@ ARGUMENTS = (
     ("source", "simulated", "where the wind comes from", [*SOURCES]),
     ("file", "", "wind record for source:=player"),
     ("topic", "", "topic of the wind in a bag; as configured if empty"),
-    ("reader_options", "", "more for the reader of the file: 'rate=20 yaw=1.57'"),
+    ("input_convention", "", "the record's vectors blow 'to' or come 'from'; as its format says"),
+    ("sensor_yaw", "", "angle from east to the x axis of the record's sensor [rad]"),
+    ("reader_options", "", "more for the reader of the file: 'rate=20 sentence=MWV'"),
+    ("start", "", "so much of the record is skipped [s]"),
+    ("speed", "", "times real time at which the record is played"),
+    ("loop", "", "play the record over and over; as configured if empty"),
     ("address", "", "of the instrument for source:=sensor, such as tcp://host:port"),
     ("wind_topic", "wind", "topic of the wind for source:=live"),
     ("rate", "", "frames per second; as configured if empty"),
@@ -119,8 +124,12 @@ def overrides_of(name, given):
     if name == "sensor" and given["address"]:
         overrides["address"] = given["address"]
     if name == "player":
-        names = ("file", "topic", "reader_options")
+        names = ("file", "topic", "input_convention", "reader_options")
         overrides.update({each: given[each] for each in names if given[each]})
+        numbers = {"yaw": "sensor_yaw", "start": "start", "speed": "speed"}
+        overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
+        if given["loop"]:
+            overrides["loop"] = is_true("loop", given["loop"])
     if name == "solver":
         if given["tree"]:
             overrides["tree"] = given["tree"]
