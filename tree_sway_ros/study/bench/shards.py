@@ -81,13 +81,15 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
             killed_at = time.monotonic()
             shards[1].kill()
             shards[1].wait()
+            time.sleep(0.1)  # what was on its way has come
+            gone_at = time.monotonic()
             children.enter_context(_shard(1, 2, stand))
             time.sleep(_BACK)
             heard = _end(sides)
     gaps = [_longest_gap(np.array(heard[k][k]), cut_at, joined_at) for k in (0, 1)]
     rejoined = [_first_after(heard[k][1 - k], joined_at) for k in (0, 1)]
     lost = [sum(cut_at + 0.5 < at < joined_at for at in heard[k][1 - k]) for k in (0, 1)]
-    back = _first_after(heard[1][1], killed_at)
+    back = _first_after(heard[1][1], gone_at) + gone_at - killed_at
     own = [heard[k][k] for k in (0, 1)]
     return [
         *one.told("one shard", [heard_alone[0][0]]),
