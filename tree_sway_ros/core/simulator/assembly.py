@@ -224,10 +224,7 @@ class Bank:
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
-    """
-    Calibrate a tree for the model of its settings; see `CalibratedTree.bank`.
-
-    """
+    """Calibrate a tree for the model of its settings; see `CalibratedTree.bank`."""
     return CalibratedTree(tree, species, settings).bank(settings.model, settings.n_modes)
 
 

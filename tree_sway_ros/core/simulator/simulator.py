@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The tree in the wind: owns the order of work, and no clock.
-
-"""
+"""The tree in the wind: owns the order of work, and no clock."""
 
 from __future__ import annotations
 

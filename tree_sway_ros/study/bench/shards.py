@@ -11,13 +11,14 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import select
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -67,24 +68,24 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
         stand.write_text("\n".join(["x,y,species,height", *rows]) + "\n", encoding="utf-8")
         with waiting("the whole stand on one host"), contextlib.ExitStack() as alone:
             whole, side = _start(alone, stand, 1)
-            one = _Load(whole)
+            one = _Load(whole, side)
             heard_alone = _end(side)
         with waiting("two hosts with a shard each"):
             shards, sides = _start(children, stand, 2)
-            both = _Load(shards)
+            both = _Load(shards, sides)
             cut_at = time.monotonic()
             _cable("down")
-            time.sleep(cut)
+            _let_run(sides, cut)
             joined_at = time.monotonic()
             _cable("up")
-            time.sleep(_AFTER)
+            _let_run(sides, _AFTER)
             killed_at = time.monotonic()
             shards[1].kill()
             shards[1].wait()
-            time.sleep(0.1)  # what was on its way has come
+            _let_run(sides, 0.1)  # what was on its way has come
             gone_at = time.monotonic()
             children.enter_context(_shard(1, 2, stand))
-            time.sleep(_BACK)
+            _let_run(sides, _BACK)
             heard = _end(sides)
     gaps = [_longest_gap(np.array(heard[k][k]), cut_at, joined_at) for k in (0, 1)]
     rejoined = [_first_after(heard[k][1 - k], joined_at) for k in (0, 1)]
@@ -104,10 +105,10 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
 class _Load:
     """What solvers take, and send, while they are let run."""
 
-    def __init__(self, shards: list[Any]) -> None:
-        time.sleep(1.0)  # what the start took is over
+    def __init__(self, shards: list[Any], sides: list[Any]) -> None:
+        _let_run(sides, 1.0)  # what the start took is over
         self._begin, cpu = time.monotonic(), sum(map(_cpu_time, shards))
-        time.sleep(_RUN_IN)
+        _let_run(sides, _RUN_IN)
         self._end = time.monotonic()
         seconds = (self._end - self._begin) * len(shards)
         self._share = (sum(map(_cpu_time, shards)) - cpu) / seconds
@@ -231,8 +232,17 @@ def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any
                 + (f"; shards that ended: {ended}" if ended else ""),
                 cure="see that multicast is not cut off, and run a shard by itself",
             )
-        time.sleep(0.05)
+        select.select([side.stdout], [], [], 0.05)
     os.set_blocking(side.stdout.fileno(), True)
+
+
+def _let_run(sides: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:
+    """Let the sides listen for so long [s]; one that ends before is an error."""
+    deadline = time.monotonic() + seconds
+    for host, side in enumerate(sides):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            side.wait(max(0.0, deadline - time.monotonic()))
+            raise TransportError(f"host {host} stopped listening", cure="run the bench again")
 
 
 def _longest_gap(at: Floats, begin: float, end: float) -> float:
