@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.io import loadmat
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError, MissingDependencyError
@@ -68,6 +67,8 @@ def read_mat(path: Path) -> Variables:
     try:
         if is_hdf5:
             return _hdf5_variables(path)
+        from scipy.io import loadmat  # it takes long to load, and only these files need it
+
         content = loadmat(io.BytesIO(_unpacked(read_bytes(path))), chars_as_strings=False)
         return {name: _plain(value, 0) for name, value in content.items() if name[:2] != "__"}
     except (FormatError, MissingDependencyError) as error:
