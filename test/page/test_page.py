@@ -33,9 +33,8 @@ class Live:
     def __init__(self) -> None:
         source = open_tree("goldcrest")
         simulator = source.simulator(Settings(), model="modes")
-        leaves = source.leaves(None, 400)
         self.wind = SimulatedWind(9.0)
-        self.session = Session(lambda _: (simulator, leaves), Choices("goldcrest"), self.wind)
+        self.session = Session(lambda _: simulator, Choices("goldcrest"), self.wind)
         controls = (
             Control("mean_speed", "Wind", 9.0, "Mean", "m/s", 0.0, 40.0),
             Control("pause", "Pause", False),
