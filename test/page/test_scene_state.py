@@ -210,20 +210,20 @@ def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Pat
     assert len(described.header["trees"]) == 1000
     assert len(described.header["kinds"]) == 4
     assert len(state.description) < 300_000
-    wind = simulate_turbulence(5.0, rate=60.0, duration=5.0, rng=np.random.default_rng(3))
+    wind = simulate_turbulence(12.0, rate=60.0, duration=5.0, rng=np.random.default_rng(3))
     for each in wind:
         stand.step(each, 1.0 / 60.0)
     frame = state.frame(0)
     assert len(frame) == 28 + 2 * len(described.scale)
     exact = stand.place()
     rebuilt = Placer(described).place(decode_frame(frame))
-    assert np.linalg.norm(rebuilt[:, :3] - exact[:, :3], axis=1).max() < 1e-3
+    assert np.linalg.norm(rebuilt[:, :3] - exact[:, :3], axis=1).max() < 2e-4
     rest = Placer(described).place_coordinates(np.zeros(len(described.scale)))
     for name in ("t0", "t7", "t8", "t501", "t700", "t999"):
         rows = stand.segments_of(name)
-        assert np.linalg.norm(rest[rows, :3] - exact[rows, :3], axis=1).max() > 5e-3
+        assert np.linalg.norm(rest[rows, :3] - exact[rows, :3], axis=1).max() > 2e-3
     by_javascript = rebuilt_by_javascript(state, [frame], tmp_path)[0]
-    assert np.linalg.norm(by_javascript[:, :3] - exact[:, :3], axis=1).max() < 1e-3
+    assert np.linalg.norm(by_javascript[:, :3] - exact[:, :3], axis=1).max() < 2e-4
 
 
 def test_coordinates_of_a_stand_are_those_of_its_rotations(avenue: Any) -> None:

@@ -100,7 +100,10 @@ class Placer:
             # The last two are what rigid branches turn by.
             own = np.append(rotations[key : key + keys], (0.0, 0.0))
             c, s, end = math.cos(0.5 * yaw), math.sin(0.5 * yaw), row + kind.n_segments
-            place_standing_at(*kind.records, own, x, y, z, c, s, scale, poses[row:end])
+            branches, segments, heads, work = kind.records
+            place_standing_at(
+                branches, segments, heads, work, own, x, y, z, c, s, scale, poses[row:end]
+            )
             row, key = end, key + keys
         return poses
 

@@ -74,10 +74,8 @@ class SceneState:
     ) -> None:
         self.simulator = simulator
         self.kinds = told_kinds(simulator, is_running=is_running)
-        if isinstance(simulator, Stand):
-            self.names = simulator.names
-        else:
-            self.names = tuple(each.tree.name for each in simulators_of(simulator))
+        own = tuple(each.tree.name for each in simulators_of(simulator))
+        self.names: tuple[str, ...] = simulator.names if isinstance(simulator, Stand) else own
         self.n_branches = sum(len(k.numbers) * k.simulator.tree.n_branches for k in self.kinds)
         self.n_segments = sum(len(k.numbers) * k.simulator.tree.n_segments for k in self.kinds)
         name = simulator.told_as if isinstance(simulator, Stand) else simulator.tree.name

@@ -6,7 +6,7 @@
  */
 
 /** Area of the screen [px^2] that a segment is worth. */
-const AREA = 40;
+const AREA = 80;
 /** Height [px] that the finest level is shaped for. */
 const NEAR = 800;
 const FEWEST = 16;
