@@ -12,9 +12,9 @@ with its root node at the origin.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
@@ -23,7 +23,13 @@ from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.page.protocol import encode_description
+from tree_sway_ros.page.protocol import (
+    Array,
+    LeafyHeader,
+    ToldPlace,
+    ToldShape,
+    encode_description,
+)
 from tree_sway_ros.page.told_kind import ToldKind
 
 RIGID = -1
@@ -62,8 +68,8 @@ def describe_scene(
     """
     places = np.zeros((len(tree_names), 5), dtype=np.float32)
     kind_of = np.zeros(len(tree_names), dtype=np.int64)
-    told = []
-    arrays: dict[str, Any] = {"tree_place": places}
+    told: list[ToldShape] = []
+    arrays: dict[str, Array] = {"tree_place": places}
     for number, kind in enumerate(kinds):
         places[kind.numbers], kind_of[kind.numbers] = kind.places, number
         own, tree = _branches(kind.simulator), kind.simulator.tree
@@ -72,8 +78,13 @@ def describe_scene(
         clusters = leaves[number] if leaves else None
         if clusters is not None:
             own["leaf_segment"] = clusters.segment.astype(np.int32)
-            for field in ("offset", "orientation", "size", "frequency", "phase"):
-                own[f"leaf_{field}"] = _float32(getattr(clusters, field))
+            own |= {
+                "leaf_offset": _float32(clusters.offset),
+                "leaf_orientation": _float32(clusters.orientation),
+                "leaf_size": _float32(clusters.size),
+                "leaf_frequency": _float32(clusters.frequency),
+                "leaf_phase": _float32(clusters.phase),
+            }
         arrays |= {f"{number}/{field}": array for field, array in own.items()}
         told.append(
             {
@@ -84,26 +95,24 @@ def describe_scene(
                 "branch_names": list(tree.branch_names),
             }
         )
-    header: dict[str, Any] = {
+    trees: list[ToldPlace] = [
+        {"name": each, "kind": kind}
+        for each, kind in zip(tree_names, kind_of.tolist(), strict=True)
+    ]
+    header: LeafyHeader = {
         "format": "tree_sway description",
         "name": name,
         "frame_id": frame_id,
         "kinds": told,
-        "trees": [
-            {"name": each, "kind": kind}
-            for each, kind in zip(tree_names, kind_of.tolist(), strict=True)
-        ],
+        "trees": trees,
     }
     if any(each is not None for each in leaves):
         header["flutter"] = {"gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
     return encode_description(header, arrays)
 
 
-def _branches(simulator: TreeSimulator) -> dict[str, Any]:
-    """
-    Arrays of one kind: how each branch of the whole tree is placed, by the key rotations.
-
-    """
+def _branches(simulator: TreeSimulator) -> dict[str, Array]:
+    """Arrays of one kind: how each branch of the whole tree is placed, by the key rotations."""
     bank, tree = simulator.bank, simulator.tree
     arrays = _at_rest(tree)
     record_at = {int(first): i for i, first in enumerate(bank.branches["first"])}
@@ -145,11 +154,8 @@ def _branches(simulator: TreeSimulator) -> dict[str, Any]:
     return arrays
 
 
-def _at_rest(tree: Tree) -> dict[str, Any]:
-    """
-    Arrays of a kind none of whose branches bends.
-
-    """
+def _at_rest(tree: Tree) -> dict[str, Array]:
+    """Arrays of a kind none of whose branches bends."""
     b, n = tree.n_branches, tree.n_segments
     rest = tree.rest_frame
     chord = np.empty((n, 3))
@@ -182,5 +188,5 @@ def _at_rest(tree: Tree) -> dict[str, Any]:
     }
 
 
-def _float32(values: Any) -> Any:
+def _float32(values: ArrayLike) -> Array:
     return np.asarray(values, dtype=np.float32)

@@ -1,17 +1,15 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A receiver's side in Python: a frame and its description to poses, by the solver's own placing.
-
-"""
+"""A receiver in Python: a frame and its description to poses, by the solver's own placing."""
 
 from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import head_records, lanes
@@ -19,7 +17,9 @@ from tree_sway_ros.core.motion.placing import place_standing_at
 from tree_sway_ros.core.motion.records import BRANCH, SEGMENT, WORK
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.page.protocol import Description, Frame
+from tree_sway_ros.page.protocol import Array, Description, Frame
+
+_Records = NDArray[np.void]
 
 
 class Placer:
@@ -122,10 +122,11 @@ class _Kind(NamedTuple):
 
     matrix: Floats
     n_segments: int
-    records: tuple[Any, Any, Any, Any]
+    records: tuple[_Records, _Records, _Records, _Records]
+    """Its branches and segments, heads of these, and scratch."""
 
 
-def _kind(arrays: dict[str, Any]) -> _Kind:
+def _kind(arrays: dict[str, Array]) -> _Kind:
     first = arrays["branch_first"].astype(np.int64)
     parent = arrays["branch_parent"].astype(np.int64)
     matrix, keys = arrays["basis_matrix"].astype(np.float64), arrays["branch_keys"]

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The state of a running scene as frames: what is described once, what is told of each moment.
-
-"""
+"""The state of a running scene as frames: what is described once, what is told of each moment."""
 
 from __future__ import annotations
 

@@ -10,12 +10,12 @@ they stand and how they are turned; a tree that is like no other is a kind of it
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import turns_of_segments
@@ -84,10 +84,10 @@ def told_kinds(simulator: Simulator, *, is_running: bool = True) -> list[ToldKin
 
 def _kinds_of(simulators: dict[int, TreeSimulator], is_running: bool) -> list[ToldKind]:
     """Kinds of trees that are solved each on its own, by their numbers."""
-    kinds: dict[Any, ToldKind] = {}
-    ways: dict[Any, list[tuple[Floats, TreeSimulator]]] = {}
+    kinds: dict[Hashable, ToldKind] = {}
+    ways: dict[Hashable, list[tuple[Floats, TreeSimulator]]] = {}
     for number, simulator in simulators.items():
-        key: Any = simulator.model, _shape(simulator)
+        key: Hashable = simulator.model, _shape(simulator)
         twin = _turned(kinds[key], simulator) if key in kinds else None
         if twin is None:
             key = key if key not in kinds else number
@@ -169,7 +169,7 @@ def _turned(kind: ToldKind, simulator: TreeSimulator) -> tuple[float, Floats] | 
     return angle, projection
 
 
-def _further_turns(joint: Any, segments: Any) -> Floats:
+def _further_turns(joint: np.void, segments: NDArray[np.void]) -> Floats:
     """Vectors that tell what a unit of each further key rotation of a branch does, (3 m, k)."""
     k = int(joint["n_coordinates"])
     rows = [*turns_of_segments(joint, segments), *(joint[n][:k] for n in ("reach", "push", "turn"))]

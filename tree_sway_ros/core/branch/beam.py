@@ -230,12 +230,12 @@ class BranchBeam:
         cut at the child.
 
         """
-        seat, each = self.children.segment, np.arange(len(self.children.segment))
+        carrying, each = self.children.segment, np.arange(len(self.children.segment))
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         within = (lever > 0.0).astype(np.float64)
         twice = _integration_rows(self.children.fraction, times=2)
-        lever[seat, :, each] = self.length[seat, None] * twice / _WEIGHTS
-        within[seat, :, each] = self._child_rows / _WEIGHTS
+        lever[carrying, :, each] = self.length[carrying, None] * twice / _WEIGHTS
+        within[carrying, :, each] = self._child_rows / _WEIGHTS
         return lever, within
 
     def slope_shape(self, bending: Floats) -> SlopeShape:
@@ -257,11 +257,6 @@ class BranchBeam:
         arc_rotation = float(self.integral(slope)) / float(self.node[-1])
         scale = chord_rotation if chord_rotation > 0.2 * abs(arc_rotation) else arc_rotation
         return SlopeShape(self, curvature / scale)
-
-    def unit_shape(self, curvature: Floats) -> SlopeShape:
-        """Shape of a given curvature, scaled so that its largest slope is 1."""
-        slope, nodes, _ = self.from_base(curvature)
-        return SlopeShape(self, curvature / max(np.abs(slope).max(), np.abs(nodes).max()))
 
 
 class SlopeShape:

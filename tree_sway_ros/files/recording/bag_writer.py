@@ -1,14 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A rosbag2 bag that messages are written to as the bytes that they came as, through rosbags.
-
-"""
+"""A rosbag2 bag that messages are written to as the bytes that they came as, through rosbags."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 
@@ -118,10 +114,5 @@ class BagWriter:
         self._writer.open()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._writer.close()
