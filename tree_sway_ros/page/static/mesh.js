@@ -11,7 +11,7 @@ const POTTED = new Set(["benjamina", "goldcrest"]);
 const NEEDLES = new Set(["goldcrest", "spruce", "sitka", "douglas_fir", "pine"]);
 
 /** Clusters of leaves are at most so much larger where few of them are drawn. */
-const LARGEST_LEAVES = 9;
+const LARGEST_LEAVES = 7;
 /** Rings of bark are no nearer to each other on the screen [px]. */
 const RING_SPACING = 6;
 

@@ -26,7 +26,7 @@ const COARSEST = 0.7;
 const THINNEST = 0.3;
 /** Segments of all trees that are drawn at most, and leaves of one; without a graphics unit less. */
 const MOST = { segments: 40000, leaves: 24000 };
-const MOST_SLOW = { segments: 8000, leaves: 4500 };
+const MOST_SLOW = { segments: 12000, leaves: 4500 };
 /** Frames per second below which fewer segments are drawn, down to so many. */
 const LEAST_FPS = 20;
 const FEWEST_SEGMENTS = 3000;
