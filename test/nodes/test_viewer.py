@@ -16,7 +16,11 @@ pytestmark = pytest.mark.ros
 
 from tree_sway_ros.page.placer import Placer  # noqa: E402
 from tree_sway_ros.page.protocol import decode_description, decode_frame  # noqa: E402
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES, TREE_DESCRIPTION, TREE_STATE  # noqa: E402
+from tree_sway_ros.ros.process.topics import (  # noqa: E402
+    SEGMENT_POSES,
+    TREE_DESCRIPTION,
+    TREE_STATE,
+)
 from tree_sway_ros.ros.wire.tree_state import WIND_NAMES, read_state_entry  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 

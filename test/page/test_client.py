@@ -186,7 +186,10 @@ def test_javascript_plays_out_the_same() -> None:
         values = np.array(each["values"])
         wind = np.array([values[0], 1.0, 2.0])
         at = float(each["at"])  # type: ignore[arg-type]
-        playout.push(Moment(float(each["stamp"]), values, wind, int(each["flags"])), at)  # type: ignore[arg-type,call-overload]
+        stamp = float(each["stamp"])  # type: ignore[arg-type]
+        flags = int(each["flags"])  # type: ignore[call-overload]
+        moment = Moment(stamp, values, wind, flags)
+        playout.push(moment, at)
         for later in (0.0, 0.011):
             shown = playout.sample(at + later)
             assert shown is not None

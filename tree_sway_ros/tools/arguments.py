@@ -17,6 +17,7 @@ from tree_sway_ros.core.tree.species import Species, species_keys
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.export.tree_export import write_tree
+from tree_sway_ros.files.reader_options import reader_options
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -84,7 +85,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
 
     """
     with waiting(f"opening {arguments.tree}"):
-        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
+        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
     return _of_wood(opened, arguments)
 
 
@@ -99,7 +100,7 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
 
     """
     with waiting(f"opening {arguments.tree}"):
-        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
+        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments))
     if isinstance(scene, TreeFile):
         return _of_wood(scene, arguments)
     if _wood(arguments):
@@ -130,24 +131,11 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     return changed
 
 
-def _options(given: list[str]) -> dict[str, Any]:
-    """Options of the reader: numbers and truths as such, all else as text."""
-    options: dict[str, Any] = {}
-    for each in given:
-        name, equals, text = each.partition("=")
-        if not (name and equals and text):
-            raise ParameterError(f"'{each}'", where="--option", cure="write NAME=VALUE")
-        options[name.strip().replace("-", "_")] = _value(text.strip())
-    return options
-
-
-def _value(text: str) -> Any:
-    if text in ("true", "false"):
-        return text == "true"
+def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     try:
-        return float(text)
-    except ValueError:
-        return text
+        return reader_options(arguments.option)
+    except ParameterError as error:
+        raise error.at("--option") from None
 
 
 def add_leaves_argument(parser: argparse.ArgumentParser) -> None:

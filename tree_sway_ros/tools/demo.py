@@ -69,24 +69,25 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    with Ending() as ending, only_demo(), Composition({}) as nodes:
-        monitor = StreamMonitor(nodes.context, tree)
+    with (
+        Ending() as ending,
+        only_demo(),
+        Composition({}) as nodes,
+        StreamMonitor(nodes.context, tree) as monitor,
+    ):
 
         def goes_on() -> bool:
             nodes.check()
             return not nodes.is_done
 
-        try:
-            monitor.expect_silence()
-            for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
-                nodes.add(name, values)
-            if not arguments.no_page:
-                _serve_page(nodes, arguments)
-            ending.limit = LONGEST
-            watch(monitor, seconds, goes_on)
-            print(summary(monitor.totals, arguments.rate), flush=True)
-        finally:
-            monitor.close()
+        monitor.expect_silence()
+        for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
+            nodes.add(name, values)
+        if not arguments.no_page:
+            _serve_page(nodes, arguments)
+        ending.limit = LONGEST
+        watch(monitor, seconds, goes_on)
+        print(summary(monitor.totals, arguments.rate), flush=True)
     return 0
 
 

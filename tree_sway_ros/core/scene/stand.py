@@ -37,7 +37,7 @@ from tree_sway_ros.core.motion.wind_basis import (
 )
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined, refuse_nowhere
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
@@ -102,12 +102,7 @@ class StandTree:
 
     def __post_init__(self) -> None:
         """Refuse what is nowhere."""
-        if not all(map(math.isfinite, (self.x, self.y, self.z, self.yaw))):
-            raise ParameterError(
-                f"a pose of ({self.x}, {self.y}, {self.z}) m and {self.yaw} rad",
-                where=self.name,
-                cure="give finite numbers",
-            )
+        refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
         within(f"{self.name}: scale", self.scale, SMALLEST, LARGEST)
 
 
@@ -271,15 +266,7 @@ class Stand(KeepsState):
         return _standing_tree(told, self._kinds[told.kind].tree)
 
     def segments_of(self, name: str) -> slice:
-        """
-        Return the rows of a tree in the pose block.
-
-        Raises
-        ------
-        ParameterError
-            If no tree has that name.
-
-        """
+        """Return the rows of a tree in the pose block, as `Forest.segments_of`."""
         if name not in self.names:
             raise ParameterError(f"no tree is called '{name}'", where="stand")
         number = self.names.index(name)
