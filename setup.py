@@ -109,5 +109,8 @@ setup(
             *(f"{node} = {PACKAGE}.nodes.executables:{node}" for node in NODES),
             f"tree-sway = {PACKAGE}.tools.cli:main",
         ],
+        "ament_copyright.license": [
+            f"apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX",
+        ],
     },
 )

@@ -119,6 +119,9 @@ def create(make: Any, **options: Any) -> Any:
             ) from None
         if kind != "RCLError":
             raise
+        if "security" in text:
+            cure = "use the rclpy of a ROS machine, or unset ROS_SECURITY_ENABLE"
+            raise TransportError(text, cure=cure) from error
         domain = os.environ.get("ROS_DOMAIN_ID", "0")
         raise TransportError(
             f"cannot join domain {domain}: {text}",
