@@ -48,7 +48,10 @@ NEEDS = {
     "tree-sway compare": ("mujoco",),
     **dict.fromkeys(
         ("pytest", "py.test"),
-        ("ros", "serial", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test"),
+        (
+            *("ros", "serial", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test"),
+            *("sundials", "docs"),
+        ),
     ),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
