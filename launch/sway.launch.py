@@ -33,7 +33,12 @@ ARGUMENTS = (
     ("source", "simulated", "The wind comes from here.", [*SOURCES]),
     ("file", "", "The player plays this wind record, for source:=player."),
     ("topic", "", "The wind is on this topic of a bag; as configured if empty."),
-    ("reader_options", "", "The reader of the file is told more, such as 'rate=20 yaw=1.57'."),
+    ("input_convention", "", "The record's vectors blow 'to' or come 'from'; as its format says."),
+    ("sensor_yaw", "", "The x axis of the record's sensor is turned so far from east [rad]."),
+    ("reader_options", "", "The reader of the file is told more: 'rate=20 sentence=MWV'."),
+    ("start", "", "So much of the record is skipped [s]."),
+    ("speed", "", "The record is played so many times as fast; as configured if empty."),
+    ("loop", "", "The record is played over and over; as configured if empty."),
     ("address", "", "The instrument of source:=sensor is here, such as tcp://host:port."),
     ("wind_topic", "wind", "The wind of source:=live is on this topic."),
     ("rate", "", "The solver publishes so many frames per second; as configured if empty."),
@@ -119,8 +124,12 @@ def overrides_of(name, given):
     if name == "sensor" and given["address"]:
         overrides["address"] = given["address"]
     if name == "player":
-        names = ("file", "topic", "reader_options")
+        names = ("file", "topic", "input_convention", "reader_options")
         overrides.update({each: given[each] for each in names if given[each]})
+        numbers = {"yaw": "sensor_yaw", "start": "start", "speed": "speed"}
+        overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
+        if given["loop"]:
+            overrides["loop"] = is_true("loop", given["loop"])
     if name == "solver":
         if given["tree"]:
             overrides["tree"] = given["tree"]

@@ -41,7 +41,7 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    matrix = description.arrays["basis_matrix"].reshape(-1, len(state.position) - 3)
+    matrix = description.arrays["0/basis_matrix"]
     rebuilt = placer.place_rotations(matrix @ np.array(state.position[3:]))
     moved = np.linalg.norm(
         exact - Placer(description).place_rotations(np.zeros(len(matrix)))[:, :3]

@@ -22,6 +22,7 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
@@ -167,8 +168,20 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = "") -> Non
     """Add the record of a wind, and the speed of a simulated one; `record` is the first's help."""
     told = record or "a wind record; simulated if left out"
     parser.add_argument("--wind", metavar="FILE", help=told)
+    told = (
+        "how to read it, such as topic=/mast/wind, yaw=1.57, direction_convention=from or rate=20"
+    )
+    parser.add_argument(
+        "--wind-option", action="append", default=[], metavar="NAME=VALUE", help=told
+    )
     told = "mean of the simulated wind [m/s] (%(default)s)"
     parser.add_argument("--speed", type=float, default=6.0, metavar="U", help=told)
+
+
+def opened_record(arguments: argparse.Namespace) -> WindRecord:
+    """Read the record that the arguments name, as they say."""
+    options: dict[str, Any] = {**reader_options(arguments.wind_option)}
+    return read_wind(arguments.wind, **options)
 
 
 def opened_wind(arguments: argparse.Namespace) -> WindSource:
@@ -182,7 +195,7 @@ def opened_wind(arguments: argparse.Namespace) -> WindSource:
 
     """
     if arguments.wind is not None:
-        record = read_wind(arguments.wind)
+        record = opened_record(arguments)
         return RecordedWind(record.time, record.velocity)
     speed = next(p for p in NODE_PARAMETERS["anemometer"] if p.name == "mean_speed")
     return SimulatedWind(speed.checked(arguments.speed))

@@ -35,6 +35,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_sway_arguments(parser)
     parser.add_argument(
+        "--start", type=float, default=0.0, metavar="T", help="skip so much of the record [s]"
+    )
+    parser.add_argument(
         "--sensor",
         metavar="ADDRESS",
         help="of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, "
@@ -134,4 +137,9 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
         return {"sensor": {"address": arguments.sensor}, "wind": {}, "solver": solver}
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
-    return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}
+    player = {
+        "file": arguments.wind,
+        "reader_options": " ".join(arguments.wind_option),
+        "start": arguments.start,
+    }
+    return {"player": player, "wind": {}, "solver": solver}
