@@ -156,7 +156,7 @@ _BROADLEAVES = {
     # Short stout bole, heavy crooked limbs far out, as wide as high.
     "oak": BroadleafForm(
         Outline(0.16, 0.45, 0.42, 2.2, 2.3), 0.2, 0.62, 13, (0.1, 1.0), (0.25, 0.2), 0.2,
-        spread=0.95, branch_turn=0.15, lift=0.3, slenderness=42.0,
+        spread=0.95, branch_turn=0.15, lift=0.3, exponent=1.89, slenderness=42.0,
     ),
     # White stem to the very top, slender limbs that rise steeply and hang at their ends.
     "birch": BroadleafForm(
@@ -166,7 +166,7 @@ _BROADLEAVES = {
     # Smooth straight stem, many limbs, dense dome down low.
     "beech": BroadleafForm(
         Outline(0.08, 0.37, 0.42, 2.6, 2.4), 0.14, 0.84, 18, (0.3, 1.1), (0.1, 0.15), 0.06,
-        spread=0.7, branch_turn=-0.25, lift=-0.1,
+        spread=0.7, branch_turn=-0.25, lift=-0.1, exponent=1.905,
     ),
     # Long bole, few open limbs in pairs; branches bow down and turn up at their ends.
     "ash": BroadleafForm(
