@@ -30,5 +30,7 @@ def test_a_section_has_its_checks_and_its_table() -> None:
     table = markdown_table(["a", "b"], [["1", "2"]])
     assert table == "| a | b |\n|---|---|\n| 1 | 2 |\n"
     text = Section("Title", "How.", [Check("x", 1.0, high=2.0)], table).markdown()
-    assert text.startswith("## Title\n\nHow.\n\n| check | measured | limit | |\n|---|---|---|---|\n")
+    assert text.startswith(
+        "## Title\n\nHow.\n\n| check | measured | limit | |\n|---|---|---|---|\n"
+    )
     assert text.endswith(table)

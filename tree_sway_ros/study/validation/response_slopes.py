@@ -8,8 +8,9 @@ turbulence that lasts, and the power between 1.3 and 3.5 times the first frequen
 line in logarithms. The same line through one-hour records of the strain of 68 forest trees (data of
 Jackson et al. 2021, Biogeosciences 18, 4059-4072) has a power of -4.0 in the median of conifers,
 -5.5 to -1.6 in nine tenths of them, and of -3.3, -5.3 to -0.5, in broadleaved trees; one oscillator
-alone falls with -6.4 to -7. The way of the highest tip falls more steeply than the strain, as a
-mode of frequency f strains the stem by f^2 times the way of its top.
+alone falls with -6.4 to -7. The highest tip has another slope: of broadleaves up to 4 steeper, as a
+mode of frequency f strains the stem by f^2 times the way of its top, of a pine flatter, as the limb
+that bears it swings too.
 
 """
 
