@@ -25,6 +25,7 @@ from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process import topics
 from tree_sway_ros.study.pages.rooms import rooms_drawing
+from tree_sway_ros.study.validation.report import sections_of
 from tree_sway_ros.tools import cli
 
 PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
@@ -32,6 +33,9 @@ PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
 
 FIGURES = "doc/pictures/fidelity.csv"
 """What ``tree-sway chart fidelity`` measured."""
+
+VALIDATION = "doc/validation.md"
+"""What ``tree-sway chart validation`` measured."""
 
 DRAWINGS: dict[str, Callable[[], str]] = {"doc/pictures/rooms.svg": rooms_drawing}
 """Drawings made from the source."""
@@ -115,6 +119,7 @@ def markdown_tables() -> dict[str, str]:
         "tree_formats": formats_table(),
         "fidelity": fidelity_table(),
         "fidelity_range": fidelity_range(),
+        "crooked": crooked_table(),
     }
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters.markdown_table(table)
@@ -175,6 +180,13 @@ def fidelity_range() -> str:
         f"{trees} trees of 40 branches, in {rows[0]['wind'] if rows else 'no wind'}; from "
         f"{min(costs):.0f} to {max(costs):.0f} us of CPU time per frame, solving and placing.\n"
     )
+
+
+def crooked_table() -> str:
+    """Tip errors on straight and on crooked trees, the last table of the validation's section."""
+    path = Path(VALIDATION)
+    page = path.read_text(encoding="utf-8") if path.is_file() else ""
+    return sections_of(page).get("models", "").rpartition("\n\n")[2]
 
 
 def species_table() -> str:
