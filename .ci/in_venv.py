@@ -46,7 +46,8 @@ NEEDS = {
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
     **dict.fromkeys(
-        ("pytest", "py.test"), ("ros", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test")
+        ("pytest", "py.test"),
+        ("ros", "serial", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test"),
     ),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),

@@ -7,10 +7,10 @@ from __future__ import annotations
 from functools import partial
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.reference.measure import record_tips, tip_error
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 from tree_sway_ros.study.compare.with_mujoco import mujoco_tips
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 from tree_sway_ros.study.validation.judge import DAMPING_RATIO, SETTINGS, WOOD, Judge
 from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
 from tree_sway_ros.study.validation.sections.models import LIMITS, SPEEDS, tree_called
