@@ -194,7 +194,12 @@ class MujocoTree:
 
         """
         lowest = float(self._beam.frequencies(1)[0])
-        return float(self._circular[0]) / (2.0 * math.pi) / lowest, self._sway() / self._expected
+        return float(self.frequencies[0]) / lowest, self._sway() / self._expected
+
+    @property
+    def frequencies(self) -> Floats:
+        """Natural frequencies of its slowest modes at rest in [Hz], lowest first."""
+        return self._circular / (2.0 * math.pi)
 
     def _beam_sway(self) -> float:
         """Sway of the stem's tip by the beam model, for a unit of wind pressure along x."""

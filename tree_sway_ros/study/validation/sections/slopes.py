@@ -21,7 +21,7 @@ def measure(effort: Effort) -> Section:
         for in_leaf in (False, True)
         for share in (USUAL_COHERENCE, 1.0)
     ]
-    seconds = 1200.0 if effort.is_full else 600.0
+    seconds = 1200.0 if effort.is_full else 400.0
     found = dict(zip(cases, effort.each(partial(_sloped, seconds=seconds), cases), strict=True))
     checks = [
         Check(
