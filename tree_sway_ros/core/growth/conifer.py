@@ -92,8 +92,8 @@ def _add_branch(
     origin = skeleton.shoots[stem].nodes[at]
     low, high = form.rise
     first = low + (high - low) * here + rng.uniform(-0.08, 0.08)
-    way = direction_of(azimuth, first + 0.5 * form.turn)
-    length = max(form.outline.reach(origin, way), 0.012) * rng.uniform(0.85, 1.08)
+    heading = direction_of(azimuth, first + 0.5 * form.turn)
+    length = max(form.outline.reach(origin, heading), 0.012) * rng.uniform(0.85, 1.08)
     n_segments = 6 if here < 0.7 else 4 if here < 0.9 else 2
     nodes = grow_axis(
         origin,

@@ -91,8 +91,7 @@ class BroadleafForm:
     twig
         Length of the twigs.
     exponent
-        Of the pipe model; less makes branches thinner beside their stem. With these the wood of
-        trees of 6 to 24 m weighs within 10 % of what allometry says (Chave et al. 2014).
+        Of the pipe model; less makes branches thinner beside their stem.
     slenderness
         Height over diameter.
 
@@ -111,7 +110,7 @@ class BroadleafForm:
     branch_turn: float = 0.2
     lift: float = 0.2
     twig: float = 0.045
-    exponent: float = 1.85
+    exponent: float = 2.05
     slenderness: float = 45.0
 
 
@@ -156,22 +155,22 @@ _BROADLEAVES = {
     # Short stout bole, heavy crooked limbs far out, as wide as high.
     "oak": BroadleafForm(
         Outline(0.16, 0.45, 0.42, 2.2, 2.3), 0.2, 0.62, 13, (0.1, 1.0), (0.25, 0.2), 0.2,
-        spread=0.95, branch_turn=0.15, lift=0.3, exponent=1.89, slenderness=42.0,
+        spread=0.95, branch_turn=0.15, lift=0.3, slenderness=42.0,
     ),
     # White stem to the very top, slender limbs that rise steeply and hang at their ends.
     "birch": BroadleafForm(
         Outline(0.14, 0.24, 0.36, 1.6, 1.5), 0.2, 0.96, 20, (0.75, 1.15), (-0.9, -0.35), 0.05,
-        spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, exponent=1.9, slenderness=58.0,
+        spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, slenderness=58.0,
     ),
     # Smooth straight stem, many limbs, dense dome down low.
     "beech": BroadleafForm(
         Outline(0.08, 0.37, 0.42, 2.6, 2.4), 0.14, 0.84, 18, (0.3, 1.1), (0.1, 0.15), 0.06,
-        spread=0.7, branch_turn=-0.25, lift=-0.1, exponent=1.905,
+        spread=0.7, branch_turn=-0.25, lift=-0.1,
     ),
     # Long bole, few open limbs in pairs; branches bow down and turn up at their ends.
     "ash": BroadleafForm(
         Outline(0.2, 0.34, 0.52, 2.0, 2.0), 0.32, 0.8, 12, (0.5, 1.0), (0.1, 0.2), 0.06, True,
-        spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, exponent=1.75, slenderness=52.0,
+        spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, slenderness=52.0,
     ),
     # Broad full dome on a stout bole, limbs in pairs.
     "sycamore": BroadleafForm(
@@ -181,7 +180,7 @@ _BROADLEAVES = {
     # Short bole that parts into few wide limbs; round open crown of coarse twigs.
     "walnut": BroadleafForm(
         Outline(0.2, 0.43, 0.5, 2.0, 2.2), 0.24, 0.46, 10, (0.35, 1.05), (0.25, 0.2), 0.12,
-        n_branches=7, spread=0.9, branch_turn=0.3, lift=0.5, twig=0.065, exponent=1.9,
+        n_branches=7, spread=0.9, branch_turn=0.3, lift=0.5, twig=0.065,
     ),
 }  # fmt: skip
 

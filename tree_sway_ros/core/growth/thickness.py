@@ -5,9 +5,8 @@ How thick each branch is: the pipe model, anchored at one measured diameter.
 
 A cross-section carries the conduits of all wood beyond it (Shinozaki et al. 1964). With W the
 length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p)``. Exponent p is 2
-where areas add up (da Vinci) and 3 for Murray's law, as in pot plants; trees whose stem and limbs
-keep the conduits of branches that they have shed, which is what the authors find below the crown,
-have less than 2. The length w follows from the one diameter that is given, at the base or at breast
+where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as ours,
+lie between. The length w follows from the one diameter that is given, at the base or at breast
 height.
 
 """
