@@ -40,6 +40,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--suite", default="bookworm", help="of Debian (bookworm)")
     given = parser.parse_args()
+    # Who is started in the background ignores Ctrl-C, and so would all that it starts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with (
         tempfile.TemporaryDirectory(prefix="debian-") as folder,
         debian(folder, given.suite) as run,
@@ -73,10 +75,14 @@ def debian(folder: str, suite: str) -> Iterator[object]:
         subprocess.run(["mount", "--bind", f"/{place}", f"{folder}/{place}"], check=True)
     subprocess.run(["mount", "--bind", "/dev/shm", f"{folder}/dev/shm"], check=True)
     try:
-        subprocess.run(["chroot", folder, "useradd", "-m", "newcomer"], check=True)
+        for line in ("useradd -m newcomer", "chown -R newcomer /srv/tree_sway_ros.git"):
+            subprocess.run(["chroot", folder, *line.split()], check=True)
 
         def run(line: str) -> str:
-            told = start(folder, line).communicate()[0]
+            process = start(folder, line)
+            told = process.communicate()[0]
+            if process.returncode:
+                sys.exit(f"{line}\n{told}")
             return str(told)
 
         yield run
@@ -101,6 +107,7 @@ def start(folder: str, line: str) -> subprocess.Popen[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        start_new_session=True,
     )
 
 
@@ -114,7 +121,7 @@ def look(folder: str, began: float) -> float:
             if found := re.search(r"http://\S+", line):
                 return asyncio.run(moving(found[0])) - began
     finally:
-        process.send_signal(signal.SIGINT)
+        os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does
         process.communicate(timeout=30)
     sys.exit("no page was served")
 

@@ -12,9 +12,9 @@ follow each other in every array.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
@@ -23,7 +23,7 @@ from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.page.protocol import encode_description
+from tree_sway_ros.page.protocol import Array, LeafyHeader, encode_description
 from tree_sway_ros.page.told_basis import ToldBasis, ToldTree
 
 RIGID = -1
@@ -59,13 +59,13 @@ def describe_scene(
 
     """
     parts = [_branches(each, basis) for each, basis in zip(told, bases, strict=True)]
-    arrays: dict[str, Any] = _joined(parts)
-    trees: list[dict[str, Any]] = []
+    arrays: dict[str, Array] = _joined(parts)
+    trees: list[dict[str, str | int | float]] = []
     coordinates = key = 0
     blocks: list[list[int]] = []
     # Trees of one shape share a matrix, which is sent once.
     place_of: dict[int, int] = {}
-    matrices: list[Any] = []
+    matrices: list[Array] = []
     for each, basis in zip(told, bases, strict=True):
         rows, columns = basis.matrix.shape
         if id(basis.matrix) not in place_of:
@@ -90,7 +90,7 @@ def describe_scene(
     arrays["basis_block"] = np.array(blocks, dtype=np.int32)
     arrays["basis_matrix"] = np.concatenate(matrices)
     arrays["basis_scale"] = _float32(np.concatenate([basis.scale for basis in bases]))
-    header: dict[str, Any] = {
+    header: LeafyHeader = {
         "format": "tree_sway description",
         "name": simulator.tree.name,
         "frame_id": frame_id,
@@ -100,12 +100,17 @@ def describe_scene(
     if leaves is not None:
         header["flutter"] = {"gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
         arrays["leaf_segment"] = leaves.segment.astype(np.int32)
-        for name in ("offset", "orientation", "size", "frequency", "phase"):
-            arrays[f"leaf_{name}"] = _float32(getattr(leaves, name))
+        arrays |= {
+            "leaf_offset": _float32(leaves.offset),
+            "leaf_orientation": _float32(leaves.orientation),
+            "leaf_size": _float32(leaves.size),
+            "leaf_frequency": _float32(leaves.frequency),
+            "leaf_phase": _float32(leaves.phase),
+        }
     return encode_description(header, arrays)
 
 
-def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
+def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Array]:
     """
     Arrays of one tree: how each branch of the whole tree is placed, by the told key rotations.
 
@@ -151,11 +156,8 @@ def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
     return arrays
 
 
-def _at_rest(tree: Tree) -> dict[str, Any]:
-    """
-    Arrays of a tree none of whose branches bends.
-
-    """
+def _at_rest(tree: Tree) -> dict[str, Array]:
+    """Arrays of a tree none of whose branches bends."""
     b, n = tree.n_branches, tree.n_segments
     rest = tree.rest_frame
     chord = np.empty((n, 3))
@@ -188,11 +190,8 @@ def _at_rest(tree: Tree) -> dict[str, Any]:
     }
 
 
-def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
-    """
-    Arrays of trees one after another, indices shifted.
-
-    """
+def _joined(parts: list[dict[str, Array]]) -> dict[str, Array]:
+    """Arrays of trees one after another, indices shifted."""
     branch = segment = coordinate = turn = 0
     for part in parts:
         for name, shift in (
@@ -213,5 +212,5 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     return arrays
 
 
-def _float32(values: Any) -> Any:
+def _float32(values: ArrayLike) -> Array:
     return np.asarray(values, dtype=np.float32)

@@ -8,9 +8,9 @@ A receiver's side in Python: a frame and its description to poses, by the solver
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import head_records, lanes
@@ -18,7 +18,11 @@ from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import BRANCH, SEGMENT, WORK
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.page.protocol import Description, Frame
+from tree_sway_ros.page.protocol import Array, Description, Frame
+
+_Records = NDArray[np.void]
+_Tree = tuple[int, int, _Records, _Records, _Records, _Records]
+"""First and last segment of a tree, its branches and segments, heads of these, and scratch."""
 
 
 class Placer:
@@ -97,7 +101,7 @@ class Placer:
             place(branches, segments, heads, work, rotations, np.zeros(3), poses[first:end])
         return poses
 
-    def _lay_out(self, arrays: dict[str, Any]) -> None:
+    def _lay_out(self, arrays: dict[str, Array]) -> None:
         first = arrays["branch_first"].astype(np.int64)
         parent = arrays["branch_parent"].astype(np.int64)
         self._n = int(first[-1])
@@ -116,8 +120,8 @@ class Placer:
         ]
 
     def _tree(
-        self, arrays: dict[str, Any], first: Ints, parent: Ints, root: int, end: int
-    ) -> tuple[Any, ...]:
+        self, arrays: dict[str, Array], first: Ints, parent: Ints, root: int, end: int
+    ) -> _Tree:
         """Records of the branches from a root up to the next one."""
         own, start = slice(root, end), int(first[root])
         rows = slice(start, int(first[end]))

@@ -16,10 +16,10 @@ import json
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
@@ -39,6 +39,25 @@ _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
 _PREFIX = struct.Struct("<4sII")
 _FRAME = struct.Struct("<BBBxIIq3hH")
 _ALIGNMENT = 8
+
+Array = NDArray[Any]
+"""Of float32, int32, int16 or uint8."""
+
+
+class ToldHeader(TypedDict):
+    """Names and numbers of a tree or a scene, as JSON has them; ``doc/streaming.md`` tells each."""
+
+    format: str
+    name: str
+    frame_id: str
+    trees: list[dict[str, str | int | float]]
+    branch_names: list[str]
+
+
+class LeafyHeader(ToldHeader, total=False):
+    """The same, of a tree that may bear leaves."""
+
+    flutter: dict[str, float]
 
 
 class Frame(NamedTuple):
@@ -67,7 +86,7 @@ class Frame(NamedTuple):
     stamp: int
     flags: int
     wind: Floats
-    coordinates: Any
+    coordinates: Array
 
 
 @dataclass(frozen=True)
@@ -86,8 +105,8 @@ class Description:
 
     """
 
-    header: dict[str, Any]
-    arrays: dict[str, Any]
+    header: LeafyHeader
+    arrays: dict[str, Array]
     identity: str
 
     @property
@@ -96,7 +115,7 @@ class Description:
         return int(self.identity[:8], 16)
 
 
-def encode_description(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> bytes:
+def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]) -> bytes:
     """
     Write a description.
 
@@ -193,7 +212,7 @@ def decode_frame(data: bytes) -> Frame:
     return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
 
 
-def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Any, bool]:
+def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
     """
     Coordinates as int16.
 
@@ -213,11 +232,11 @@ def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Any, bool]:
     return cut.astype("<i2"), bool((cut != exact).any())
 
 
-def _json(content: Mapping[str, Any]) -> bytes:
+def _json(content: Mapping[str, object]) -> bytes:
     return json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
 
 
-def _array(body: bytes, entry: Mapping[str, Any]) -> Any:
+def _array(body: bytes, entry: Mapping[str, Any]) -> Array:
     shape = tuple(int(size) for size in entry["shape"])
     count = int(np.prod(shape, dtype=np.int64))
     flat = np.frombuffer(body, dtype=_TYPES[entry["type"]], count=count, offset=entry["offset"])

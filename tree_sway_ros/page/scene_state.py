@@ -1,16 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The state of a running scene as frames: what is described once, what is told of each moment.
-
-"""
+"""The state of a running scene as frames: what is described once, what is told of each moment."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Hashable
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.scene.stand import Stand
@@ -74,7 +72,7 @@ class SceneState:
         self._parts: tuple[ToldTree, ...] = (
             simulator.members() if isinstance(simulator, Stand) else simulators_of(simulator)
         )
-        found: dict[Any, ToldBasis] = {}
+        found: dict[Hashable, ToldBasis] = {}
         self.bases = [told_basis(each, found, is_running=is_running) for each in self._parts]
         self.description = describe_scene(
             simulator, self._parts, self.bases, frame_id=frame_id, leaves=leaves
@@ -93,7 +91,7 @@ class SceneState:
             for i in range(len(basis.scale))
         ]
 
-    def coordinates(self) -> Any:
+    def coordinates(self) -> Floats:
         """Coordinates of all trees now, (m,)."""
         return np.concatenate(
             [

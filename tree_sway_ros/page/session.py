@@ -14,14 +14,14 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
-from tree_sway_ros.core.scene.demand import tell_demand
+from tree_sway_ros.core.scene.demand import set_demand
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError, TreeSwayError
+from tree_sway_ros.page.controls import Value
 from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
@@ -125,7 +125,7 @@ class Session:
         if self._thread.is_alive():
             self._thread.join(timeout=5.0)
 
-    def apply(self, name: str, value: Any) -> None:
+    def apply(self, name: str, value: Value) -> None:
         """
         Carry out a change of a viewer.
 
@@ -140,20 +140,21 @@ class Session:
         elif name == "reset":
             self._resets = True
         elif name == "tolerance":
-            self._tolerance = float(value)
-            tell_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
+            self._tolerance = float(value or 0.0)
+            set_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
         elif name in ("mean_speed", "intensity", "bearing_to"):
             if not isinstance(self.wind, SimulatedWind):
                 raise ParameterError(
                     "the wind is a record", where=name, cure="start without --wind"
                 )
-            self.wind.set(name, float(value))
+            self.wind.set(name, float(value or 0.0))
         elif name in Choices.__dataclass_fields__:
-            self._want(replace(self._wanted or self.choices, **{name: value}))
+            changed = {name: value}
+            self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
         else:
             raise ParameterError(f"'{name}' cannot be changed", where="page")
 
-    def status(self) -> dict[str, Any]:
+    def status(self) -> dict[str, object]:
         """What the page shows beside the tree."""
         simulator = self._scene.simulator
         return {
@@ -171,7 +172,7 @@ class Session:
     def _made(self, choices: Choices) -> SceneState:
         simulator, leaves = self._build(choices)
         scene = SceneState(simulator, leaves, is_running=False)
-        tell_demand(simulators_of(simulator), tolerance=self._tolerance)
+        set_demand(simulators_of(simulator), tolerance=self._tolerance)
         simulator.reset()
         return scene
 

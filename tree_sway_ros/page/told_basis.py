@@ -1,18 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The basis that a tree is told in: that of its model, shared by trees of one shape.
-
-"""
+"""The basis that a tree is told in: that of its model, shared by trees of one shape."""
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.scene.stand_member import StandMember
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
@@ -20,6 +18,7 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.state.find_basis import state_basis
 from tree_sway_ros.core.state.state_basis import BasisError
 
+Records = NDArray[np.void]
 ToldTree = TreeSimulator | StandMember
 """A tree whose state is told."""
 
@@ -67,7 +66,7 @@ class ToldBasis:
 
 
 def told_basis(
-    simulator: ToldTree, found: dict[Any, ToldBasis], *, is_running: bool = True
+    simulator: ToldTree, found: dict[Hashable, ToldBasis], *, is_running: bool = True
 ) -> ToldBasis:
     """
     Find the basis of a tree; trees of one shape and model share one, whichever way they are turned.
@@ -124,14 +123,14 @@ def _about_vertical(angle: float) -> Floats:
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _further_turns(joint: Any, segments: Any) -> Floats:
+def _further_turns(joint: np.void, segments: Records) -> Floats:
     """Vectors that tell what a unit of each further key rotation of a branch does, (3 m, k)."""
     k = int(joint["n_coordinates"])
     rows = [*turns_of_segments(joint, segments), *(joint[n][:k] for n in ("reach", "push", "turn"))]
     return np.stack(rows)[:, 2:].transpose(0, 2, 1).reshape(3 * len(rows), -1)
 
 
-def _turned(basis: ToldBasis, frames: Floats, turns: list[Floats], first: Any) -> ToldBasis | None:
+def _turned(basis: ToldBasis, frames: Floats, turns: list[Floats], first: Ints) -> ToldBasis | None:
     """
     The basis of a tree that is the same but turned about the vertical; None if it is not.
 

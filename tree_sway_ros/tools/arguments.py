@@ -21,6 +21,9 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools.progress import waiting
 
 OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
@@ -178,6 +181,31 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = "") -> Non
     parser.add_argument("--wind", metavar="FILE", help=told)
     told = "mean of the simulated wind [m/s] (%(default)s)"
     parser.add_argument("--speed", type=float, default=6.0, metavar="U", help=told)
+
+
+def opened_wind(arguments: argparse.Namespace) -> WindSource:
+    """
+    Open the record that the arguments name, over and over, or the simulated wind of their speed.
+
+    Raises
+    ------
+    TreeSwayError
+        A record that cannot be read, or a speed out of the range of the simulated anemometer.
+
+    """
+    if arguments.wind is not None:
+        record = read_wind(arguments.wind)
+        return RecordedWind(record.time, record.velocity)
+    speed = next(p for p in NODE_PARAMETERS["anemometer"] if p.name == "mean_speed")
+    return SimulatedWind(speed.checked(arguments.speed))
+
+
+def add_sway_arguments(parser: argparse.ArgumentParser, record: str = "") -> None:
+    """Add a scene, a wind, a model and leaves: all that a command needs to let a tree sway."""
+    add_tree_arguments(parser, forests=True, default="benjamina")
+    add_wind_arguments(parser, record)
+    add_model_argument(parser)
+    add_leaves_argument(parser)
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:

@@ -23,13 +23,7 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
-from tree_sway_ros.tools.arguments import (
-    add_leaves_argument,
-    add_model_argument,
-    add_tree_arguments,
-    add_wind_arguments,
-    opened_scene,
-)
+from tree_sway_ros.tools.arguments import add_sway_arguments, opened_scene
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.only_demo import only_demo
@@ -39,8 +33,7 @@ from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser, forests=True, default="benjamina")
-    add_wind_arguments(parser)
+    add_sway_arguments(parser)
     parser.add_argument(
         "--sensor",
         metavar="ADDRESS",
@@ -53,8 +46,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)"
     )
-    add_model_argument(parser)
-    add_leaves_argument(parser)
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
     )

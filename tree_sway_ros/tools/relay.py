@@ -21,18 +21,22 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.page.server import PageServer
-from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.relay.line import Line
 from tree_sway_ros.relay.tree_site import Site
 from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
 from tree_sway_ros.ros.process.ending import Ending
-from tree_sway_ros.tools.arguments import add_tree_arguments, add_wind_arguments, opened_tree
+from tree_sway_ros.tools.arguments import (
+    add_tree_arguments,
+    add_wind_arguments,
+    opened_tree,
+    opened_wind,
+)
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 
 _MODELS = tuple(name for name in FIDELITIES if name != "auto")
@@ -73,9 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Send or receive until the time is over or Ctrl-C."""
     for name, low, high in (("rate", 1, 1000), ("pace", 0.01, 1000.0), ("lose", 0.0, 1.0)):
-        value = getattr(arguments, name)
-        if not low <= value <= high:
-            raise ParameterError(f"{value:g}", where=f"--{name}", cure=f"give {low:g} .. {high:g}")
+        within(f"--{name}", getattr(arguments, name), low, high)
     with contextlib.ExitStack() as stack:
         ending = stack.enter_context(Ending())
         line = stack.enter_context(Line(arguments.key, arguments.listen, arguments.connect))
@@ -149,10 +151,7 @@ class _Relay:
             while True:
                 yield from map(decode_wind, self._ros.taken(_LOOK))
         arguments = self._arguments
-        source: WindSource = SimulatedWind(arguments.speed)
-        if arguments.wind is not None:
-            record = read_wind(arguments.wind)
-            source = RecordedWind(record.time, record.velocity)
+        source = opened_wind(arguments)
         begin, wall, pause = time.monotonic(), time.time_ns(), threading.Event()
         for number in range(1 << 40):
             at = number / _WIND_RATE

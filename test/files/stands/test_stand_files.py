@@ -79,7 +79,7 @@ def test_a_bad_row_is_refused_by_its_line(tmp_path, rows, told):
 
 def test_two_trees_of_one_name_are_refused(tmp_path):
     path = written(tmp_path, "name,x,y,species,height\na,0,0,oak,10\nb,1,0,oak,9\na,5,0,oak,9\n")
-    with pytest.raises(FormatError, match=r":4: a second tree called 'a', the first is in line 2"):
+    with pytest.raises(FormatError, match=r":4: two trees called 'a', the first in line 2"):
         read_stand_table(path)
     path = written(tmp_path, "name,x,y,species,height\na/b,0,0,oak,10\n")
     with pytest.raises(FormatError, match="slash"):

@@ -230,12 +230,12 @@ class BranchBeam:
         cut at the child.
 
         """
-        seat, each = self.children.segment, np.arange(len(self.children.segment))
+        carrying, each = self.children.segment, np.arange(len(self.children.segment))
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         within = (lever > 0.0).astype(np.float64)
         twice = _integration_rows(self.children.fraction, times=2)
-        lever[seat, :, each] = self.length[seat, None] * twice / _WEIGHTS
-        within[seat, :, each] = self._child_rows / _WEIGHTS
+        lever[carrying, :, each] = self.length[carrying, None] * twice / _WEIGHTS
+        within[carrying, :, each] = self._child_rows / _WEIGHTS
         return lever, within
 
     def slope_shape(self, bending: Floats) -> SlopeShape:

@@ -188,8 +188,8 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
     if len(children) == 0:
         return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
     first = tree.branch_first[children]
-    seat = tree.segment_parent[first]
-    return Attachments(seat - tree.branch_first[branch], tree.place_on_parent[first])
+    carrying = tree.segment_parent[first]
+    return Attachments(carrying - tree.branch_first[branch], tree.place_on_parent[first])
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:

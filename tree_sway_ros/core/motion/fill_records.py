@@ -106,16 +106,17 @@ def head_records(branches: Any, segments: Any) -> Any:
     heads["block"] = [*first, len(segments)]
     heads["n_records"][:-1] = np.diff(heads["block"])
     heads["n_lanes"][:-1] = segments["n_lanes"][first]
+    np.maximum.at(heads["n_bearing"], block[parent[1:]], lane[parent[1:]] + 1)
     np.maximum.at(heads["n_rows"], block, branches["n_coordinates"])
     heads["branch"][block, lane] = np.arange(len(branches))
     heads["is_joined"][:-1] = np.logical_and.reduceat(_joined(segments), first)
-    heads["is_parent_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
+    np.maximum.at(heads["n_parent_rows"], block, branches["n_coordinates"][parent])
     for name in ("parent", "coordinate", "base_segment", "first"):
         heads[name][block, lane] = branches[name]
     for name in ("frame", "skew", "tip_skew", "offset"):
         heads[name][block, ..., lane] = branches[name]
     heads["steepest"][block, lane] = branches["steepest"][:, 0]
-    heads["base_turn"][block, ..., lane] = branches["twist"][:, :2, 3:]
+    heads["base_turn"][block, ..., lane] = branches["twist"][..., 3:]
     return heads
 
 

@@ -3,9 +3,9 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child rides on its parent's curve: a unit of a parent's coordinate moves everything the child
+A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the child
 carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
-(linear, angular) of a unit rate of coordinate j with all that rides on it, the entries for an
+(linear, angular) of a unit rate of coordinate j with all that it carries, the entries for an
 ancestor's coordinate i are
 
     M_ij = (v, w)_i . H_j          mass
@@ -109,7 +109,7 @@ def reduce_tree(
     gravity
         In [m/s^2]; 0 leaves weight out.
     carries
-        Whether children ride on their parents and load them; if not, every branch is alone.
+        Whether children move with their parents and load them; if not, every branch is alone.
 
     Returns
     -------
@@ -137,17 +137,17 @@ def reduce_tree(
         momentum[own, 3:] = (lever - lever.transpose(0, 2, 1))[:, [1, 2, 0], [2, 0, 1]]
         own_weight = gravity * _own_geometric(model, body[model.children])
         for number, child in enumerate(model.children):
-            rides = twists[:, number]
-            twist[child, : len(rides)] = rides
+            base_twists = twists[:, number]
+            twist[child, : len(base_twists)] = base_twists
             if not carries:
                 continue
-            carried = rides @ body[child]
-            own_mass += carried @ rides.T
+            carried = base_twists @ body[child]
+            own_mass += carried @ base_twists.T
             momentum[own] += carried
             below = slice(int(first[child]), int(first[tree.subtree_end[child]]))
-            mass.add(own, below, rides @ momentum[below].T)
+            mass.add(own, below, base_twists @ momentum[below].T)
             lift = momentum[below]
-            tilt = np.outer(rides[:, 3], lift[:, 1]) - np.outer(rides[:, 4], lift[:, 0])
+            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(base_twists[:, 4], lift[:, 0])
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Trees that stand in one place: each with its name, where it stands and which way it is turned.
-
-"""
+"""Trees that stand in one place: each with its name, where it stands and which way it is turned."""
 
 from __future__ import annotations
 

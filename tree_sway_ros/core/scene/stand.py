@@ -214,7 +214,7 @@ class Stand(KeepsState):
             self._standing["at"], anemometer, convection_ratio=convection_ratio
         )
         self._wind, self._dt = np.zeros(3), math.nan
-        self._rooms = [self._room() for _ in range(int(within("threads", threads, 1, 64)))]
+        self._scratch = [self._allocate() for _ in range(int(within("threads", threads, 1, 64)))]
         self._pool = ThreadPoolExecutor(threads - 1, "placing") if threads > 1 else None
 
     @property
@@ -338,10 +338,10 @@ class Stand(KeepsState):
         """
         shape = (self.n_segments, 7)
         poses = np.zeros(shape) if out is None else array_to_fill("out", out, shape)
-        shares = [np.array_split(rows, len(self._rooms)) for rows in self._rows(which)]
+        shares = [np.array_split(rows, len(self._scratch)) for rows in self._rows(which)]
         others = [
             self._pool.submit(self._place, poses, shares, thread)  # type: ignore[union-attr]
-            for thread in range(1, len(self._rooms))
+            for thread in range(1, len(self._scratch))
         ]
         self._place(poses, shares, 0)
         for other in others:
@@ -357,21 +357,21 @@ class Stand(KeepsState):
         for kind, share in enumerate(shares):
             if len(share[thread]):
                 bank, records = self._banks[kind], self._models[kind].bank
-                heads, work, x, block = self._rooms[thread][kind]
+                heads, work, x, block = self._scratch[thread][kind]
                 place_standing(
                     self._tables, self._standing, self._instances, share[thread], bank.all_shapes,
                     records.branches, records.segments, heads, work, x, block, poses,
                 )  # fmt: skip
 
-    def _room(self) -> list[tuple[Any, Any, Floats, Floats]]:
+    def _allocate(self) -> list[tuple[Any, Any, Floats, Floats]]:
         """What placing works in, of each kind."""
-        room = []
+        scratch = []
         for model, bank in zip(self._models, self._banks, strict=True):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
             heads[:] = model.bank.heads
             block = np.zeros((model.tree.n_segments, 7))
-            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
-        return room
+            scratch.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
+        return scratch
 
     @property
     def held(self) -> tuple[str, ...]:
@@ -434,7 +434,7 @@ class Stand(KeepsState):
             if own:
                 own.place_rotations(x, rows)
                 continue
-            heads, work = self._rooms[0][kind][:2]
+            heads, work = self._scratch[0][kind][:2]
             east, north, up = here["at"].tolist()
             place_standing_at(
                 records.branches, records.segments, heads, work, x, east, north, up,

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A tree of a stand as its state is told: its kind, turned and scaled, and how it bends now.
-
-"""
+"""A tree of a stand as its state is told: its kind, turned and scaled, and how it bends now."""
 
 from __future__ import annotations
 

@@ -11,13 +11,14 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import select
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,18 +73,18 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
             ]
             for k, side in enumerate(sides):
                 _wait_until_ready(k, side, shards)
-            time.sleep(_RUN_IN)
+            _let_run(sides, _RUN_IN)
             cut_at = time.monotonic()
             _cable("down")
-            time.sleep(cut)
+            _let_run(sides, cut)
             joined_at = time.monotonic()
             _cable("up")
-            time.sleep(_AFTER)
+            _let_run(sides, _AFTER)
             killed_at = time.monotonic()
             shards[1].kill()
             shards[1].wait()
             children.enter_context(_shard(1, stand))
-            time.sleep(2.0 * _AFTER)
+            _let_run(sides, 2.0 * _AFTER)
             heard = [json.loads(side.communicate(b"\n", timeout=30.0)[0]) for side in sides]
     gaps = [_longest_gap(np.array(heard[k][k]), cut_at, joined_at) for k in (0, 1)]
     rejoined = [_first_after(heard[k][1 - k], joined_at) for k in (0, 1)]
@@ -174,8 +175,17 @@ def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any
                 + (f"; shards that ended: {ended}" if ended else ""),
                 cure="see that multicast is not cut off, and run a shard by itself",
             )
-        time.sleep(0.05)
+        select.select([side.stdout], [], [], 0.05)
     os.set_blocking(side.stdout.fileno(), True)
+
+
+def _let_run(sides: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:
+    """Let the sides listen for so long [s]; one that ends before is an error."""
+    deadline = time.monotonic() + seconds
+    for host, side in enumerate(sides):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            side.wait(max(0.0, deadline - time.monotonic()))
+            raise TransportError(f"host {host} stopped listening", cure="run the bench again")
 
 
 def _longest_gap(at: Floats, begin: float, end: float) -> float:
