@@ -124,7 +124,7 @@ class SolverNode(TreeSwayNode):
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
-        self._state = StatePublisher(self, self.simulator, leaves)
+        self._state = StatePublisher(self, self.simulator, self.values["leaf_clusters"])
         self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)

@@ -245,7 +245,7 @@ class StreamClient:
         description = self.description
         if description is None or frame.identity != description.short_identity:
             return
-        values = frame.coordinates * (description.arrays["basis_scale"] / FULL_SCALE)
+        values = frame.coordinates * (description.scale / FULL_SCALE)
         with self._more:
             moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
             self.playout.push(moment, arrival)

@@ -16,6 +16,7 @@ import json
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
@@ -25,7 +26,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 
-VERSION = 1
+VERSION, FRAME_VERSION = 2, 1
 MAGIC = b"TSWD"
 FRAME_KIND = 0x46
 WIND_UNIT = 0.005
@@ -44,14 +45,31 @@ Array = NDArray[Any]
 """Of float32, int32, int16 or uint8."""
 
 
+class ToldShape(TypedDict):
+    """Names and numbers of a kind of tree."""
+
+    species: str
+    height: float
+    model: str
+    basis_error: float
+    branch_names: list[str]
+
+
+class ToldPlace(TypedDict):
+    """A tree and the number of its kind."""
+
+    name: str
+    kind: int
+
+
 class ToldHeader(TypedDict):
     """Names and numbers of a tree or a scene, as JSON has them; ``doc/streaming.md`` tells each."""
 
     format: str
     name: str
     frame_id: str
-    trees: list[dict[str, str | int | float]]
-    branch_names: list[str]
+    kinds: list[ToldShape]
+    trees: list[ToldPlace]
 
 
 class LeafyHeader(ToldHeader, total=False):
@@ -99,7 +117,7 @@ class Description:
     header
         Names and numbers, as JSON has them.
     arrays
-        Arrays by name.
+        Arrays by name; of a kind under its number and a slash.
     identity
         SHA-256 of the content, the first 16 hexadecimal digits.
 
@@ -113,6 +131,21 @@ class Description:
     def short_identity(self) -> int:
         """What frames carry of the identity."""
         return int(self.identity[:8], 16)
+
+    def of_kind(self, number: int) -> dict[str, Array]:
+        """Arrays of a kind by name."""
+        begin = f"{number}/"
+        return {
+            name.removeprefix(begin): array
+            for name, array in self.arrays.items()
+            if name.startswith(begin)
+        }
+
+    @cached_property
+    def scale(self) -> Floats:
+        """What full scale of each coordinate of all trees stands for, (m,)."""
+        scales = [self.arrays[f"{tree['kind']}/basis_scale"] for tree in self.header["trees"]]
+        return np.concatenate(scales).astype(np.float64)
 
 
 def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]) -> bytes:
@@ -182,8 +215,8 @@ def encode_frame(frame: Frame) -> bytes:
     coordinates = np.asarray(frame.coordinates, dtype="<i2")
     return (
         _FRAME.pack(
-            FRAME_KIND, VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF, frame.stamp,
-            x, y, z, len(coordinates),
+            FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
+            frame.stamp, x, y, z, len(coordinates),
         )
         + coordinates.tobytes()
     )  # fmt: skip
@@ -202,11 +235,11 @@ def decode_frame(data: bytes) -> Frame:
     if len(data) < _FRAME.size or data[0] != FRAME_KIND:
         raise FormatError("not a frame", where="tree state", cure="send frames of doc/streaming.md")
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
-    if version != VERSION or len(data) != _FRAME.size + 2 * count:
+    if version != FRAME_VERSION or len(data) != _FRAME.size + 2 * count:
         raise FormatError(
             f"a frame of version {version}, {count} coordinates and {len(data)} bytes",
             where="tree state",
-            cure=f"send version {VERSION}, {_FRAME.size} bytes and 2 per coordinate",
+            cure=f"send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate",
         )
     coordinates = np.frombuffer(data, dtype="<i2", offset=_FRAME.size)
     return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)

@@ -15,7 +15,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.demand import set_demand
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
@@ -56,8 +55,11 @@ class Choices:
     damping_ratio: float = 0.0
 
 
-Build = Callable[[Choices], tuple[Simulator, LeafClusters | None]]
-"""Makes the simulator and the leaves, or none, of some choices."""
+Build = Callable[[Choices], Simulator]
+"""Makes the simulator of some choices."""
+
+_LEAVES = 1000
+"""Clusters of leaves of each kind of tree."""
 
 
 class Session:
@@ -67,7 +69,7 @@ class Session:
     Parameters
     ----------
     build
-        Makes the simulator and the leaves.
+        Makes the simulator.
     choices
         What to begin with.
     wind
@@ -162,16 +164,16 @@ class Session:
             "rate": round(1.0 / max(self._spacing, 1e-6), 1),
             "work_us": round(1e6 * self._work, 1),
             "late": self._late,
-            "branches": simulator.tree.n_branches,
-            "segments": simulator.tree.n_segments,
+            "branches": self._scene.n_branches,
+            "segments": self._scene.n_segments,
             "solved": simulator.n_solved,
             "building": self._wanted is not None,
             "paused": self._is_paused,
         }
 
     def _made(self, choices: Choices) -> SceneState:
-        simulator, leaves = self._build(choices)
-        scene = SceneState(simulator, leaves, is_running=False)
+        simulator = self._build(choices)
+        scene = SceneState(simulator, _LEAVES, is_running=False)
         set_demand(simulators_of(simulator), tolerance=self._tolerance)
         simulator.reset()
         return scene

@@ -35,6 +35,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_sway_arguments(parser)
     parser.add_argument(
+        "--start", type=float, default=0.0, metavar="T", help="skip so much of the record [s]"
+    )
+    parser.add_argument(
         "--sensor",
         metavar="ADDRESS",
         help="of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, "
@@ -69,24 +72,25 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    with Ending() as ending, only_demo(), Composition({}) as nodes:
-        monitor = StreamMonitor(nodes.context, tree)
+    with (
+        Ending() as ending,
+        only_demo(),
+        Composition({}) as nodes,
+        StreamMonitor(nodes.context, tree) as monitor,
+    ):
 
         def goes_on() -> bool:
             nodes.check()
             return not nodes.is_done
 
-        try:
-            monitor.expect_silence()
-            for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
-                nodes.add(name, values)
-            if not arguments.no_page:
-                _serve_page(nodes, arguments)
-            ending.limit = LONGEST
-            watch(monitor, seconds, goes_on)
-            print(summary(monitor.totals, arguments.rate), flush=True)
-        finally:
-            monitor.close()
+        monitor.expect_silence()
+        for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
+            nodes.add(name, values)
+        if not arguments.no_page:
+            _serve_page(nodes, arguments)
+        ending.limit = LONGEST
+        watch(monitor, seconds, goes_on)
+        print(summary(monitor.totals, arguments.rate), flush=True)
     return 0
 
 
@@ -133,4 +137,9 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
         return {"sensor": {"address": arguments.sensor}, "wind": {}, "solver": solver}
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
-    return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}
+    player = {
+        "file": arguments.wind,
+        "reader_options": " ".join(arguments.wind_option),
+        "start": arguments.start,
+    }
+    return {"player": player, "wind": {}, "solver": solver}

@@ -25,11 +25,11 @@ from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.arguments import (
     add_output_arguments,
     add_sway_arguments,
     drawn_leaves,
+    opened_record,
     opened_scene,
     output_path,
     told_leaves,
@@ -125,7 +125,7 @@ def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output:
         if arguments.bearing != 270.0:
             source += f" from {arguments.bearing:g} degrees"
     else:
-        record = read_wind(arguments.wind)
+        record = opened_record(arguments)
         time, velocity, source = record.time, record.velocity, Path(record.source).name
     wind = np.zeros((0, 3))
     if len(time) > 1:

@@ -31,6 +31,7 @@ from tree_sway_ros.relay.line import Line
 from tree_sway_ros.relay.tree_site import Site
 from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
 from tree_sway_ros.ros.process.ending import Ending
+from tree_sway_ros.ros.process.listener import Listener
 from tree_sway_ros.tools.arguments import (
     add_tree_arguments,
     add_wind_arguments,
@@ -217,43 +218,25 @@ class _Relay:
             self._line.put("frame", frame)
 
 
-class _RosWind:
+class _RosWind(Listener):
     """`wind/filtered` of this site as bytes: heard where it sends, published where it receives."""
 
     def __init__(self, hears: bool) -> None:
-        from tree_sway_ros.ros.process.spin import create, init, require_rclpy
         from tree_sway_ros.ros.process.topics import WIND_FILTERED, message_class, qos_profile
 
-        rclpy = require_rclpy()
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.node import Node
-
-        self._context = rclpy.context.Context()
-        off = rclpy.signals.SignalHandlerOptions.NO
-        init(rclpy, [], context=self._context, signal_handler_options=off)
-        self._node: Any = create(lambda **o: Node("tree_sway_relay", **o), context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
+        super().__init__("tree_sway_relay")
         self._heard: list[bytes] = []
         kind, name = message_class(WIND_FILTERED), WIND_FILTERED.name
         quality = qos_profile(WIND_FILTERED)
         self.publish: Callable[[bytes], None] = lambda data: None
         if hears:
-            self._node.create_subscription(kind, name, self._heard.append, quality, raw=True)
+            self.node.create_subscription(kind, name, self._heard.append, quality, raw=True)
         else:
-            self.publish = self._node.create_publisher(kind, name, quality).publish
+            self.publish = self.node.create_publisher(kind, name, quality).publish
 
     def taken(self, seconds: float) -> list[bytes]:
         """What has come, after waiting so long for more [s]."""
-        self._executor.spin_once(timeout_sec=seconds)
+        self.spin_once(seconds)
         taken = self._heard.copy()
         self._heard.clear()
         return taken
-
-    def __enter__(self) -> _RosWind:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._executor.shutdown(timeout_sec=1.0)
-        self._node.destroy_node()
-        self._context.try_shutdown()

@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
-from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.stand import StandKind, StandTree
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
@@ -42,7 +41,6 @@ _SPACING = 1.2
 _BY_TABLE = ("auto", "modes", "wind_basis")
 """Models that a stand has one table per kind for, wherever its trees stand."""
 
-_LEAVES = 1000
 _COUNTS = ("1", "9", "100")
 _LABELS = {
     "mean_speed": "Wind",
@@ -97,10 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def build_scene(
-    choices: Choices, arguments: argparse.Namespace
-) -> tuple[Simulator, LeafClusters | None]:
-    """Make simulator and leaves of what was chosen."""
+def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
+    """Make the simulator of what was chosen."""
     is_first = choices.tree == arguments.tree
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
     count = int(choices.count)
@@ -108,10 +104,9 @@ def build_scene(
         if isinstance(scene, ForestFile):
             raise ParameterError("a stand of a forest", where="--stand", cure="name one tree")
         scene = stand(scene, count, choices.fidelity)
-    in_leaf = told_leaves(arguments)
-    settings = replace(Settings(), damping_ratio=choices.damping_ratio or None, in_leaf=in_leaf)
-    simulator = scene.simulator(settings, model=choices.fidelity)
-    return simulator, scene.leaves(in_leaf, _LEAVES)
+    damping, in_leaf = choices.damping_ratio or None, told_leaves(arguments)
+    settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
+    return scene.simulator(settings, model=choices.fidelity)
 
 
 def stand(scene: TreeFile, count: int, fidelity: str) -> StandFile:

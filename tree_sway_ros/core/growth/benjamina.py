@@ -35,14 +35,8 @@ def grow_benjamina(
 
     Parameters
     ----------
-    rng
-        Source of randomness; the same state gives the same tree.
-    height
-        Height in [m].
-    diameter
-        Diameter of the stock at its base in [m].
-    name, species
-        What the tree is called, and the key of its wood.
+    rng, height, diameter, name, species
+        As of `grow_broadleaf`; the diameter is that of the stock at its base.
 
     """
     skeleton = Skeleton()

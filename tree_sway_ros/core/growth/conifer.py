@@ -39,14 +39,8 @@ def grow_conifer(
 
     Parameters
     ----------
-    rng
-        Source of randomness; the same state gives the same tree.
-    height
-        Height in [m].
-    diameter
-        Diameter in [m] at breast height, or at the base of a tree below twice that height.
-    name, species
-        What the tree is called, and the key of its wood and of its form.
+    rng, height, diameter, name, species
+        As of `grow_broadleaf`.
 
     """
     form, skeleton = conifer_form(species), Skeleton()

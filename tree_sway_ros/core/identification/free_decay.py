@@ -86,12 +86,8 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
 
     Parameters
     ----------
-    motion
-        Displacement, tilt or acceleration at even steps, (n, c).
-    dt
-        Step in [s].
-    rough
-        Frequency to look around in [Hz].
+    motion, dt, rough
+        As of `ambient_sway`.
 
     Returns
     -------

@@ -241,19 +241,20 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     exposed = exposure(beam)
     exposed /= float(share.sum(axis=1) @ exposed)
-    into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
+    amounts, ways = np.linalg.eigh(across)
+    kept = amounts > _STRAIGHT * amounts[-1]
+    into_push = ways[:, kept] / amounts[kept] @ ways[:, kept].T
+    n = len(model.fields)
+    fields = np.stack([one.points for one in model.fields])
+    own = exposed[:, None] * (share[..., None] * fields).sum(axis=2)
+    own -= (own * beam.tangent).sum(axis=-1, keepdims=True) * beam.tangent
     mean = np.zeros_like(record["push"])
-    moved = np.zeros(share.shape)
-    for i, one in enumerate(model.fields):
-        field = one.points
-        own = np.einsum("s,sg,sgk->sk", exposed, share, field)
-        own -= np.einsum("sk,sk->s", own, beam.tangent)[:, None] * beam.tangent
-        mean[i] = own.sum(axis=0)
-        record["push"][i] = into_push @ mean[i]
-        record["turn"][i] = np.einsum("sg,sgk->k", share, one.slope)
-        if i < 2:
-            moved += np.square(field).sum(axis=-1)
-            moved -= np.square(np.einsum("sgk,sk->sg", field, beam.tangent))
+    mean[:n] = own.sum(axis=1)
+    record["push"][:n] = mean[:n] @ into_push
+    slopes = np.stack([one.slope for one in model.fields])
+    record["turn"][:n] = share.ravel() @ slopes.reshape(n, -1, 3)
+    along_it = (fields[:2] * beam.tangent[:, None, :]).sum(axis=-1)
+    moved = (np.square(fields[:2]).sum(axis=-1) - np.square(along_it)).sum(axis=0)
     if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
         _fit_load(model, share, record)
     _fill_flow(record, mean, float((share * moved).sum()), float((share * _cubes(moved)).sum()))

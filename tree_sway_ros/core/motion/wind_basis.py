@@ -228,6 +228,21 @@ def step_outside(instance: Any, modal: ModalBank, shapes: Floats, rotations: Flo
 
 
 @fused
+def find_rest(table: Any, instance: Any) -> None:
+    """Write the static rest of an instance, as of `expand`, in the wind of its last step."""
+    if not instance.outside:
+        wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        drag = instance.pressure * speed
+        if speed > 0.0:
+            fill_harmonics(wx / speed, wy / speed, wz / speed, table.degree, instance.values)
+        wind_rest(
+            table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
+            instance.values, instance.rest,
+        )  # fmt: skip
+
+
+@fused
 def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
     """
     Key rotations of an instance: by its modes and by its static rest.
@@ -242,16 +257,7 @@ def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
         Written, (N,).
 
     """
-    if not instance.outside:
-        wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
-        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-        drag = instance.pressure * speed
-        if speed > 0.0:
-            fill_harmonics(wx / speed, wy / speed, wz / speed, table.degree, instance.values)
-        wind_rest(
-            table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
-            instance.values, instance.rest,
-        )  # fmt: skip
+    find_rest(table, instance)
     eta, rest, n = instance.eta, instance.rest, len(shapes) - N_REST
     x[:] = 0.0
     few = n - n % 4

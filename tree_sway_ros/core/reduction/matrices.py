@@ -29,7 +29,7 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import cross, cross_matrix
+from tree_sway_ros.core.branch.beam import cross, cross_matrix, energies
 from tree_sway_ros.core.branch.model import BranchModel
 from tree_sway_ros.core.branch.shapes import MAX_COORDINATES
 from tree_sway_ros.core.tree.tree import Tree
@@ -151,7 +151,7 @@ def reduce_tree(
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
-        elastic.add(own, own, _own_elastic(model, modulus, shear_modulus))
+        elastic.add(own, own, energies(model.fields, modulus, shear_modulus))
         if carries:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
@@ -198,12 +198,6 @@ def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     return np.stack([one.points for one in model.fields]), np.stack(twists)
 
 
-def _own_elastic(model: BranchModel, modulus: float, shear_modulus: float) -> Floats:
-    """Energy between the coordinates of a branch in [N m/rad]."""
-    fields = model.fields
-    return np.array([[a.stiffness(b, modulus, shear_modulus) for b in fields] for a in fields])
-
-
 def _spatial_inertia(model: BranchModel) -> Floats:
     """Inertia (6, 6) of a branch as a rigid body about the root: momentum of a twist (v, w)."""
     point = model.beam.point
@@ -241,12 +235,11 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
     hanging = moment - masses[:, None] * beam.child_point
     arms = np.vstack([lever.reshape(-1, 3), hanging])
-    turns = [np.vstack([a.reshape(-1, 3), c]) for a, c in zip(slopes, child_slopes, strict=True)]
+    turns = np.stack(
+        [np.vstack([a.reshape(-1, 3), c]) for a, c in zip(slopes, child_slopes, strict=True)]
+    )
+    once = turns[..., 2] @ (turns * arms).sum(axis=-1).T
     n = len(turns)
-    lift = np.zeros((n, n))
-    for i in range(n):
-        for j in range(i, n):
-            a, b = turns[i], turns[j]
-            twice = a[:, 2] * (b * arms).sum(axis=1) + b[:, 2] * (a * arms).sum(axis=1)
-            lift[i, j] = lift[j, i] = (0.5 * twice - (a * b).sum(axis=1) * arms[:, 2]).sum()
+    both = (turns * arms[:, 2:]).reshape(n, -1) @ turns.reshape(n, -1).T
+    lift: Floats = 0.5 * (once + once.T) - both
     return lift
