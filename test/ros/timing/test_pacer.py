@@ -71,6 +71,7 @@ def test_wall_time_ticks_on_the_grid_at_the_rate(ticks):
     paced = ticks(rate=200.0)
     paced.pacer.start()
     paced.wait(100)
+    paced.pacer.stop()
     pace = paced.pacer.pace()
     times = np.array([tick.time for tick in paced.seen])
     periods = np.array([tick.periods for tick in paced.seen])
