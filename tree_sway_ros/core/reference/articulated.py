@@ -117,19 +117,14 @@ class ArticulatedTree:
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
         self._gravity, self._damped_modes = gravity, damped_modes
+        none = np.zeros((0, n, 3))
         if rayleigh is None:
-            by_mass, by_stiffness, by_mode, momentum = self._even_damping(
-                damping_ratio, damped_modes
-            )
+            damping = self._even_damping(damping_ratio, damped_modes)
         else:
-            by_mass, by_stiffness = float(rayleigh[0]), float(rayleigh[1])
-            by_mode, momentum = np.zeros(0), np.zeros((0, n, 3))
+            damping = *map(float, rayleigh), np.zeros(0), np.zeros(0), none, none
         self.laws = Laws(
             gravity,
-            by_mass,
-            by_stiffness,
-            by_mode,
-            momentum,
+            *damping,
             0.5 * air_density * drag_coefficient,
             drag_exponent,
             STREAMLINING_FROM,
@@ -152,16 +147,9 @@ class ArticulatedTree:
         self.bodies.twist[:] *= stiffness
         self.bodies.rest_torque[:] *= weight
         self._gravity *= weight
-        by_mass, by_stiffness, by_mode, momentum = self._even_damping(
-            damping_ratio, self._damped_modes
-        )
-        self.laws = self.laws._replace(
-            gravity=self._gravity,
-            mass_damping=by_mass,
-            stiffness_damping=by_stiffness,
-            mode_damping=by_mode,
-            mode_momentum=momentum,
-        )
+        damping = self._even_damping(damping_ratio, self._damped_modes)
+        told = dict(zip(Laws._fields[1:7], damping, strict=True))
+        self.laws = self.laws._replace(gravity=self._gravity, **told)
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -228,10 +216,12 @@ class ArticulatedTree:
         shapes = end_displacements(self.bodies, modes.turn)
         return modes.frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]
 
-    def _even_damping(self, ratio: float, count: int) -> tuple[float, float, Floats, Floats]:
+    def _even_damping(
+        self, ratio: float, count: int
+    ) -> tuple[float, float, Floats, Floats, Floats, Floats]:
         """
-        By stiffness so much that the last of these modes has the ratio, and the rest to each below
-        it.
+        Damping of `Laws`: by stiffness so much that the last of these modes has the ratio, and the
+        rest to each below it.
 
         """
         modes = joint_modes(self.bodies, self._gravity, count)
@@ -240,7 +230,7 @@ class ArticulatedTree:
         modes, circular = JointModes(*(part[:slow] for part in modes)), circular[:slow]
         by_stiffness = 2.0 * ratio / float(circular[-1])
         by_mode = 2.0 * ratio * circular - by_stiffness * circular**2
-        return 0.0, by_stiffness, by_mode, modes.momentum
+        return 0.0, by_stiffness, by_mode, circular**2, modes.turn, modes.momentum
 
     def _place_bodies(self) -> None:
         place_bodies(self.bodies, self.state.turn, self._rotation, *self._nodes)
