@@ -11,6 +11,8 @@ text.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 class TreeSwayError(Exception):
     """
@@ -35,6 +37,14 @@ class TreeSwayError(Exception):
         place = f"{where}: " if where else ""
         advice = f"; {cure}" if cure else ""
         super().__init__(f"{place}{what}{advice}")
+
+    def at(self, where: str) -> TreeSwayError:
+        """Return the same error with another place."""
+        return type(self)(self.what, where=where, cure=self.cure)
+
+    def inside(self, whole: str) -> TreeSwayError:
+        """Return the same error with its place as a part of a larger one."""
+        return self.at(f"{whole}: {self.where}" if self.where else whole)
 
 
 class TreeError(TreeSwayError):
@@ -63,3 +73,10 @@ class MissingDependencyError(TreeSwayError):
 
 class TransportError(TreeSwayError):
     """A port, domain or middleware that cannot be used."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Ask whether the nearest of some names is meant; an empty text where none is near."""
+    from difflib import get_close_matches
+
+    return "".join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], n=1))

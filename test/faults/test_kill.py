@@ -20,8 +20,8 @@ from tree_sway_ros.ros.wire.cdr import stamp_of  # noqa: E402
 LONGEST = 3.0
 """From a kill to the whole stream [s], with processes that take all of the machine beside."""
 PATIENCE = 30.0
-_POSES = 24
-"""Begin of the poses in a message: behind the stamp and the name of the frame."""
+_POSES = 28
+"""Begin of the poses in a message: behind the header, their count and a gap that nobody fills."""
 
 
 @pytest.fixture

@@ -15,22 +15,29 @@ from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
 BEGIN = 10**9
 """Of a record without a date, on the clock [ns]."""
 FRAME = round(1e9 / 60.0)
-_POSES = 24
-"""Begin of the poses in a message: behind the stamp and the name of the frame."""
+TOLD = """\
+player:
+  ros__parameters:
+    speed: {speed}
+    loop: false
+    wait_for: wind wind/filtered segment_poses /clock:2
+solver:
+  ros__parameters:
+    qos_overrides./segment_poses.publisher.depth: 1000  # for who is slower than 600 frames a second
+"""
+_POSES = 28
+"""Begin of the poses in a message: behind the header, their count and a gap that nobody fills."""
 
 
 def replayed(launched, observer, folder, tree, speed, seconds):
-    """Digest of each frame by its stamp, as bytes, from a launch to the end of its record."""
+    """Digest of each frame's poses by its stamp, from a launch to the end of its record."""
     record = folder / "wind.csv"
     record.write_text(
         "time,u,v,w\n"
         + "".join(f"{k / 20:.2f},{6 + k % 7},{0.1 * (k % 5):.1f},0\n" for k in range(20 * seconds))
     )
     told = folder / f"told_{speed:g}.yaml"
-    topics = "wind wind/filtered segment_poses /clock:2"
-    told.write_text(
-        f"player:\n  ros__parameters:\n    {{speed: {speed}, loop: false, wait_for: '{topics}'}}\n"
-    )
+    told.write_text(TOLD.format(speed=speed))
     frames = observer.listen(SEGMENT_POSES, raw=True, depth=1000)
     run = launched(
         "sway.launch.py",

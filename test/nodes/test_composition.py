@@ -12,7 +12,7 @@ from rosgraph_msgs.msg import Clock  # noqa: E402
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
 from tree_sway_ros.ros.process.composition import Composition  # noqa: E402
-from tree_sway_ros.ros.process.topics import CLOCK, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.ros.process.topics import CLOCK, WIND, WIND_FILTERED  # noqa: E402
 from tree_sway_ros.ros.reports.diagnostics import WARN  # noqa: E402
 
 
@@ -70,7 +70,16 @@ def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses):
     assert status.level[0] == WARN
     assert "2 nodes publish /oak/wind/filtered: /oak/wind and /oak/wind" in status.message
     nodes["oak/wind"].reporter.report()
-    assert nodes["oak/wind"]._alone == {"/oak/wind/filtered": {"/oak/wind and /oak/wind"}}
+    assert nodes["oak/wind"]._alone["/oak/wind/filtered"] == {"/oak/wind and /oak/wind"}
+
+
+def test_two_senders_of_wind_are_named_though_neither_is_ours(compose, observer, statuses):
+    compose(wind={})
+    for _ in range(2):
+        observer.publisher(WIND)
+    text = "2 nodes publish /wind: /observer and /observer; what they send mixes"
+    observer.until(lambda: text == getattr(statuses("wind: topics"), "message", ""), "a warning")
+    assert statuses("wind: topics").level[0] == WARN
 
 
 def test_a_clock_that_cannot_be_ends_nothing(compose, observer):

@@ -3,16 +3,23 @@
 """No more model than the scene needs: the solver listens where it is seen from."""
 
 import json
+import math
 
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import PoseStamped  # noqa: E402
+from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402
 
-from tree_sway_ros.ros.process.topics import CAMERA, SEGMENT_POSES, TREE_DESCRIPTION  # noqa: E402
+from tree_sway_ros.ros.process.topics import (  # noqa: E402
+    CAMERA,
+    SEGMENT_POSES,
+    TREE_DESCRIPTION,
+    WIND_FILTERED,
+)
 from tree_sway_ros.ros.reports.diagnostics import WARN  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import WindSample, wind_to_message  # noqa: E402
 
 
 def told(status):
@@ -62,6 +69,30 @@ def test_a_budget_is_told_and_kept_where_it_can_be(compose, observer, statuses, 
     assert float(values["estimated cost [us]"]) > 0.5
     assert values["fidelity"] == "frozen"
     assert int(values["branches frozen"]) > 0
+
+
+def test_what_the_wind_basis_leaves_out_and_the_gate_refuses_is_counted(
+    compose, observer, statuses, tree_file
+):
+    nodes = compose(solver={"tree": tree_file, "fidelity": "wind_basis"})
+    wind = observer.publisher(WIND_FILTERED)
+    bank = nodes["solver"].simulator.bank.oscillators
+    stamp = observer.node.get_clock().now
+
+    def said(name, count):
+        status = statuses(name)
+        return -1 if status is None else int(told(status)[count])
+
+    def blow(w):
+        now = stamp().nanoseconds
+        wind.publish(wind_to_message(Vector3Stamped, WindSample(now, "map", 0.5, 0.2, w)))
+
+    observer.until(lambda: blow(3.0) or bank.n_outside > 10, "steep wind")
+    blow(math.nan)
+    observer.until(
+        lambda: said("solver: model", "steps outside of the wind basis") > 10, "the steps"
+    )
+    observer.until(lambda: said("solver: wind", "not_finite") == 1, "the refusal")
 
 
 def test_leaves_are_told_once_and_never_by_the_frame(compose, observer, tree_file):

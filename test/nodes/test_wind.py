@@ -1,17 +1,33 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import sys
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 pytestmark = pytest.mark.ros
 
+from geometry_msgs.msg import TransformStamped  # noqa: E402
+
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree  # noqa: E402
+from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
 from tree_sway_ros.ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
-from tree_sway_ros.ros.process.topics import FORCE_PLANE, SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.ros.process.topics import (  # noqa: E402
+    FORCE_PLANE,
+    SEGMENT_POSES,
+    TF,
+    TF_STATIC,
+    WIND,
+    WIND_FILTERED,
+    qos_profile,
+)
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
+from tree_sway_ros.ros.wire import frames  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
     WindSample,
+    fill_stamp,
     stamp_to_ns,
     wind_class,
     wind_from_message,
@@ -30,9 +46,9 @@ class Mast:
         self._publisher = observer.publisher(WIND, self._kind)
         self._clock = observer.node.get_clock()
 
-    def say(self, u, v=0.0, w=0.0, stamp=None):
+    def say(self, u, v=0.0, w=0.0, stamp=None, frame_id="map"):
         stamp = self._clock.now().nanoseconds if stamp is None else stamp
-        sample = WindSample(stamp, "map", u, v, w)
+        sample = WindSample(stamp, frame_id, u, v, w)
         self._publisher.publish(wind_to_message(self._kind, sample))
         return stamp
 
@@ -86,6 +102,84 @@ def test_the_wind_goes_through_with_its_stamp(compose, observer):
     np.testing.assert_allclose(vector(filtered[-1]), (0.0, 2.0, 0.0), atol=1e-12)
     q = plane[-1].pose.orientation  # x along the wind, to the north
     np.testing.assert_allclose((q.w, q.x, q.y, q.z), np.sqrt((0.5, 0, 0, 0.5)), atol=1e-12)
+
+
+def transform(frame, parent, yaw, stamp=0):
+    made = TransformStamped(child_frame_id=frame)
+    made.header.frame_id = parent
+    fill_stamp(made.header.stamp, stamp)
+    made.transform.rotation.z, made.transform.rotation.w = np.sin(yaw / 2), np.cos(yaw / 2)
+    return made
+
+
+@pytest.fixture
+def tf(monkeypatch):
+    """What the wind node does with messages of /tf and /tf_static, where tf2_msgs may lack."""
+    callbacks, subscribe = {}, WindNode.subscription
+
+    def listen(node, topic, callback, *more, **named):
+        if topic not in (TF, TF_STATIC):
+            return subscribe(node, topic, callback, *more, **named)
+        callbacks[topic.name] = lambda *given: callback(SimpleNamespace(transforms=given))
+
+    monkeypatch.setattr(WindNode, "subscription", listen)
+    return callbacks
+
+
+def test_wind_in_another_frame_is_turned_by_tf(compose, observer, statuses, tf, capfd):
+    """On a boat that lies to the north: what comes over its bow blows to the south."""
+    nodes = compose(wind={})
+    filtered = observer.listen(WIND_FILTERED)
+    mast = Mast(observer)
+    listens = lambda: mast.say(-4.0, frame_id="mast") and len(tf) == 2  # noqa: E731
+    observer.until(listens, "the node to listen to /tf")
+    assert not filtered  # the transform may be on its way
+    tf["/tf_static"](transform("mast", "boat", 0.0))
+    tf["/tf"](transform("boat", "map", np.pi / 2, stamp=5))
+    observer.until(lambda: mast.say(-4.0, frame_id="/mast") and filtered, "wind")
+    np.testing.assert_allclose(vector(filtered[-1]), (0.0, -4.0, 0.0), atol=1e-12)
+    assert filtered[-1].header.frame_id == "map"
+    observer.until(lambda: statuses("wind: frame"), "diagnostics")
+    assert statuses("wind: frame").level[0] == OK
+    assert "turned into 'map' by /tf" in statuses("wind: frame").message
+    mast.say(np.nan, frame_id="mast")
+    observer.until(lambda: nodes["wind"]._intake.counts.not_finite == 1, "the refusal")
+
+
+def test_wind_in_a_frame_that_nobody_knows_is_taken_as_it_is(
+    compose, observer, statuses, tf, capfd, monkeypatch
+):
+    monkeypatch.setattr(frames, "_PATIENCE", 0.2)
+    compose(wind={})
+    filtered = observer.listen(WIND_FILTERED)
+    mast = Mast(observer)
+    observer.until(lambda: mast.say(4.0, frame_id="mast") and len(filtered) > 2, "wind")
+    assert vector(filtered[-1]) == (4.0, 0.0, 0.0)
+    said = "wind is in frame 'mast', taken as 'map': no transform between the two on /tf"
+    observer.until(lambda: statuses("wind: frame"), "diagnostics")
+    assert (statuses("wind: frame").level[0], statuses("wind: frame").message) == (WARN, said)
+    assert capfd.readouterr().err.count(said) == 1
+
+
+def test_without_tf2_one_line_says_so(compose, observer, capfd, monkeypatch):
+    monkeypatch.setitem(sys.modules, "tf2_msgs.msg", None)
+    compose(wind={})
+    filtered = observer.listen(WIND_FILTERED)
+    mast = Mast(observer)
+    observer.until(lambda: mast.say(4.0, frame_id="mast") and len(filtered) > 2, "wind")
+    said = "wind is in frame 'mast', taken as 'map': tf2_msgs is not installed"
+    assert capfd.readouterr().err.count(said) == 1
+
+
+def test_transforms_that_are_published_turn_the_wind(compose, observer):
+    kind = pytest.importorskip("tf2_msgs.msg", reason="tf2_msgs is not installed").TFMessage
+    compose(wind={})
+    filtered = observer.listen(WIND_FILTERED)
+    mast = Mast(observer)
+    fixed = observer.node.create_publisher(kind, TF_STATIC.name, qos_profile(TF_STATIC))
+    fixed.publish(kind(transforms=[transform("mast", "map", np.pi / 2)]))
+    observer.until(lambda: mast.say(4.0, frame_id="mast") and filtered, "wind")
+    np.testing.assert_allclose(vector(filtered[0]), (0.0, 4.0, 0.0), atol=1e-12)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 999.99, 1e300, 41.0])

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway_ros.view.animation import animate_poses
-from tree_sway_ros.view.pictures import picture_at_rest, picture_in_wind
+from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 from tree_sway_ros.view.projection import rest_poses
 
@@ -39,6 +40,16 @@ def pixels(path: Path) -> np.ndarray:
     return np.asarray(Image.open(path).convert("RGB")).astype(float)
 
 
+def in_calm(tree: Tree, path: Path, **options: Any) -> Path:
+    return picture_in_wind(tree, leaning(tree, 0.0), [0.0, 0.0, 0.0], path, **options)
+
+
+def at_rest(tree: Tree, path: Path, **options: Any) -> np.ndarray:
+    """The half that shows the tree at rest, of a tree that is not wide."""
+    picture = pixels(in_calm(tree, path, **options))
+    return picture[:, : picture.shape[1] // 2]
+
+
 def dark_columns(picture: np.ndarray) -> np.ndarray:
     """Columns that show bark, below the title and above the ground."""
     rows = picture[int(0.15 * len(picture)) : int(0.6 * len(picture))]
@@ -46,7 +57,7 @@ def dark_columns(picture: np.ndarray) -> np.ndarray:
 
 
 def test_bark_is_as_thick_as_it_is(tmp_path: Path) -> None:
-    picture = pixels(picture_at_rest(pole(), tmp_path / "pole.png"))
+    picture = at_rest(pole(), tmp_path / "pole.png")
     dark = picture.max(axis=2) < 180
     lower, upper = int(0.65 * len(picture)), int(0.25 * len(picture))
     # 0.2 m below, 0.1 m above; an edge of a pixel or two on top of each.
@@ -86,7 +97,7 @@ def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["benjamina", "broadleaf"])
 def test_a_whole_tree_fits_its_picture(name: str, tmp_path: Path) -> None:
-    picture = pixels(picture_at_rest(builtin_tree(name), tmp_path / "tree.png", title=""))
+    picture = pixels(in_calm(builtin_tree(name), tmp_path / "tree.png", title=""))
     border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
     assert border.min() > 250.0
     assert (picture.max(axis=2) < 180).mean() > 0.01
@@ -111,8 +122,8 @@ def test_a_moving_picture_has_its_frames_and_its_pace(
 def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
     tree = builtin_tree("benjamina")
     leaves = leaf_clusters(tree, np.random.default_rng(0), count=300)
-    bare = pixels(picture_at_rest(tree, tmp_path / "bare.png"))
-    green = pixels(picture_at_rest(tree, tmp_path / "leafy.png", leaves=leaves))
+    bare = at_rest(tree, tmp_path / "bare.png")
+    green = at_rest(tree, tmp_path / "leafy.png", leaves=leaves)
 
     def is_green(picture: np.ndarray) -> np.ndarray:
         return picture[..., 1] > picture[..., [0, 2]].max(axis=2) + 20
@@ -164,9 +175,9 @@ def test_plot_of_wind_and_tip(tmp_path: Path) -> None:
 
 def test_a_name_that_is_no_picture_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=r"'\.doc' is no picture format; .*\.png"):
-        picture_at_rest(pole(), tmp_path / "tree.doc")
+        in_calm(pole(), tmp_path / "tree.doc")
     with pytest.raises(FormatError, match="cannot be written: No such file"):
-        picture_at_rest(pole(), tmp_path / "nowhere" / "tree.png")
+        in_calm(pole(), tmp_path / "nowhere" / "tree.png")
 
 
 def test_without_matplotlib_the_cure_is_named(
@@ -174,4 +185,4 @@ def test_without_matplotlib_the_cure_is_named(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "matplotlib.figure", None)
     with pytest.raises(MissingDependencyError, match=r"pip install matplotlib"):
-        picture_at_rest(pole(), tmp_path / "tree.png")
+        in_calm(pole(), tmp_path / "tree.png")

@@ -12,7 +12,6 @@ better.
 
 from __future__ import annotations
 
-import difflib
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ from typing import Any
 
 import yaml
 
-from tree_sway_ros.errors import FormatError
+from tree_sway_ros.errors import FormatError, nearest
 from tree_sway_ros.files.text_file import finite
 
 Schema = dict[str, Any]
@@ -219,9 +218,8 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
         known = error.schema["properties"]
         key = next(key for key in value if key not in known)
         path.append(key)
-        close = difflib.get_close_matches(key, known, n=1)
         what = f"unknown key '{key}' in {name}"
-        cure = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(known)}"
+        cure = nearest(key, known) or f"known are {', '.join(known)}"
     elif error.validator == "required":
         key = next(key for key in wanted if key not in value)
         what, cure = f"{name} has no '{key}'", f"add '{key}'"

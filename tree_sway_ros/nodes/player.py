@@ -193,6 +193,8 @@ class PlayerNode(TreeSwayNode):
         return False
 
     def _end(self) -> None:
+        if self._answers is not None:  # what is under way is lost with whoever sent it
+            self._answers.end(lambda time: self._clock_publisher.publish(clock_message(time)))
         self.get_logger().info("the record has ended")
         self.is_done = True
 

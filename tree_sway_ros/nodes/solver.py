@@ -228,7 +228,9 @@ class SolverNode(TreeSwayNode):
         return response
 
     def _statuses(self) -> list[Status]:
-        statuses = self._sway_report.statuses(self._stepper, self.pacer, self.stream.frames)
+        statuses = self._sway_report.statuses(
+            self._stepper, self.pacer, self.stream.frames, self._intake.counts
+        )
         if self._refused_cameras:
             text = (
                 f"{self._refused_cameras} poses of the camera refused: not finite or too far away"

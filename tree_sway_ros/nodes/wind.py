@@ -15,8 +15,9 @@ from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import Status
+from tree_sway_ros.ros.reports.diagnostics import OK, WARN, Status
 from tree_sway_ros.ros.reports.wind_report import WindReport
+from tree_sway_ros.ros.wire.frames import FrameListener
 from tree_sway_ros.ros.wire.wind_messages import (
     WindSample,
     plane_message,
@@ -52,10 +53,11 @@ class WindNode(TreeSwayNode):
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
         self._attitude: Any = None
+        self._frames: FrameListener | None = None
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
         kind = wind_class(self.values["input_type"])
-        self._topic = self.subscription(WIND, self._receive, kind).topic_name
+        self._topic = self.subscription(WIND, self._receive, kind, alone=True).topic_name
         self.report_with("wind", self._statuses)
         self.get_logger().info(self._convention.describe())
 
@@ -78,14 +80,17 @@ class WindNode(TreeSwayNode):
         if not self.is_active:
             return
         sample = wind_from_message(message)
-        frame_id = self.values["frame_id"]
+        frame_id, turn = self.values["frame_id"], None
         if sample.frame_id not in ("", frame_id):
-            self.get_logger().warning(
-                f"wind is in frame '{sample.frame_id}', taken as '{frame_id}'", once=True
-            )
+            self._frames = self._frames or FrameListener(self, frame_id)
+            turn = self._frames.rotation(sample.frame_id, sample.stamp)
+            if self._frames.is_waiting:
+                return
         components = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds or None  # simulated time has not come yet
-        good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
+        good = self._intake.offer(
+            sample.stamp, components, arrival, lead=self.clock_lead, rotation=turn
+        )
         self._report.add(good is not None)
         if good is None:
             return
@@ -96,7 +101,11 @@ class WindNode(TreeSwayNode):
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()
-        return [self._report.status(self.values["timeout"], gate, others)]
+        statuses = [self._report.status(self.values["timeout"], gate, others)]
+        if self._frames is not None and self._frames.text:
+            level = WARN if self._frames.is_lacking else OK
+            statuses.append(Status("frame", level, self._frames.text))
+        return statuses
 
     def _types_not_read(self) -> list[str]:
         """Types other than `input_type` that somebody publishes on the topic."""

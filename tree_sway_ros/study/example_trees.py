@@ -168,3 +168,11 @@ def _aside(direction: Floats, angle: float, azimuth: float) -> Floats:
     round_it = math.cos(azimuth) * first + math.sin(azimuth) * second
     out: Floats = math.cos(angle) * direction + math.sin(angle) * round_it
     return out
+
+
+def branch_order(tree: Tree) -> Ints:
+    """Branching order: 0 for the stem, one more than its parent's for the others, (b,)."""
+    order = np.zeros(tree.n_branches, dtype=np.int64)
+    for branch in np.flatnonzero(tree.branch_parent >= 0):
+        order[branch] = order[tree.branch_parent[branch]] + 1
+    return order

@@ -108,8 +108,7 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     try:
         found = estimate_sway(record.time, record.motion, arguments.kind, band)
     except FormatError as error:
-        where = f"{record.source}: {error.where}" if error.where else record.source
-        raise FormatError(error.what, where=where, cure=error.cure) from None
+        raise error.inside(record.source) from None
     print(
         f"{record.source}: {record.quantity} in {', '.join(record.columns)}, "
         f"{found.kind} ({found.cycles:.0f} cycles)"

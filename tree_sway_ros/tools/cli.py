@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import difflib
 import importlib
 import io
 import os
@@ -23,7 +22,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple, NoReturn
 
-from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.errors import TreeSwayError, nearest
 
 
 class Command(NamedTuple):
@@ -112,15 +111,14 @@ class _OneLineParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and where to read more, and exit."""
-        near: list[str] = []
+        guess = ""
         if wrong := _CHOICE.search(message):
-            near = difflib.get_close_matches(wrong[1], re.findall(r"[\w.-]+", wrong[2]), n=1)
+            guess = nearest(wrong[1], re.findall(r"[\w.-]+", wrong[2]))
         elif wrong := _UNRECOGNIZED.search(message):
-            known = (self.chosen or self)._option_string_actions
-            near = difflib.get_close_matches(wrong[1], known, n=1)
-        guess = f"; did you mean '{near[0]}'?" if near else ""
+            guess = nearest(wrong[1], (self.chosen or self)._option_string_actions)
         where = (self.chosen or self).prog
-        print(f"{where}: {message}{guess}; see {where} --help", file=sys.stderr)
+        told = "; ".join(filter(None, (message, guess, f"see {where} --help")))
+        print(f"{where}: {told}", file=sys.stderr)
         raise SystemExit(_FAILURE)
 
 

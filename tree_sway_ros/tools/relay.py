@@ -254,7 +254,7 @@ class _RosWind:
     def __enter__(self) -> _RosWind:
         return self
 
-    def __exit__(self, *_raised: object) -> None:
+    def __exit__(self, *_: object) -> None:
         self._executor.shutdown(timeout_sec=1.0)
         self._node.destroy_node()
         self._context.try_shutdown()

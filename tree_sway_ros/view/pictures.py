@@ -37,48 +37,6 @@ _WIDE = 1.3
 """Width over height from which what stands in wind is drawn below what rests, not beside."""
 
 
-def picture_at_rest(
-    tree: Tree | Sequence[Tree],
-    path: str | Path,
-    *,
-    leaves: LeafClusters | None = None,
-    camera: Camera | None = None,
-    title: str | None = None,
-) -> Path:
-    """
-    Draw a tree at rest.
-
-    Parameters
-    ----------
-    tree
-        What to draw; or several, each where it stands.
-    path
-        File to write; the suffix names the format.
-    leaves
-        Their leaves, on segments counted through all trees; none are drawn if None.
-    camera
-        From where; from the south, east to the right, if None.
-    title
-        Above the picture; the tree's name and counts if None.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    """
-    camera = camera or Camera()
-    trees = _listed(tree)
-    start, end = _nodes(trees)
-    frame = frame_around(np.vstack([start, end]), camera)
-    figure = new_figure(max(_INCHES_HIGH * frame.aspect, 3.6), _INCHES_HIGH + 0.4)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 0.93))
-    _draw(axes, trees, rest_poses(start, end), camera, frame, leaves)
-    draw_scale(axes, frame)
-    figure.suptitle(title if title is not None else _caption(trees), y=0.985)
-    return save_figure(figure, path)
-
-
 def picture_in_wind(
     tree: Tree | Sequence[Tree],
     poses: ArrayLike,
@@ -100,8 +58,14 @@ def picture_in_wind(
         Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
     wind
         Where it blows to in [m/s], (3,).
-    path, leaves, camera, title
-        As in `picture_at_rest`.
+    path
+        File to write; the suffix names the format.
+    leaves
+        Their leaves, on segments counted through all trees; none are drawn if None.
+    camera
+        From where; from the south, east to the right, if None.
+    title
+        Above the picture; the trees' name and counts if None.
 
     Returns
     -------

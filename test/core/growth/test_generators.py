@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.branch.closed_forms import greenhill_length
+from tree_sway_ros.core.branch.greenhill import greenhill_length
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.study.example_trees import branch_order
 
 Generator = Callable[[np.random.Generator], Tree]
 GENERATORS: list[Generator] = [grow_benjamina, grow_goldcrest, grow_broadleaf, grow_conifer]
@@ -99,8 +100,8 @@ def test_twigs_of_a_branch_are_alike_in_groups(generate: Generator, seed: int) -
 def test_slenderness_is_that_of_trees(generate: Generator, seed: int) -> None:
     tree = grown(generate, seed)
     slenderness = tree.branch_length / tree.base_diameter[tree.branch_first[:-1]]
-    for order in range(1, int(tree.branch_order.max()) + 1):
-        assert 24.0 <= np.median(slenderness[tree.branch_order == order]) <= 90.0
+    for order in range(1, int(branch_order(tree).max()) + 1):
+        assert 24.0 <= np.median(slenderness[branch_order(tree) == order]) <= 90.0
 
 
 @every_habit

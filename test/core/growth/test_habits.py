@@ -9,6 +9,7 @@ from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.study.example_trees import branch_order
 
 SEEDS = range(3)
 
@@ -28,7 +29,7 @@ def width_by_height(tree: Tree, n_bands: int = 8) -> np.ndarray:
 
 
 def tips(tree: Tree, order: int) -> np.ndarray:
-    return tree.branch_first[1:][tree.branch_order == order] - 1
+    return tree.branch_first[1:][branch_order(tree) == order] - 1
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -37,9 +38,9 @@ def test_benjamina_has_several_stems_from_one_short_stock_and_weeps(seed: int) -
     rise = steepness(tree)
     assert tree.height == pytest.approx(1.3)
     assert tree.branch_length[0] < 0.1 * tree.height
-    assert np.count_nonzero(tree.branch_order == 1) == 5
-    assert np.all(rise[tree.branch_first[:-1][tree.branch_order == 1]] > 0.9)
-    branches = tree.branch_order == 2
+    assert np.count_nonzero(branch_order(tree) == 1) == 5
+    assert np.all(rise[tree.branch_first[:-1][branch_order(tree) == 1]] > 0.9)
+    branches = branch_order(tree) == 2
     first, last = tree.branch_first[:-1][branches], tips(tree, 2)
     assert np.mean(rise[first] > 0.0) > 0.9
     assert np.mean(rise[last] < -0.5) > 0.9
@@ -55,7 +56,7 @@ def test_goldcrest_is_a_narrow_cone_of_steep_branches(seed: int) -> None:
     assert 0.2 < 2.0 * width.max() / tree.height < 0.42
     assert np.polyfit(np.arange(6), width[2:], 1)[0] < -0.01
     assert width[-1] < 0.35 * width.max()
-    branch = tree.branch_order == 1
+    branch = branch_order(tree) == 1
     assert np.count_nonzero(branch) > 60
     assert np.median(steepness(tree)[tree.branch_first[:-1][branch]]) > 0.7
     assert np.median(steepness(tree)[tips(tree, 1)]) > 0.9
@@ -65,7 +66,7 @@ def test_goldcrest_is_a_narrow_cone_of_steep_branches(seed: int) -> None:
 def test_broadleaf_has_a_bare_trunk_and_a_rounded_crown(seed: int) -> None:
     tree = builtin_tree("broadleaf", seed)
     assert tree.height == pytest.approx(8.0)
-    crown = tree.end[tree.branch_order[tree.branch_of_segment] > 1]
+    crown = tree.end[branch_order(tree)[tree.branch_of_segment] > 1]
     assert np.percentile(crown[:, 2], 2) > 0.12 * tree.height
     width = width_by_height(tree)
     widest = int(np.argmax(width))
@@ -84,7 +85,7 @@ def grown(species: str, height: float = 14.0, seed: int = 0) -> Tree:
 
 def rise_of(tree: Tree, order: int, *, at_tip: bool) -> np.ndarray:
     """Sine of the elevation of each branch of an order, of its first or last segment."""
-    first = tree.branch_first[:-1][tree.branch_order == order]
+    first = tree.branch_first[:-1][branch_order(tree) == order]
     return steepness(tree)[tips(tree, order) if at_tip else first]
 
 
@@ -93,7 +94,7 @@ def twigs_of(tree: Tree) -> np.ndarray:
 
 
 def lowest_limb(tree: Tree) -> float:
-    limbs = tree.branch_first[:-1][tree.branch_order == 1]
+    limbs = tree.branch_first[:-1][branch_order(tree) == 1]
     return float(tree.start[limbs][:, 2].min()) / tree.height
 
 
@@ -137,7 +138,7 @@ def test_each_species_keeps_its_habit() -> None:
 def bend(tree: Tree) -> float:
     """Mean angle between successive segments of the limbs in [rad]."""
     angles = []
-    for branch in np.flatnonzero(tree.branch_order == 1):
+    for branch in np.flatnonzero(branch_order(tree) == 1):
         way = (tree.end - tree.start)[tree.segments_of(int(branch))]
         way /= np.linalg.norm(way, axis=1)[:, None]
         angles.append(np.arccos(np.clip((way[1:] * way[:-1]).sum(axis=1), -1.0, 1.0)).mean())
@@ -147,7 +148,7 @@ def bend(tree: Tree) -> float:
 @pytest.mark.parametrize("species", ["ash", "sycamore"])
 def test_limbs_stand_in_pairs(species: str) -> None:
     tree = grown(species)
-    limbs = tree.branch_first[:-1][tree.branch_order == 1]
+    limbs = tree.branch_first[:-1][branch_order(tree) == 1]
     _, together = np.unique(tree.segment_parent[limbs], return_counts=True)
     assert np.all(together % 2 == 0)
 

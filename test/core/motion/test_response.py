@@ -11,7 +11,7 @@ import pytest
 
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.numpy_passes import mean_wind_moments
-from tree_sway_ros.core.motion.response import tip_motion, tip_response
+from tree_sway_ros.core.motion.response import key_response, tip_motion
 from tree_sway_ros.core.reference.measure import tips_of_poses
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
@@ -41,7 +41,8 @@ def at_rest(bank):
 
 
 def answer(bank, frequencies):
-    return tip_response(bank.oscillators, count(bank), np.asarray(frequencies, dtype=float))
+    turned = key_response(bank.oscillators, count(bank), np.asarray(frequencies, dtype=float))
+    return tip_motion(bank.oscillators.branches, turned)
 
 
 def load_of(speed):

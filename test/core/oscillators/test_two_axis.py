@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from tree_sway_ros.core.oscillators import two_axis
 from tree_sway_ros.core.oscillators.propagator import propagator
+from tree_sway_ros.study.methods.branch_bank import guards, step_bank
 
 angle = st.floats(-1.6, 1.6)
 rate = st.floats(-5, 5)
@@ -120,14 +121,14 @@ def bank(n, seed, dt=1 / 60):
         state,
         rng.normal(0, 0.7, (3, n)) * stiffness,
         rows,
-        two_axis.guards(inertia, stiffness, dt),
+        guards(inertia, stiffness, dt),
     )
 
 
 def test_bank_agrees_with_its_twin():
     state, force, rows, guard = bank(200, 1)
     expected = [twin(state[:, i], force[:, i], rows[i], guard[i]) for i in range(200)]
-    held = two_axis.step_bank(state, force, rows, guard)
+    held = step_bank(state, force, rows, guard)
     assert held == np.count_nonzero(np.linalg.norm(force, axis=0) > guard[:, 1]) == 0
     assert state.T == pytest.approx(np.array(expected), abs=1e-8)
 
@@ -135,8 +136,8 @@ def test_bank_agrees_with_its_twin():
 def test_single_precision_keeps_its_own_kind_and_its_digits():
     state, force, rows, guard = bank(200, 2)
     single = [a.astype(np.float32) for a in (state, force, rows, guard)]
-    two_axis.step_bank(state, force, rows, guard)
-    two_axis.step_bank(*single)
+    step_bank(state, force, rows, guard)
+    step_bank(*single)
     assert single[0].dtype == np.float32
     assert np.max(np.abs(single[0] - state)) < 2e-5
 
@@ -144,9 +145,9 @@ def test_single_precision_keeps_its_own_kind_and_its_digits():
 def test_mirrored_and_turned_loads_give_mirrored_and_turned_motion():
     state, force, rows, guard = bank(50, 3)
     mirrored, turned = state * [[-1], [1], [-1], [1]], state[[1, 0, 3, 2]] * [[-1], [1], [-1], [1]]
-    two_axis.step_bank(mirrored, force * [[1], [-1], [1]], rows, guard)
-    two_axis.step_bank(turned, force[[0, 2, 1]] * [[1], [-1], [1]], rows, guard)
-    two_axis.step_bank(state, force, rows, guard)
+    step_bank(mirrored, force * [[1], [-1], [1]], rows, guard)
+    step_bank(turned, force[[0, 2, 1]] * [[1], [-1], [1]], rows, guard)
+    step_bank(state, force, rows, guard)
     assert mirrored == pytest.approx(state * [[-1], [1], [-1], [1]], abs=1e-13)
     assert turned == pytest.approx(state[[1, 0, 3, 2]] * [[-1], [1], [-1], [1]], abs=1e-12)
 
@@ -166,24 +167,21 @@ def test_loads_beyond_the_limit_are_held_and_counted(scale):
 def test_a_load_that_is_no_number_does_not_reach_the_state(bad):
     state, force, rows, guard = bank(3, 4)
     force[1, 1] = bad
-    assert two_axis.step_bank(state, force, rows, guard) == 1
+    assert step_bank(state, force, rows, guard) == 1
     assert np.isfinite(state).all()
 
 
 def test_no_load_keeps_rest():
     _, force, rows, guard = bank(5, 5)
     rest = np.zeros((4, 5))
-    two_axis.step_bank(rest, force * 0, rows, guard)
+    step_bank(rest, force * 0, rows, guard)
     assert not rest.any()
 
 
 def test_guards_follow_the_step():
-    """
-    The gyroscopic term goes at w h = .5; the load followed falls as 3 / (w h)^2, within .8 and 10.
-
-    """
+    """The gyroscopic term ends at w h = 0.5; the load followed is 3 / (w h)^2, from 0.8 to 10."""
     stiffness = np.array([0.04, 0.24, 0.26, 1.0, 100.0, 0.0])
-    guard = two_axis.guards(np.ones(6), stiffness, 1.0)
+    guard = guards(np.ones(6), stiffness, 1.0)
     assert guard[:, 0].tolist() == [1.0, 1.0, 0.0, 0.0, 0.0, 1.0]
     assert guard[:5, 1] / stiffness[:5] == pytest.approx([10.0, 10.0, 10.0, 3.0, 0.8])
     assert guard[:5, 2] == pytest.approx(1.5 * guard[:5, 1])

@@ -12,7 +12,7 @@ from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
 from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
 from tree_sway_ros.core.reference.articulated_step import respond, room_of
-from tree_sway_ros.core.reference.measure import frame_means, record_tips, tip_error, tips_of_poses
+from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import TreeError
@@ -24,6 +24,7 @@ from tree_sway_ros.study.example_trees import (
     tapered_stem,
 )
 from tree_sway_ros.study.frame.frame import frame_model
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 
 pytestmark = pytest.mark.compiled
 
@@ -45,11 +46,15 @@ def wind_of(t):
     return 12.0 * np.sin(3.0 * t) ** 2 * np.array([np.cos(t), np.sin(t), 0.2])
 
 
+def tips_of(model):
+    return model.node_positions[model.tree.branch_first[1:] - 1]
+
+
 def sway(model, dt, duration=1.0):
     model.reset()
     for step in range(round(duration / dt)):
         model.step(wind_of((step + 0.5) * dt), dt)
-    return model.tip_positions
+    return tips_of(model)
 
 
 @pytest.mark.parametrize("gravity", [0.0, 9.81])
@@ -97,7 +102,7 @@ def test_free_decay_has_the_frequency_and_damping_of_the_linear_mode():
     sway_of_tip = []
     for _ in range(1200):
         model.step(np.zeros(3), dt)
-        sway_of_tip.append(model.tip_positions[0, 0] - rest[0, 0])
+        sway_of_tip.append(tips_of(model)[0, 0] - rest[0, 0])
     sway_of_tip = np.array(sway_of_tip)
     crossing = np.flatnonzero(np.diff(np.sign(sway_of_tip)))
     part = sway_of_tip[crossing] / (sway_of_tip[crossing] - sway_of_tip[crossing + 1])
@@ -169,7 +174,7 @@ def test_long_steps_in_storms_stay_finite():
         for _ in range(120):
             model.step(speed * rng.choice([-1.0, 1.0], 3), DT)
         assert np.isfinite(model.state.turn).all()
-        assert np.linalg.norm(model.tip_positions, axis=1).max() < 15.0
+        assert np.linalg.norm(tips_of(model), axis=1).max() < 15.0
 
 
 def test_damped_modes_do_not_shake_a_straight_stem_that_bends_far():
@@ -204,7 +209,7 @@ def test_poses_join_and_point_along_the_chords():
     assert np.linalg.norm(poses[:, 3:], axis=1) == pytest.approx(1.0)
     parent = tree.segment_parent[1:]
     assert poses[1:, :3] == pytest.approx(model.node_positions[parent])
-    shrunk = np.linalg.norm(tips_of_poses(tree, poses) - model.tip_positions, axis=1)
+    shrunk = np.linalg.norm(tips_of_poses(tree, poses) - tips_of(model), axis=1)
     assert shrunk.max() < 2e-3, "a bent segment's chord is hardly shorter than the segment"
 
 

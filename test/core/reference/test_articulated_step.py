@@ -90,7 +90,7 @@ def test_wind_given_to_each_segment_and_by_factors_is_the_same():
         by_factor.step([9.0, 3.0, 0.0], 1 / 60)
         by_rows.step(factor[:, None] * [9.0, 3.0, 0.0], 1 / 60)
     assert by_factor.place() == pytest.approx(by_rows.place(), abs=1e-14)
-    assert np.abs(by_factor.tip_positions - tree.end[tree.branch_first[1:] - 1]).max() > 1e-3
+    assert np.abs((by_factor.node_positions - tree.end)[tree.branch_first[1:] - 1]).max() > 1e-3
 
 
 def test_reset_is_rest():

@@ -7,8 +7,9 @@ import pytest
 from scipy.integrate import trapezoid
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.reference.measure import frame_means, record_tips, tip_error, tips_of_poses
+from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
 from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 
 
 class Turning:

@@ -12,10 +12,10 @@ import pytest
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.resegment import resegment
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
+from tree_sway_ros.study.resegment import resegment
 
 DT = 1.0 / 60.0
 WOOD = Species("example", "example", 8e9, 900.0, damping_bare=0.1)

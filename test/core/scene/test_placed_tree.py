@@ -14,6 +14,7 @@ from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway_ros.study.example_trees import branch_order
 
 
 def test_a_tree_is_turned_about_its_root_and_moved(fork):
@@ -51,7 +52,7 @@ def test_joined_trees_keep_their_order_and_names(fork, stem):
     assert both.segment_parent[n + 1] == n
     assert both.branch_parent[b] == -1
     assert (both.branch_of_segment[n:] == b).all()
-    assert both.branch_order[b] == 0
+    assert branch_order(both)[b] == 0
     assert both.subtree_end.tolist() == [*trees[0].subtree_end, b + 1]
     for field in ("start", "end", "base_diameter", "tip_diameter", "length"):
         parts = np.concatenate([getattr(tree, field) for tree in trees])

@@ -9,13 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.reference.measure import record_tips, tip_error
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.study.bench.bench_tree import bench_tree
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 from tree_sway_ros.study.validation.crooked_trees import crooked_tree
 from tree_sway_ros.study.validation.judge import WOOD
 from tree_sway_ros.study.validation.winds import turbulent

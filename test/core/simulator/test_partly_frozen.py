@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.reference.measure import record_tips, tip_error
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
 from tree_sway_ros.core.simulator.settings import Settings
@@ -15,6 +14,7 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.study.example_trees import forked_tree
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 
 OAK = species_named("oak")
 DT = 1.0 / 60.0

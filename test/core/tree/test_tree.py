@@ -11,12 +11,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.study.example_trees import branch_order
 
 
 def test_figures_of_a_fork(fork):
     tree = fork()
     assert (tree.n_segments, tree.n_branches) == (11, 4)
-    assert tree.branch_order.tolist() == [0, 1, 2, 1]
+    assert branch_order(tree).tolist() == [0, 1, 2, 1]
     assert tree.branch_parent.tolist() == [-1, 0, 1, 0]
     assert tree.subtree_end.tolist() == [4, 3, 3, 4]
     assert [tree.segments_of(b).stop for b in range(4)] == [4, 7, 9, 11]

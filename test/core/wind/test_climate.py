@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
+from tree_sway_ros.study.record_climate import climate_of_samples
 
 
 def test_a_described_wind_has_the_moments_of_its_samples():
@@ -16,7 +17,7 @@ def test_a_described_wind_has_the_moments_of_its_samples():
     wind = np.zeros((n, 3))
     wind[:, 0] = mean + sigma * rng.standard_normal(n)
     wind[:, 1] = 0.8 * sigma * rng.standard_normal(n)
-    taken = WindClimate.of_samples(wind, 10.0)
+    taken = climate_of_samples(wind, 10.0)
     told = WindClimate.steady(mean, sigma / mean)
     assert taken.mean[0] == pytest.approx(told.mean[0], rel=0.01)
     assert taken.covariance[0, 0] == pytest.approx(told.covariance[0, 0], rel=0.03)
@@ -40,7 +41,7 @@ def test_the_integral_time_of_a_filtered_noise_is_its_time_constant():
     for i in range(1, n):
         speed[i] = keep * speed[i - 1] + noise[i]
     wind = np.stack([10.0 + 0.1 * speed, np.zeros(n), np.zeros(n)], axis=1)
-    assert WindClimate.of_samples(wind, rate).integral_time == pytest.approx(tau, rel=0.2)
+    assert climate_of_samples(wind, rate).integral_time == pytest.approx(tau, rel=0.2)
 
 
 def test_a_turned_wind_turns_its_covariance():
@@ -71,10 +72,10 @@ def test_a_wind_that_beats_is_told_from_turbulence():
     t = np.arange(0.0, 20.0, 1.0 / 60.0)
     still = np.zeros_like(t)
     wind = np.stack([5.0 + np.sin(2.0 * np.pi * 0.8 * t), still, still], axis=1)
-    climate = WindClimate.of_samples(wind, 60.0)
+    climate = climate_of_samples(wind, 60.0)
     assert climate.beat == pytest.approx(0.8, abs=0.03)
     assert climate.beat_share > 0.8
     f = np.geomspace(0.01, 30.0, 4000)
     assert f[np.argmax(climate.spectrum(f))] == pytest.approx(0.8, abs=0.03)
     gust = np.stack([5.0 + np.exp(-((t - 10.0) ** 2)), still, still], axis=1)
-    assert WindClimate.of_samples(gust, 60.0).beat_share == 0.0
+    assert climate_of_samples(gust, 60.0).beat_share == 0.0

@@ -12,10 +12,10 @@ import pytest
 
 from tree_sway_ros.core.motion.drag import AIR_DENSITY
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.reference.measure import record_tips, tip_error
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.study.example_trees import forked_tree
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05
 SPECIES = Species("forked", "no twist", 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)

@@ -12,10 +12,7 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS, SOLVER
 from tree_sway_ros.ros.parameters.parameter import (
     Parameter,
-    check_parameter_file,
     checked_values,
-    defaults,
-    markdown_table,
 )
 
 ROOT = Path(__file__).parents[3]
@@ -31,7 +28,7 @@ def test_a_default_is_good(parameter):
 
 @pytest.mark.parametrize("table", NODE_PARAMETERS.values(), ids=list(NODE_PARAMETERS))
 def test_names_are_unique(table):
-    assert len(defaults(table)) == len(table)
+    assert len({each.name for each in table}) == len(table)
 
 
 @given(st.floats(0.0, 40.0))
@@ -105,37 +102,17 @@ def test_every_node_has_a_file_in_config():
 
 @pytest.mark.parametrize("path", PARAMETER_FILES, ids=lambda p: p.stem)
 def test_the_files_in_config_are_good_and_repeat_no_default(path):
-    content = yaml.safe_load(path.read_text())
-    check_parameter_file(content, NODE_PARAMETERS, where=path.name)
-    for node, body in content.items():
-        table = defaults(NODE_PARAMETERS[node.rsplit("/", 1)[-1]])
-        assert all(table[name] != value for name, value in body["ros__parameters"].items())
+    for node, body in yaml.safe_load(path.read_text()).items():
+        assert set(body) == {"ros__parameters"}
+        table = NODE_PARAMETERS[node.rsplit("/", 1)[-1]]
+        values = checked_values(table, body["ros__parameters"], where=path.name)
+        defaults = {each.name: each.default for each in table}
+        assert all(defaults[name] != value for name, value in values.items())
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("solver: {ros__parameters: {rats: 3}}", "f.yaml: solver: unknown parameter 'rats'"),
-        ("solver: {ros__parameters: {rate: 0}}", "0 is out of range"),
-        ("solvr: {ros__parameters: {rate: 3}}", "did you mean 'solver'"),
-        ("solver: {ros_parameters: {rate: 3}}", "two underscores"),
-        ("/**: {ros__parameters: {rats: 3}}", r"/\*\*: unknown parameter 'rats'"),
-        ("[1, 2]", "not a parameter file"),
-    ],
-)
-def test_a_bad_file_is_named(text, message):
+def test_a_bad_value_of_a_file_is_named():
+    message = r"f\.yaml: unknown parameter 'rats'; did you mean 'rate'"
     with pytest.raises(ParameterError, match=message):
-        check_parameter_file(yaml.safe_load(text), NODE_PARAMETERS, where="f.yaml")
-
-
-def test_a_file_for_every_namespace_is_good():
-    content = {"/**/solver": {"ros__parameters": {"rate": 3}}, "/**": {"ros__parameters": None}}
-    check_parameter_file(content, NODE_PARAMETERS)
-
-
-def test_the_table_for_people_has_every_parameter():
-    text = markdown_table(SOLVER)
-    rows = text.splitlines()
-    assert len(rows) == len(SOLVER) + 2
-    assert len({row.replace("\\|", "").count("|") for row in rows}) == 1
-    assert "| `rate` | `60.0` | Hz | 1 .. 1000 |" in text
+        checked_values(SOLVER, {"rats": 3}, where="f.yaml")
+    with pytest.raises(ParameterError, match="0 is out of range"):
+        checked_values(SOLVER, {"rate": 0})

@@ -7,7 +7,7 @@ pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402
 
-from tree_sway_ros.core.wind.gate import SECOND, WindGate  # noqa: E402
+from tree_sway_ros.core.wind.gate import SECOND, GateCounts, WindGate  # noqa: E402
 from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
 from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status, status_array  # noqa: E402
@@ -68,6 +68,20 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.status(TIMEOUT, gate).level == OK
 
 
+def test_a_slow_sensor_is_late_by_its_own_periods(clock):
+    report, gate, timeout = WindReport(), WindGate(), 0.5
+    for _ in range(5):
+        for burst in (0.001, 0.001, 0.998):  # as a logger that sends three at once
+            clock.now += burst
+            report.add(True)
+    clock.now += 0.99
+    assert report.status(timeout, gate).level == OK
+    clock.now += 2.1
+    assert report.status(timeout, gate).level == WARN
+    clock.now += 3.0 * STALE_AFTER
+    assert report.status(timeout, gate).level == STALE
+
+
 def test_refused_samples_are_no_wind(clock):
     report, gate = WindReport(), WindGate()
     gate.offer(SECOND, (float("nan"), 0.0, 0.0))
@@ -114,7 +128,9 @@ def test_a_stream_that_stands_is_a_warning_unless_simulated_time_does():
 def test_every_state_of_the_wind_has_a_level(state, level):
     from tree_sway_ros.ros.reports.sway_report import _wind
 
-    assert _wind(state).level == level
+    status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))
+    assert status.level == level
+    assert (status.values["refused"], status.values["spike"]) == (3, 2)
 
 
 def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():

@@ -65,6 +65,27 @@ def test_what_is_never_answered_is_waited_for_once_until_something_is_heard():
     assert answers.missing == 2
 
 
+def test_the_last_is_sent_again_until_its_own_answer_comes():
+    answers, sent = Answers(100, patience=30.0), []
+    answers.heard(1_000)
+    answers.heard(1_010)
+    answers.sent(1_050)
+
+    def send(time):
+        sent.append(time)
+        if len(sent) == 3:
+            threading.Thread(target=answers.heard, args=[1_045]).start()
+
+    assert answers.wait()  # within the slack
+    answers.end(send)
+    assert sent == [1_050] * 3
+    Answers(0, patience=0.0).end(send)
+    deaf = Answers(0, patience=0.01)
+    deaf.sent(5_000)
+    deaf.end(sent.append)
+    assert set(sent[3:]) == {5_000}
+
+
 MS = 1_000_000
 
 

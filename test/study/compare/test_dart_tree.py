@@ -7,10 +7,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.reference.measure import tip_error
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.study.compare.with_mujoco import mujoco_tips, without_twist
+from tree_sway_ros.study.tip_error import tip_error
 
 
 def test_two_engines_agree_at_short_steps():

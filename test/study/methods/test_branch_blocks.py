@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.oscillators.propagator import propagator
-from tree_sway_ros.core.oscillators.two_axis import guards, step_bank
+from tree_sway_ros.study.methods.branch_bank import guards, step_bank
 from tree_sway_ros.study.methods.branch_blocks import LANES, BranchBlocks
 
 

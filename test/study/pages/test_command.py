@@ -11,10 +11,12 @@ import pytest
 from tree_sway_ros.core.tree.species import species_keys
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.ros.process.topics import TOPICS
 from tree_sway_ros.study.pages.command import (
     DRAWINGS,
     PAGES,
     markdown_tables,
+    parameters_table,
     species_table,
     with_tables,
 )
@@ -40,6 +42,18 @@ def test_every_species_has_a_row() -> None:
     assert "| 9.4 | 1010 | 0.04, 0.1 | 2.6575 U^-0.846 |" in next(
         row for row in rows if "`oak`" in row
     )
+
+
+def test_the_table_of_a_node_has_every_parameter() -> None:
+    rows = parameters_table(NODE_PARAMETERS["solver"]).splitlines()
+    assert len(rows) == len(NODE_PARAMETERS["solver"]) + 2
+    assert len({row.replace("\\|", "").count("|") for row in rows}) == 1
+    assert any("| `rate` | `60.0` | Hz | 1 .. 1000 |" in row for row in rows)
+
+
+def test_the_table_of_topics_has_every_one() -> None:
+    text = markdown_tables()["topics"]
+    assert all(f"`{topic.name}`" in text for topic in TOPICS)
 
 
 def test_a_table_is_replaced_and_the_rest_kept() -> None:

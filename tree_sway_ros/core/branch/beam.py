@@ -258,11 +258,6 @@ class BranchBeam:
         scale = chord_rotation if chord_rotation > 0.2 * abs(arc_rotation) else arc_rotation
         return SlopeShape(self, curvature / scale)
 
-    def unit_shape(self, curvature: Floats) -> SlopeShape:
-        """Shape of a given curvature, scaled so that its largest slope is 1."""
-        slope, nodes, _ = self.from_base(curvature)
-        return SlopeShape(self, curvature / max(np.abs(slope).max(), np.abs(nodes).max()))
-
 
 class SlopeShape:
     """

@@ -157,11 +157,6 @@ class AdaptiveSimulator(OneTree, KeepsState):
         """Simulator whose poses are seen, or fade."""
         return self._shown
 
-    @property
-    def is_changing(self) -> bool:
-        """Whether another model is swaying along to take over."""
-        return self._next is not None
-
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step, as `SwaySimulator.step`; look at the choice again when it is time."""
         self._feel(wind_mean, dt)

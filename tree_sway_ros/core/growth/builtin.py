@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from difflib import get_close_matches
 from types import MappingProxyType
 
 import numpy as np
@@ -14,7 +13,7 @@ from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.errors import ParameterError, nearest
 
 _GENERATORS: MappingProxyType[str, Callable[[np.random.Generator], Tree]] = MappingProxyType(
     {"benjamina": grow_benjamina, "goldcrest": grow_goldcrest, "broadleaf": grow_broadleaf}
@@ -42,13 +41,9 @@ def builtin_tree(name: str, seed: int = 0) -> Tree:
 
     """
     if name not in _GENERATORS:
-        close = get_close_matches(name.lower(), BUILTIN_TREES, n=1)
-        guess = f"did you mean '{close[0]}'? " if close else ""
-        raise ParameterError(
-            f"no built-in tree is called '{name}'",
-            where="tree",
-            cure=f"{guess}use one of: {', '.join(BUILTIN_TREES)}",
-        )
+        guess = nearest(name.lower(), BUILTIN_TREES)
+        cure = f"{guess} use one of: {', '.join(BUILTIN_TREES)}".lstrip()
+        raise ParameterError(f"no built-in tree is called '{name}'", where="tree", cure=cure)
     if seed < 0:
         raise ParameterError(f"seed {seed} is negative", where="seed", cure="give 0 or more")
     return _GENERATORS[name](np.random.default_rng(seed))

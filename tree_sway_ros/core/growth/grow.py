@@ -18,7 +18,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from tree_sway_ros.core.branch.closed_forms import greenhill_length
+from tree_sway_ros.core.branch.greenhill import greenhill_length
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.conifer import grow_conifer

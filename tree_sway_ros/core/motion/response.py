@@ -61,15 +61,6 @@ def key_response(oscillators: Responding, n_coordinates: int, frequencies: Float
     return oscillators.response(moments, 2.0 * np.pi * np.asarray(frequencies))
 
 
-def tip_response(oscillators: Responding, n_coordinates: int, frequencies: Floats) -> Complexes:
-    """
-    Displacement of every tip under that load, (b, 3, 2, f), in [m^3/N]; arguments as of
-    `key_response`.
-
-    """
-    return tip_motion(oscillators.branches, key_response(oscillators, n_coordinates, frequencies))
-
-
 def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
     """
     Join small rotations from the root to motions of the tips.

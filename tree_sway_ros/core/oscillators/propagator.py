@@ -87,31 +87,6 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     return out
 
 
-def single_precision(coefficients: Floats) -> NDArray[np.float32]:
-    """
-    Round coefficients to float32 so that free motion cannot grow.
-
-    c0, c1, c4, c5 are rounded towards zero: the determinant c0 c5 - c1 c4, a sum of two positive
-    terms for a lightly damped oscillator, then never passes the exact one, which is at most 1.
-
-    Parameters
-    ----------
-    coefficients
-        Rows of `propagator`, (n, 8).
-
-    Returns
-    -------
-    NDArray[np.float32]
-        The same in single precision, (n, 8).
-
-    """
-    out = coefficients.astype(np.float32)
-    over = np.abs(out.astype(float)) > np.abs(coefficients)
-    over[..., [2, 3, 6, 7]] = False
-    out[over] = np.nextafter(out[over], np.float32(0.0))
-    return out
-
-
 @kernel
 def fill_propagator(
     inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats

@@ -179,11 +179,6 @@ class ArticulatedTree:
         self._place_bodies()
         return self._nodes[2, self.subdivisions - 1 :: self.subdivisions].copy()
 
-    @property
-    def tip_positions(self) -> Floats:
-        """Tip of each branch in [m], (b, 3)."""
-        return self.node_positions[self.tree.branch_first[1:] - 1]
-
     def place(self, out: Floats | None = None) -> Floats:
         """Pose of each segment at its start node, ``x y z qx qy qz qw``, (n, 7)."""
         shape = (self.tree.n_segments, 7)

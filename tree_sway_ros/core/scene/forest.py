@@ -225,11 +225,6 @@ class Forest:
         return poses
 
     @property
-    def tip_displacements(self) -> Floats:
-        """Displacement of the highest tip of each tree from rest in [m], (t, 3)."""
-        return np.stack([sim.tip_displacement for sim in self.simulators])
-
-    @property
     def tip_displacement(self) -> Floats:
         """Displacement of the highest tip of all from rest in [m], (3,)."""
         highest = max(self.simulators, key=lambda sim: float(sim.tree.end[:, 2].max()))
@@ -254,5 +249,4 @@ def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSi
             tolerance=tolerance,
         )
     except TreeSwayError as error:
-        where = f"{tree.name}: {error.where}" if error.where else tree.name
-        raise type(error)(error.what, where=where, cure=error.cure) from error
+        raise error.inside(tree.name) from error

@@ -543,8 +543,7 @@ def _model_of(name: str, kind: StandKind, settings: Settings) -> SwaySimulator:
         species = kind.species if kind.species is not None else species_named(kind.tree.species)
         return SwaySimulator(kind.tree, species, replace(settings, model="wind_basis"))
     except TreeSwayError as error:
-        where = f"{name}: {error.where}" if error.where else name
-        raise type(error)(error.what, where=where, cure=error.cure) from error
+        raise error.inside(name) from error
 
 
 def _memory_of(simulator: Any) -> tuple[Floats, ...]:

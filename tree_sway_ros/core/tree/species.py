@@ -16,13 +16,12 @@ in `leaf_traits`.
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import dataclass, replace
 from functools import partial
 
 from tree_sway_ros.core.tree.leaf_traits import BROAD_LEAVES, NEEDLES, LeafTraits
-from tree_sway_ros.errors import SpeciesError
+from tree_sway_ros.errors import SpeciesError, nearest
 
 
 @dataclass(frozen=True)
@@ -235,10 +234,8 @@ def species_named(key: str) -> Species:
     try:
         return _TABLE[key]
     except KeyError:
-        known = ", ".join(sorted(_TABLE))
-        near = difflib.get_close_matches(key, _TABLE, n=1)
-        guess = f"did you mean '{near[0]}'? " if near else ""
-        raise SpeciesError(f"unknown species '{key}'", cure=f"{guess}use one of: {known}") from None
+        cure = f"{nearest(key, _TABLE)} use one of: {', '.join(sorted(_TABLE))}".lstrip()
+        raise SpeciesError(f"unknown species '{key}'", cure=cure) from None
 
 
 def species_keys() -> tuple[str, ...]:

@@ -126,14 +126,6 @@ class Tree:
         return _read_only(np.add.reduceat(self.length, self.branch_first[:-1]))
 
     @cached_property
-    def branch_order(self) -> Ints:
-        """Branching order: 0 for the stem, one more than its parent's for the others, (b,)."""
-        order = np.zeros(self.n_branches, dtype=np.int64)
-        for branch in np.flatnonzero(self.branch_parent >= 0):
-            order[branch] = order[self.branch_parent[branch]] + 1
-        return _read_only(order)
-
-    @cached_property
     def volume(self) -> Floats:
         """Volume of each segment, a conical frustum, in [m^3], (n,)."""
         d0, d1 = self.base_diameter, self.tip_diameter

@@ -48,31 +48,6 @@ class WindClimate:
     beat_share: float = 0.0
 
     @staticmethod
-    def of_samples(velocity: Floats, rate: float) -> WindClimate:
-        """
-        Take the statistics of a record.
-
-        Parameters
-        ----------
-        velocity
-            Wind in [m/s], (n, 2) or (n, 3).
-        rate
-            Samples per second in [Hz].
-
-        """
-        speed = np.linalg.norm(velocity, axis=1)
-        load = speed[:, None] * velocity[:, :2]
-        around = load - load.mean(axis=0)
-        largest = np.argmax(around.std(axis=0))
-        return WindClimate(
-            load.mean(axis=0),
-            around.T @ around / len(load),
-            float(speed.mean()),
-            _integral_time(around[:, largest], rate),
-            *_beat(around[:, largest], rate),
-        )
-
-    @staticmethod
     def steady(
         mean_speed: float, intensity: float, bearing: float = 0.0, integral_time: float = 5.0
     ) -> WindClimate:
@@ -159,34 +134,5 @@ class ClimateTracker:
         return WindClimate(mean, square - np.outer(mean, mean), self._speed)
 
 
-def _integral_time(signal: Floats, rate: float) -> float:
-    """Integral of the autocorrelation up to its first zero in [s], at least one sample."""
-    n = len(signal)
-    spectrum = np.abs(np.fft.rfft(signal, 2 * n)) ** 2
-    correlation = np.fft.irfft(spectrum)[: n // 2]
-    if not correlation[0] > 0.0:
-        return 1.0 / rate
-    correlation /= correlation[0]
-    below = np.flatnonzero(correlation <= 0.0)
-    end = int(below[0]) if len(below) else len(correlation)
-    return max(float(correlation[:end].sum()) / rate, 1.0 / rate)
-
-
 _BEAT_WIDTH = 0.04
 """Width of a beat over its frequency in [-]."""
-
-_FEWEST_BEATS = 4
-"""Swings of a record below which its slowest gusts would pass for a beat."""
-
-
-def _beat(signal: Floats, rate: float) -> tuple[float, float]:
-    """Frequency that a signal swings at most in [Hz], and the share of its variance there [-]."""
-    n = len(signal)
-    power = np.abs(np.fft.rfft(signal * np.hanning(n))) ** 2
-    total = float(power.sum())
-    if len(power) <= _FEWEST_BEATS + 2 or not total > 0.0:
-        return 1.0, 0.0
-    peak = int(np.argmax(power))
-    if peak < _FEWEST_BEATS:
-        return 1.0, 0.0
-    return peak * rate / n, float(power[peak - 2 : peak + 3].sum()) / total

@@ -70,6 +70,7 @@ class WindIntake:
         arrival: int | None = None,
         *,
         lead: int = 0,
+        rotation: Floats | None = None,
     ) -> GoodWind | None:
         """
         Take a sample.
@@ -80,6 +81,8 @@ class WindIntake:
             As for `WindGate.offer`, in [ns].
         components
             Along the source's axes, in its unit and its sign, (3,).
+        rotation
+            From the source's frame into that of the trees, (3, 3); None where they are one.
 
         Returns
         -------
@@ -89,6 +92,8 @@ class WindIntake:
         """
         reads = self.convention
         velocity = np.array(components) if reads is None else reads.velocity(*components)
+        if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else it is refused
+            velocity = rotation @ velocity
         verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)
         if not verdict.accepted:
             return None

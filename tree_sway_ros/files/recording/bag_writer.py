@@ -8,7 +8,6 @@ A rosbag2 bag that messages are written to as the bytes that they came as, throu
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 
@@ -118,10 +117,5 @@ class BagWriter:
         self._writer.open()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._writer.close()

@@ -112,7 +112,7 @@ def read_stand_table(
                 StandTree(names[row], called, *at, scale, float(yaw[row]), fidelity[row])
             )
         except TreeSwayError as error:
-            raise type(error)(error.what, where=where, cure=error.cure) from None
+            raise error.at(where) from None
     told = {"name": path.stem, "source": str(path)} | told
     return stand_file(standing=tuple(standing), kinds=made, **told)
 

@@ -64,8 +64,7 @@ def read_stand_yaml(path: Path, open_tree: Callable[[str | Path], TreeFile]) -> 
         try:
             opened = open_tree(beside if beside.is_file() else entry["tree"])
         except TreeSwayError as error:
-            where = document.where("kinds", number)
-            raise type(error)(error.what, where=where, cure=error.cure) from error
+            raise error.at(document.where("kinds", number)) from error
         kinds[entry["species"]] = StandKind(opened.tree, opened.species)
     anemometer = values.get("anemometer")
     return read_stand_table(

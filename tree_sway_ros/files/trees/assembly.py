@@ -92,6 +92,4 @@ class SegmentTable:
                 labels=self.labels,
             )
         except TreeError as error:
-            if error.where:
-                raise
-            raise TreeError(error.what, where=source, cure=error.cure) from error
+            raise error.at(error.where or source) from error

@@ -69,9 +69,7 @@ class TreeFile:
         try:
             refuse_nonsense(self.tree, self.species)
         except TreeSwayError as error:
-            raise type(error)(
-                error.what, where=f"{self.source}: {error.where}", cure=error.cure
-            ) from None
+            raise error.inside(self.source) from None
         return self
 
     def simulator(

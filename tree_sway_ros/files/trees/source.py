@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-import difflib
 from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
 from tree_sway_ros.core.tree.species import species_keys, species_named
-from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.errors import FormatError, ParameterError, nearest
 from tree_sway_ros.files.stands.stand_table import is_stand_table, read_stand_table
 from tree_sway_ros.files.stands.stand_yaml import is_stand_yaml, read_stand_yaml
 from tree_sway_ros.files.text_file import path_of
@@ -53,14 +52,11 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
         return TreeFile(tree, species_named(tree.species), text)
     path = path_of(text)
     if not path.exists():
-        close = difflib.get_close_matches(text, BUILTIN_TREES, n=1)
-        guess = f"did you mean '{close[0]}'? " if close else ""
+        guess = nearest(text, BUILTIN_TREES)
         if text in species_keys():
-            guess = f"it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml; "
-        raise FormatError(
-            f"no tree '{text}'",
-            cure=f"{guess}give a file, or one of {', '.join(BUILTIN_TREES)}",
-        )
+            guess = f"it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml;"
+        cure = f"{guess} give a file, or one of {', '.join(BUILTIN_TREES)}".lstrip()
+        raise FormatError(f"no tree '{text}'", cure=cure)
     if is_forest(path):
         raise FormatError(
             "a forest, where one tree is asked for", where=text, cure="name one of its trees"

@@ -205,7 +205,8 @@ WIND: Table = (
     Parameter(
         "timeout",
         2.0,
-        "Diagnostics say WARN after so long without a good sample, STALE after five times that.",
+        "Diagnostics say WARN after so long without a good sample, STALE after five times that; "
+        "of a slow sensor after three of its periods.",
         "s",
         0.1,
         60.0,
@@ -427,7 +428,13 @@ SOLVER: Table = (
         "In simulated time a frame waits until the wind reaches beyond it, as a player sends it.",
     ),
     Parameter(
-        "timeout", 2.0, "When samples stop, the last wind is held for so long.", "s", 0.1, 60.0
+        "timeout",
+        2.0,
+        "When samples stop, the last wind is held for so long; that of a slow sensor for three of "
+        "its periods.",
+        "s",
+        0.1,
+        60.0,
     ),
     Parameter(
         "decay",

@@ -11,13 +11,12 @@ the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.errors import ParameterError, nearest
 
 Value = Any  # bool | int | float | str | tuple[float, ...]
 
@@ -86,7 +85,8 @@ class Parameter:
             short = str(value).replace("/msg/", "/")  # either is a type's name to ROS
             if short in self.choices:
                 return short
-            raise self._error(f"'{value}' is not among its choices", _nearest(value, self.choices))
+            near = nearest(str(value), self.choices)
+            raise self._error(f"'{value}' is not among its choices", near and f": {near}")
         return value
 
     @property
@@ -145,11 +145,6 @@ _KINDS[tuple] = "a list of numbers"
 Table = tuple[Parameter, ...]
 
 
-def defaults(table: Table) -> dict[str, Value]:
-    """Default of each parameter by name."""
-    return {parameter.name: parameter.default for parameter in table}
-
-
 def checked_values(
     table: Table, values: Mapping[str, Value], *, where: str = ""
 ) -> dict[str, Value]:
@@ -178,77 +173,5 @@ def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
 def unknown_parameter(table: Table, name: str, *, where: str = "") -> ParameterError:
     """The error for a name that a table does not have, with the nearest that it has."""
     names = [parameter.name for parameter in table]
-    near = _nearest(name, names).removeprefix(": ")
-    cure = near or f"known are: {', '.join(names)}"
+    cure = nearest(name, names) or f"known are: {', '.join(names)}"
     return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)
-
-
-def check_parameter_file(content: Any, tables: Mapping[str, Table], *, where: str = "") -> None:
-    """
-    Check the content of a ROS parameter file, ``{node: {ros__parameters: {...}}}``.
-
-    Parameters
-    ----------
-    content
-        As read from YAML. Node names are compared without their namespace; ``/**`` is every node,
-        whose parameters must be known to one of the tables.
-    tables
-        Table of each node by the node's name.
-    where
-        The file's name, for errors.
-
-    Raises
-    ------
-    ParameterError
-        A node or parameter nobody knows, a value out of range, a layout that ROS would ignore.
-
-    """
-    if not isinstance(content, Mapping):
-        raise ParameterError("not a parameter file", where=where, cure="start with 'solver:'")
-    for node, body in content.items():
-        if not isinstance(body, Mapping) or set(body) != {"ros__parameters"}:
-            raise ParameterError(
-                f"'{node}' must hold exactly 'ros__parameters:'",
-                where=where,
-                cure="indent the parameters below 'ros__parameters:' (two underscores)",
-            )
-        name = str(node).rsplit("/", 1)[-1]
-        values = body["ros__parameters"] or {}
-        if name == "**":
-            _check_for_any(values, tables, where)
-        elif name in tables:
-            checked_values(tables[name], values, where=f"{where}: {node}" if where else str(node))
-        else:
-            advice = _nearest(name, tables).removeprefix(": ") or f"known are: {', '.join(tables)}"
-            raise ParameterError(f"unknown node '{node}'", where=where, cure=advice)
-
-
-def _check_for_any(values: Mapping[str, Value], tables: Mapping[str, Table], where: str) -> None:
-    union = tuple(parameter for table in tables.values() for parameter in table)
-    for name in unknown_names(union, values)[:1]:
-        raise unknown_parameter(union, name, where=f"{where}: /**" if where else "/**")
-
-
-def markdown_table(table: Table) -> str:
-    """Render a table of parameters for the README."""
-    lines = ["| parameter | default | unit | range | live | description |"]
-    lines.append("|---|---|---|---|---|---|")
-    for p in table:
-        limits = p.range_text.replace("|", "\\|")
-        note = f" ({p.source})" if p.source else ""
-        cells = (f"`{p.name}`", f"`{_text(p.default)}`", p.unit, limits, "yes" if p.live else "")
-        lines.append(f"| {' | '.join(cells)} | {p.description}{note} |")
-    return "\n".join(lines) + "\n"
-
-
-def _text(value: Value) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, tuple):
-        return "[" + ", ".join(f"{number:g}" for number in value) + "]"
-    return '""' if value == "" else str(value)
-
-
-def _nearest(name: str, names: Iterable[str]) -> str:
-    near = difflib.get_close_matches(str(name), list(names), n=1, cutoff=0.5)
-    return f": did you mean '{near[0]}'?" if near else ""

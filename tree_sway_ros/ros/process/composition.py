@@ -14,7 +14,6 @@ from __future__ import annotations
 import importlib
 import threading
 from collections.abc import Mapping
-from types import TracebackType
 from typing import Any
 
 from tree_sway_ros.ros.parameters.parameter import Value
@@ -150,12 +149,7 @@ class Composition:
     def __enter__(self) -> Composition:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _spin(self) -> None:

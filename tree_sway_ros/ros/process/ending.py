@@ -17,7 +17,7 @@ import os
 import signal
 import sys
 import threading
-from types import FrameType, TracebackType
+from types import FrameType
 
 LONGEST = 1.5
 """From the signal to the end of a process that runs [s], if it does not end by itself before."""
@@ -62,12 +62,7 @@ class Ending:
         threading.Thread(target=self._watch, name="ending", daemon=True).start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> bool:
+    def __exit__(self, *_: object) -> bool:
         if not self._before:
             return False
         self._over.set()

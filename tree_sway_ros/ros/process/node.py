@@ -183,22 +183,30 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return made
 
     def subscription(
-        self, topic: Topic, callback: Callable[[Any], None], kind: Any = None, *, raw: bool = False
+        self,
+        topic: Topic,
+        callback: Callable[[Any], None],
+        kind: Any = None,
+        *,
+        raw: bool = False,
+        alone: bool = False,
     ) -> Any:
         """
         Subscription to a topic of the table; `kind` where a parameter chooses the type, `raw` for
-        bytes.
+        bytes, `alone` where a second publisher is a fault.
 
         """
-        kind = kind or message_class(topic)
-        return self.create_subscription(
-            kind,
+        made = self.create_subscription(
+            kind or message_class(topic),
             topic.name,
             callback,
             qos_profile(topic),
             raw=raw,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
+        if alone:
+            self._alone[made.topic_name] = set()
+        return made
 
     def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
         """

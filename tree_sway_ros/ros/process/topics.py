@@ -115,8 +115,16 @@ CLOCK = Topic(
 TF = Topic(
     "/tf",
     "tf2_msgs/msg/TFMessage",
-    "One frame per segment, where `publish_tf` asks for it.",
+    "One frame per segment, where `publish_tf` asks for it; read where the wind is in another "
+    "frame.",
     depth=10,
+)
+TF_STATIC = Topic(
+    "/tf_static",
+    "tf2_msgs/msg/TFMessage",
+    "Read where the wind is in another frame.",
+    latched=True,
+    depth=100,
 )
 
 TOPICS = (
@@ -131,16 +139,8 @@ TOPICS = (
     DIAGNOSTICS,
     CLOCK,
     TF,
+    TF_STATIC,
 )
-
-
-def markdown_table() -> str:
-    """Render the topics for the reference."""
-    lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
-    for topic in TOPICS:
-        cells = (f"`{topic.name}`", f"`{topic.type_name}`", topic.qos_text, topic.description)
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
 
 
 def qos_profile(topic: Topic) -> Any:

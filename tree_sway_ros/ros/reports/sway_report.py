@@ -10,6 +10,7 @@ from dataclasses import asdict
 from tree_sway_ros.core.scene.demand import adaptive_among
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.wind.gate import GateCounts
 from tree_sway_ros.core.wind.gust_travel import GustHistory
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
 from tree_sway_ros.ros.timing.pacer import Pace, Pacer
@@ -35,7 +36,9 @@ class SwayReport:
         self._frames = 0
         self._time = time.monotonic()
 
-    def statuses(self, stepper: Stepper, pacer: Pacer, frames: int) -> list[Status]:
+    def statuses(
+        self, stepper: Stepper, pacer: Pacer, frames: int, counts: GateCounts
+    ) -> list[Status]:
         """
         Report on the wind, the output and the model.
 
@@ -45,10 +48,12 @@ class SwayReport:
             Of the solver.
         frames
             Pose arrays published so far.
+        counts
+            What became of the samples of the wind.
 
         """
         output = self._output(pacer.pace(), 1e9 / pacer.period, frames, pacer.is_simulated)
-        statuses = [_wind(stepper.wind_state), output, _model(stepper.simulator)]
+        statuses = [_wind(stepper.wind_state, counts), output, _model(stepper.simulator)]
         gusts = stepper.simulator.gusts
         return statuses if gusts is None else [*statuses, _gusts(gusts)]
 
@@ -78,9 +83,10 @@ class SwayReport:
         return Status("output", OK, f"{pace.rate:.1f} Hz", values)
 
 
-def _wind(state: str) -> Status:
+def _wind(state: str, counts: GateCounts) -> Status:
     level, sentence = _WIND[state]
-    return Status("wind", level, sentence, {"state": state})
+    values = {"state": state, "refused": counts.refused, **asdict(counts)}
+    return Status("wind", level, sentence, values)
 
 
 def _model(simulator: Simulator) -> Status:
@@ -94,6 +100,10 @@ def _model(simulator: Simulator) -> Status:
     trees = simulators_of(simulator)
     if trees != (simulator,):
         values |= {f"fidelity of {each.tree.name}": each.model for each in trees}
+    banks = [getattr(each, "shown", each).bank.oscillators for each in trees]
+    outside = [bank.n_outside for bank in banks if hasattr(bank, "n_outside")]
+    if outside:
+        values["steps outside of the wind basis"] = sum(outside)
     adaptive = adaptive_among(trees)
     if adaptive:
         worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))

@@ -10,9 +10,12 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from tree_sway_ros.core.wind.gate import WindGate
+from tree_sway_ros.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
 
 _WINDOW = 5.0
+_BURST = 0.02
+"""Samples that come closer to each other than this [s] say nothing of a slow sensor's period."""
 STALE_AFTER = 5.0
 """In time-outs: a wind that was lost for so long is stale, the trees are at rest again."""
 
@@ -27,12 +30,16 @@ class WindReport:
     def __init__(self) -> None:
         self._arrivals: deque[float] = deque(maxlen=1000)
         self._latest: float | None = None
+        self._timing = SensorTiming(0.0)
 
     def add(self, is_accepted: bool) -> None:
         """Count a sample."""
         now = time.monotonic()
         self._arrivals.append(now)
         if is_accepted:
+            gap = 0.0 if self._latest is None else now - self._latest
+            if gap > _BURST:
+                self._timing.note_interval(gap)
             self._latest = now
 
     @property
@@ -56,14 +63,15 @@ class WindReport:
         Parameters
         ----------
         timeout
-            Age of the last good sample from which on the wind counts as lost [s].
+            Age of the last good sample from which on the wind counts as lost [s]; three periods of
+            a sensor that is slower.
         gate
             Which counted what was refused or odd.
         types_not_read
             Message types on the topic that the node is not set to read.
 
         """
-        age = self.age
+        age, timeout = self.age, max(timeout, self._timing.longest_hold)
         values: dict[str, object] = {
             "rate [Hz]": self.rate,
             "age [s]": "never" if age is None else age,

@@ -21,6 +21,8 @@ LONGEST_LEAD = 0.4
 _GIVE_UP = 450_000_000
 """A clock so far beyond a wait [ns] is no longer held; below the longest step of a pacer."""
 _POLL = 0.0005
+_REPEAT = 0.1
+"""From one sending of the last tick to the next [s]."""
 SETTLING = 0.5
 """From the moment all are seen to the first sample [s]: they must see us as well."""
 
@@ -134,6 +136,14 @@ class Answers:
             self.missing += not (came or self._is_deaf)
             self._is_deaf = not came
         return came
+
+    def end(self, send: Callable[[int], None]) -> None:
+        """Send the last time, in [ns], again until it is answered, or nobody seems to hear it."""
+        end = time.monotonic() + (0.0 if self._is_deaf else self._patience)
+        with self._more:
+            while self._heard < self._sent - self._step and time.monotonic() < end:
+                send(self._sent)
+                self._more.wait(_REPEAT)
 
     def _has_come(self) -> bool:
         return self._heard >= self._sent - self._slack - self._step

@@ -11,7 +11,6 @@ old form would go wrong; new keys alone do not raise it.
 from __future__ import annotations
 
 import json
-from typing import Any
 
 from tree_sway_ros.core.leaves.flutter import leaf_list
 from tree_sway_ros.core.leaves.foliage import LeafClusters
@@ -22,56 +21,6 @@ VERSION = 1
 REPEAT_PERIOD = 5.0
 """From one description to the next [s]: bags and bridges lose a latched topic."""
 
-_LENGTHS = {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}}
-_NAMES = {"type": "array", "items": {"type": "string"}}
-_INDICES = {"type": "array", "items": {"type": "integer", "minimum": -1}}
-SCHEMA: dict[str, Any] = {
-    "$schema": "https://json-schema.org/draft/2020-12/schema",
-    "title": "tree_sway_ros tree_description",
-    "type": "object",
-    "required": ["version", "name", "species", "frame_id", "segments", "branches"],
-    "properties": {
-        "version": {"const": VERSION},
-        "name": {"type": "string"},
-        "hash": {
-            "type": "string",
-            "pattern": "^[0-9a-f]{16}$",
-            "description": "of the segments: another tree in the stream has another",
-        },
-        "species": {"type": "string"},
-        "frame_id": {"type": "string"},
-        "segments": {
-            "type": "object",
-            "description": "one item per segment; SI units",
-            "required": ["names", "parents", "lengths", "base_radii", "tip_radii", "branches"],
-            "properties": {
-                "names": _NAMES,
-                "parents": _INDICES,
-                "lengths": _LENGTHS,
-                "base_radii": _LENGTHS,
-                "tip_radii": _LENGTHS,
-                "branches": _INDICES,
-            },
-        },
-        "branches": {
-            "type": "object",
-            "description": "one item per branch, depth first",
-            "required": ["names", "parents", "first_segments"],
-            "properties": {"names": _NAMES, "parents": _INDICES, "first_segments": _INDICES},
-        },
-        "state": {
-            "type": "object",
-            "description": "how to read `tree_state`; absent until somebody listens to it",
-            "required": ["format", "base64"],
-        },
-        "leaves": {
-            "type": "object",
-            "description": "one item a leaf cluster, carried by its segment; absent without leaves",
-            "required": ["segment", "flutter"],
-        },
-    },
-}
-
 
 def tree_hash(tree: Tree) -> str:
     """Sixteen hexadecimal digits that change with the tree: with any segment, name or place."""
@@ -80,7 +29,7 @@ def tree_hash(tree: Tree) -> str:
 
 def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
     """
-    Describe a tree as JSON of `SCHEMA`.
+    Describe a tree as JSON of ``doc/tree_description.schema.json``.
 
     Parameters
     ----------

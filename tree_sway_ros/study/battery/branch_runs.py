@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.kernel import kernel
-from tree_sway_ros.core.oscillators.propagator import propagator, single_precision
-from tree_sway_ros.core.oscillators.two_axis import guards, step_branch
+from tree_sway_ros.core.oscillators.propagator import propagator
+from tree_sway_ros.core.oscillators.two_axis import step_branch
 from tree_sway_ros.study.methods.ball_joint import swing
+from tree_sway_ros.study.methods.branch_bank import guards, single_precision
 
 Array = NDArray[Any]
 

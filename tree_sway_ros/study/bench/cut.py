@@ -14,9 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.resegment import resegment
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.study.bench.step import gusts
+from tree_sway_ros.study.resegment import resegment
 
 CUTS = (3, 6, 12, 24)
 _DT = 1.0 / 60.0

@@ -13,7 +13,7 @@ import importlib.util
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.reference.measure import frame_means, tip_error
+from tree_sway_ros.core.reference.measure import frame_means
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import MissingDependencyError
@@ -28,6 +28,7 @@ from tree_sway_ros.study.compare.with_mujoco import (
     mujoco_tips,
     without_twist,
 )
+from tree_sway_ros.study.tip_error import tip_error
 from tree_sway_ros.tools.progress import bar
 
 _SECONDS = 5.0

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.reference.measure import Swaying
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.study.tip_error import Swaying
 
 _QUIET = 0.1
 _BLOCK = 20

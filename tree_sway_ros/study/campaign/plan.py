@@ -11,7 +11,6 @@ reads, and the source of the simulator.
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import itertools
 import json
@@ -23,7 +22,7 @@ from typing import Any
 
 from tree_sway_ros import kernel_cache
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway_ros.errors import FormatError, ParameterError, nearest
 from tree_sway_ros.files.text_file import path_of, read_bytes, read_text
 from tree_sway_ros.files.yaml_document import read_yaml
 
@@ -151,13 +150,10 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
     known = {field.name for field in fields(Settings)} - _ARRAYS
     unknown = sorted(set(varied) - known)
     if unknown:
-        near = difflib.get_close_matches(unknown[0], known, n=1)
         raise ParameterError(
             f"no setting is called '{unknown[0]}'",
             where=f"{path}: settings",
-            cure=f"did you mean '{near[0]}'?"
-            if near
-            else f"use one of: {', '.join(sorted(known))}",
+            cure=nearest(unknown[0], known) or f"use one of: {', '.join(sorted(known))}",
         )
     return list(_products(varied))
 

@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.reference.measure import Swaying
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.chart.fidelity import DAMPING_RATIO, EXAMPLE_WOOD, FRAME
 from tree_sway_ros.study.example_trees import RATIOS, forked_tree
+from tree_sway_ros.study.tip_error import Swaying
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
 

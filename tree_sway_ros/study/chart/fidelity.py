@@ -21,7 +21,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.reference.measure import Swaying, frame_means, record_tips, tip_error
+from tree_sway_ros.core.reference.measure import frame_means
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -29,6 +29,7 @@ from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, RATIOS, forked_tree
+from tree_sway_ros.study.tip_error import Swaying, record_tips, tip_error
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
 

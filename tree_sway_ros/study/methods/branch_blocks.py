@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.oscillators.propagator import single_precision
 from tree_sway_ros.core.oscillators.two_axis import step_branch
+from tree_sway_ros.study.methods.branch_bank import single_precision
 
 LANES = 16
 ROWS = 18
@@ -36,7 +36,7 @@ class BranchBlocks:
     coefficients
         Rows of `oscillators.propagator`, (n, 8).
     guard
-        Rows of `two_axis.guards`, (n, 3).
+        Rows of `branch_bank.guards`, (n, 3).
     dtype
         float32 for speed, float64 for digits.
 

@@ -21,9 +21,9 @@ from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.trees.tree_file import TREE_FORMATS, options_of
 from tree_sway_ros.files.whole_file import write_text_whole
-from tree_sway_ros.ros.parameters import parameter as parameters
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.ros.process import topics
+from tree_sway_ros.ros.parameters.parameter import Table, Value
+from tree_sway_ros.ros.process.topics import TOPICS
 from tree_sway_ros.study.pages.rooms import rooms_drawing
 from tree_sway_ros.tools import cli
 
@@ -110,14 +110,14 @@ def markdown_tables() -> dict[str, str]:
     """
     tables = {
         "commands": commands_table(),
-        "topics": topics.markdown_table(),
+        "topics": topics_table(),
         "species": species_table(),
         "tree_formats": formats_table(),
         "fidelity": fidelity_table(),
         "fidelity_range": fidelity_range(),
     }
     for node, table in NODE_PARAMETERS.items():
-        tables[node] = parameters.markdown_table(table)
+        tables[node] = parameters_table(table)
     return tables
 
 
@@ -128,6 +128,36 @@ def commands_table() -> str:
         f"| `{name}` | {c.summary} | `tree-sway {c.example}` |" for name, c in cli.COMMANDS.items()
     ]
     return "\n".join(lines) + "\n"
+
+
+def topics_table() -> str:
+    """Type, quality of service and content of each topic."""
+    lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
+    for topic in TOPICS:
+        cells = (f"`{topic.name}`", f"`{topic.type_name}`", topic.qos_text, topic.description)
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def parameters_table(table: Table) -> str:
+    """Every parameter of a node with its default, unit, range and description."""
+    lines = ["| parameter | default | unit | range | live | description |"]
+    lines.append("|---|---|---|---|---|---|")
+    for p in table:
+        limits = p.range_text.replace("|", "\\|")
+        note = f" ({p.source})" if p.source else ""
+        live = "yes" if p.live else ""
+        cells = (f"`{p.name}`", f"`{_text(p.default)}`", p.unit, limits, live)
+        lines.append(f"| {' | '.join(cells)} | {p.description}{note} |")
+    return "\n".join(lines) + "\n"
+
+
+def _text(value: Value) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return "[" + ", ".join(f"{number:g}" for number in value) + "]"
+    return '""' if value == "" else str(value)
 
 
 def formats_table() -> str:

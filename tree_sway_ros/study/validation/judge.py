@@ -19,13 +19,14 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.fidelity.estimate import Estimate
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.reference.measure import record_tips, tip_error
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
 from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS
+from tree_sway_ros.study.record_climate import climate_of_samples
+from tree_sway_ros.study.tip_error import record_tips, tip_error
 from tree_sway_ros.study.validation.winds import FRAME
 
 DAMPING_RATIO = 0.05
@@ -122,7 +123,7 @@ class Judge:
         for name, wind in winds.items():
             self.truth.reset()
             truth = record_tips(self.truth, self.tree, wind, FRAME, substeps=self.substeps)
-            for estimate in self.ladder.estimates(WindClimate.of_samples(wind, 1.0 / FRAME)):
+            for estimate in self.ladder.estimates(climate_of_samples(wind, 1.0 / FRAME)):
                 if wanted is None or estimate.name in wanted:
                     tips = record_tips(self._built(estimate), self.tree, wind, FRAME)
                     metres = float(np.sqrt(np.square(tips - truth).sum(axis=2).mean()))
@@ -173,7 +174,7 @@ class Judge:
         total = np.zeros(3)
         for _ in range(_MEAN):
             self.truth.step(speed * _ALONG, FRAME)
-            total += self.truth.tip_positions[tip]
+            total += self.truth.node_positions[self.tree.branch_first[1:] - 1][tip]
         return float(np.linalg.norm(total / _MEAN - rest))
 
     @property

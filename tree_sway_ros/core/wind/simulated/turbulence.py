@@ -174,7 +174,8 @@ class Turbulence:
         low, high = 0.0, 1.0 / max(float(ratio[ratio > 0.0].min(initial=1.0)), 1e-300)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            is_less = float(np.minimum(middle * ratio, 1.0) @ both) < wanted
+            # Not by BLAS, whose threads may wait for each other far longer than the sum takes.
+            is_less = float((np.minimum(middle * ratio, 1.0) * both).sum()) < wanted
             low, high = (middle, high) if is_less else (low, middle)
         return np.minimum(high * ratio, 1.0)
 

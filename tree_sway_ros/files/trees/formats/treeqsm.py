@@ -145,7 +145,7 @@ def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
         try:
             column = numbers(fields[found], found)
         except FormatError as error:
-            raise FormatError(error.what, where=f"{source}: {name}") from None
+            raise error.at(f"{source}: {name}") from None
         if column.size % width:
             raise FormatError(f"{name}.{found} has {column.size} values", where=source)
         columns.append(column.reshape(-1, width))

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.parents_first import parents_first
-from tree_sway_ros.errors import FormatError, TreeError
+from tree_sway_ros.errors import FormatError, TreeError, nearest
 from tree_sway_ros.files.trees.assembly import SegmentTable, nearest_axis
 from tree_sway_ros.files.yaml_document import YamlDocument
 
@@ -97,8 +96,7 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
     for number, branch in enumerate(branches):
         name = branch.get("parent")
         if name is not None and name not in index:
-            close = difflib.get_close_matches(name, index, n=1)
-            cure = f"did you mean '{close[0]}'?" if close else "name a branch of this file"
+            cure = nearest(name, index) or "name a branch of this file"
             raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
         parents.append(-1 if name is None else index[name])
     stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]

@@ -72,8 +72,7 @@ def species_of(document: YamlDocument) -> Species:
     try:
         species = species_named(key)
     except SpeciesError as error:
-        where = document.where("species")
-        raise SpeciesError(error.what, where=where, cure=error.cure) from None
+        raise error.at(document.where("species")) from None
     wood = dict(values.get("wood", {}))
     if "damping_ratio" in wood:
         ratio = wood.pop("damping_ratio")

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.oscillators.propagator import propagator
-from tree_sway_ros.core.oscillators.two_axis import guards
 from tree_sway_ros.study.battery.branch_runs import Branch, chord
 from tree_sway_ros.study.battery.row import Row, holds
 from tree_sway_ros.study.battery.work_precision import flops_a_step, loads_for, winds
+from tree_sway_ros.study.methods.branch_bank import guards
 from tree_sway_ros.study.methods.branch_blocks import BranchBlocks
 from tree_sway_ros.study.methods.chain import uniform_chain
 from tree_sway_ros.study.methods.registry import method_named

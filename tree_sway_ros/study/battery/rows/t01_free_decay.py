@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.oscillators.propagator import propagator, single_precision
+from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.study.battery.branch_runs import run_branch
 from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.methods.branch_bank import single_precision
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.method import Method
 from tree_sway_ros.study.methods.registry import method_named

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from tree_sway_ros.core.oscillators.propagator import propagator
-from tree_sway_ros.core.oscillators.two_axis import guards
 from tree_sway_ros.errors import TreeSwayError
 from tree_sway_ros.study.battery.branch_runs import run_branch
 from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.methods.branch_bank import guards
 from tree_sway_ros.study.methods.chain import PlanarChain, single_segment
 
 TITLE = "degenerate bodies"

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.kernel import kernel
-from tree_sway_ros.core.oscillators.propagator import propagator, single_precision
-from tree_sway_ros.core.oscillators.two_axis import guards, step_branch
+from tree_sway_ros.core.oscillators.propagator import propagator
+from tree_sway_ros.core.oscillators.two_axis import step_branch
 from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.methods.branch_bank import guards, single_precision
 from tree_sway_ros.study.methods.minimal import rk4, semi_implicit_euler, verlet
 
 TITLE = "adversarial runs"

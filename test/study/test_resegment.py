@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.resegment import MOST_SEGMENTS, resegment
 from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.study.resegment import MOST_SEGMENTS, resegment
 
 CUTS = (3, 6, 12, 24)
 RATE = 60.0
