@@ -36,6 +36,9 @@ from tree_sway_ros.core.tree.tree import Tree
 RIGID_TWIST = 1e3
 """Stiffness in twist over that in bending by which joints hardly twist."""
 
+LARGEST_TURN = 0.3
+"""Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
+
 FASTEST_DECAY = 15.0
 """
 Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of 1/60
@@ -156,22 +159,31 @@ class ArticulatedTree:
         self.state.turn[:] = [1.0, 0.0, 0.0, 0.0]
         self.state.rate[:] = 0.0
 
-    def step(self, wind: ArrayLike, dt: float) -> None:
-        """Advance by dt in [s] under a wind in [m/s], (3,), or one per segment, (n, 3)."""
+    def step(self, wind: ArrayLike, dt: float) -> bool:
+        """
+        Advance by dt in [s] under a wind in [m/s], (3,), or one per segment, (n, 3).
+
+        Where a joint would turn by more than `LARGEST_TURN`, as that of a twig does in a gale, the
+        step is taken in finer pieces. Returns whether that helped; if not the tree is at rest
+        again.
+
+        """
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
         np.multiply(self._wind_factor, wind, out=self._wind)
-        advance(
-            self.bodies,
-            self.laws,
-            self.state,
-            self._wind,
-            dt,
-            self._motion,
-            self._articulation,
-            self._room,
-        )
+        room = self._motion, self._articulation, self._room
+        before = self.state.turn.copy(), self.state.rate.copy()
+        for pieces in (1, 4, 16, 64, 256):
+            for _ in range(pieces):
+                advance(self.bodies, self.laws, self.state, self._wind, dt / pieces, *room)
+                if not np.abs(self.state.rate).max() * dt / pieces <= LARGEST_TURN:
+                    break
+            else:
+                return True
+            self.state.turn[:], self.state.rate[:] = before
+        self.reset()
+        return False
 
     @property
     def node_positions(self) -> Floats:
