@@ -109,7 +109,6 @@ class NumpyPasses:
         moment[self._column[self.is_there]] = own[self.is_there]
         return pull
 
-
     def bent_loads(self, base: Floats, x: Floats, force: Floats, moment: Floats) -> None:
         """Write moments on the coordinates of a tree as it is bent and turned, (N,), in [N m]."""
         of = self._of

@@ -54,7 +54,9 @@ def chart_validation(
         verdicts += judge.verdicts(winds | hard_cases(seconds, judge.first_frequency))
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "validation.md").write_text(_table(verdicts) + _trees(verdicts, steady), encoding="utf-8")
+    (folder / "validation.md").write_text(
+        _table(verdicts) + _trees(verdicts, steady), encoding="utf-8"
+    )
     return verdicts
 
 
@@ -94,5 +96,8 @@ def _trees(verdicts: list[Verdict], steady: dict[str, list[float]]) -> str:
         told += [f"{100.0 * each:+.1f} %" for each in off]
         told += [f"{max(over):.2f}", f"{np.median(over):.2f}"]
         lines.append(f"| {tree} | " + " | ".join(told) + " |")
-    lines += ["", "Steady: sway of the highest tip beyond the truth's, in a wind that leans it so far."]
+    lines += [
+        "",
+        "Steady: sway of the highest tip beyond the truth's, in a wind that leans it so far.",
+    ]
     return "\n".join(lines) + "\n"
