@@ -74,8 +74,8 @@ extras = {
     "sundials": ["scikit-sundae>=1.0"],
     # colcon runs pytest only where an extra of this name asks for it.
     "test": [
-        *("pytest>=7,<9", "pytest-xdist>=3", "pytest-cov>=4", "hypothesis>=6.60", "mpmath>=1.2"),
-        *("pygltflib>=1.16", "trimesh>=4.0"),
+        *("pytest>=7,<9", "pytest-xdist>=3.2", "pytest-cov>=4", "hypothesis>=6.60", "mpmath>=1.2"),
+        *("pygltflib>=1.16", "trimesh>=4.0", "argcomplete>=2"),
     ],
     "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML", "types-jsonschema"],
     # Studies on a cluster, and their tables as Parquet.
@@ -108,6 +108,9 @@ setup(
         "console_scripts": [
             *(f"{node} = {PACKAGE}.nodes.executables:{node}" for node in NODES),
             f"tree-sway = {PACKAGE}.tools.cli:main",
+        ],
+        "ament_copyright.license": [
+            f"apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX",
         ],
     },
 )

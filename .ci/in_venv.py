@@ -9,7 +9,7 @@ Run a command in this checkout's own virtual environment, made first if it is no
 
 Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
 form, with what the command needs and no more: `tree-sway demo` brings the real rclpy and Fast DDS
-in the versions of constraints-ros-jazzy.txt (x86_64 Linux, Python 3.10-3.14), `pytest` what the
+of hashes-ros-jazzy.txt and no other (x86_64 Linux, Python 3.10-3.14), `pytest` what the
 tests use, `ruff` the linters; a later command adds what it lacks. The environment is made anew when
 the Python differs and brought up to date when a file that describes the installation has changed.
 TREE_SWAY_VENV names another place for it than .venv.
@@ -30,6 +30,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 VENV = Path(os.environ.get("TREE_SWAY_VENV") or ROOT / ".venv").absolute()
 CONSTRAINTS = ROOT / ".ci" / "constraints-ros-jazzy.txt"
+HASHES = ROOT / ".ci" / "hashes-ros-jazzy.txt"
 #: The oldest Python that this package runs on, and the newest that there are ROS wheels for.
 OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 #: What is always installed: compiled kernels, and bars for waits.
@@ -46,7 +47,11 @@ NEEDS = {
     "tree-sway battery": ("battery",),
     "tree-sway compare": ("mujoco",),
     **dict.fromkeys(
-        ("pytest", "py.test"), ("ros", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test")
+        ("pytest", "py.test"),
+        (
+            *("ros", "serial", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test"),
+            *("sundials", "docs"),
+        ),
     ),
     "coverage": ("test",),
     **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
@@ -165,7 +170,7 @@ def without_ros(environment):
 def wanted():
     """Return what the environment must have been made from, as one line."""
     files = [ROOT / name for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml")]
-    files += [CONSTRAINTS, Path(__file__).resolve()]
+    files += [CONSTRAINTS, HASHES, Path(__file__).resolve()]
     digest = hashlib.sha256()
     for path in files:
         if path.is_file():
@@ -193,6 +198,9 @@ def make_ready(environment, extras):
         say(f"adding to {VENV}, once: {', '.join(sorted(extras - there))}")
     else:
         say(f"bringing {VENV} up to date")
+    if "ros" in there | extras and not ("ros" in there and made_from[:3] == wanted()):
+        # By their hashes: they are built by one person (doc/licences.md).
+        pip(environment, "--require-hashes", "--no-deps", "-r", str(HASHES))
     target = f"{ROOT}[{','.join(sorted(there | extras))}]"
     pip(environment, "-c", str(CONSTRAINTS), "--no-build-isolation", "-e", target)
     link_resources()

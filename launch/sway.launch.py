@@ -29,27 +29,32 @@ SOURCES = {
     "elsewhere": [],
 }
 ARGUMENTS = (
-    ("tree", "", "benjamina, goldcrest, broadleaf, or a file of trees; as configured if empty"),
-    ("source", "simulated", "where the wind comes from", [*SOURCES]),
-    ("file", "", "wind record for source:=player"),
-    ("topic", "", "topic of the wind in a bag; as configured if empty"),
-    ("reader_options", "", "more for the reader of the file: 'rate=20 yaw=1.57'"),
-    ("address", "", "of the instrument for source:=sensor, such as tcp://host:port"),
-    ("wind_topic", "wind", "topic of the wind for source:=live"),
-    ("rate", "", "frames a second; as configured if empty"),
-    ("x", "", "where the tree stands in the frame, to the east [m]; as configured if empty"),
-    ("y", "", "the same to the north [m]"),
-    ("z", "", "the same upwards [m]"),
-    ("yaw", "", "turn of the tree, counterclockwise from above [rad]"),
-    ("frame_id", "", "frame of all that is published; as configured if empty"),
-    ("namespace", "", "of all nodes and topics: one a tree"),
-    ("params_file", "", "ROS parameter file whose values override those of config/"),
-    ("use_sim_time", "", "follow /clock; with source:=player the player publishes it"),
-    ("lifecycle", "", "nodes wait for a lifecycle manager; as configured if empty"),
-    ("shards", "1", "solvers that the trees of a stand are dealt over; each in 'shard<n>'"),
-    ("here", "", "which shards run on this host, such as 0,1; all if empty"),
-    ("page", "false", "serve a page for the browser: start the viewer"),
-    ("rviz", "false", "start RViz"),
+    ("tree", "", "The solver opens this built-in tree, or file; as configured if empty."),
+    ("source", "simulated", "The wind comes from here.", [*SOURCES]),
+    ("file", "", "The player plays this wind record, for source:=player."),
+    ("topic", "", "The wind is on this topic of a bag; as configured if empty."),
+    ("input_convention", "", "The record's vectors blow 'to' or come 'from'; as its format says."),
+    ("sensor_yaw", "", "The x axis of the record's sensor is turned so far from east [rad]."),
+    ("reader_options", "", "The reader of the file is told more: 'rate=20 sentence=MWV'."),
+    ("start", "", "So much of the record is skipped [s]."),
+    ("speed", "", "The record is played so many times as fast; as configured if empty."),
+    ("loop", "", "The record is played over and over; as configured if empty."),
+    ("address", "", "The instrument of source:=sensor is here, such as tcp://host:port."),
+    ("wind_topic", "wind", "The wind of source:=live is on this topic."),
+    ("rate", "", "The solver publishes so many frames per second; as configured if empty."),
+    ("x", "", "The tree stands so far to the east in its frame [m]; as configured if empty."),
+    ("y", "", "The tree stands so far to the north [m]."),
+    ("z", "", "The tree stands so high [m]."),
+    ("yaw", "", "The tree is turned so far counterclockwise, seen from above [rad]."),
+    ("frame_id", "", "All that is published is in this frame; as configured if empty."),
+    ("namespace", "", "All nodes and topics are in this namespace: one per tree."),
+    ("params_file", "", "The values of this ROS parameter file override those of config/."),
+    ("use_sim_time", "", "Nodes follow /clock, which the player of source:=player publishes."),
+    ("lifecycle", "", "Nodes wait for a lifecycle manager; as configured if empty."),
+    ("shards", "1", "The trees of a stand are dealt over so many solvers, in 'shard<n>'."),
+    ("here", "", "These shards run on this host, such as 0,1; all of them if empty."),
+    ("page", "false", "The viewer serves a page for the browser."),
+    ("rviz", "false", "RViz is started."),
 )
 
 
@@ -119,8 +124,12 @@ def overrides_of(name, given):
     if name == "sensor" and given["address"]:
         overrides["address"] = given["address"]
     if name == "player":
-        names = ("file", "topic", "reader_options")
+        names = ("file", "topic", "input_convention", "reader_options")
         overrides.update({each: given[each] for each in names if given[each]})
+        numbers = {"yaw": "sensor_yaw", "start": "start", "speed": "speed"}
+        overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
+        if given["loop"]:
+            overrides["loop"] = is_true("loop", given["loop"])
     if name == "solver":
         if given["tree"]:
             overrides["tree"] = given["tree"]

@@ -24,8 +24,8 @@ TEST_FILES = sorted((ROOT / "test").rglob("*.py"))
 
 #: Layer of each top room; a room imports only from lower layers and from itself.
 LAYERS = {
-    "errors": 0, "kernel_cache": 0, "core": 1, "files": 2, "ros": 3, "page": 3, "relay": 3,
-    "view": 3, "nodes": 4, "tools": 4, "study": 5,
+    "errors": 0, "kernel_cache": 0, "licence_header": 0, "core": 1, "files": 2, "ros": 3,
+    "page": 3, "relay": 3, "view": 3, "nodes": 4, "tools": 4, "study": 5,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
@@ -284,8 +284,8 @@ def docstring_faults(source: str) -> Iterator[tuple[int, str]]:
         elif "\n" in raw.strip():
             if raw.split("\n")[0].strip():
                 yield node.lineno, f"{name}: the summary stands on the second line"
-            elif not re.search(r"\n[ ]*\n[ ]*$", raw):
-                yield node.lineno, f"{name}: a blank line stands before the closing quotes"
+            elif re.search(r"^ *---+$", raw, re.MULTILINE) and not raw.rstrip(" ").endswith("\n\n"):
+                yield node.lineno, f"{name}: a blank line ends the last section"
             for section in re.findall(r"^ *(Args|Arguments|Params):\s*$", raw, re.MULTILINE):
                 yield node.lineno, f"{name}: '{section}:' is not NumPy style"
 
@@ -310,6 +310,14 @@ def google():
 
     """
 def tight():
+    """
+    Do.
+
+    Raises
+    ------
+    ValueError
+    """
+def short():
     """
     Do.
 

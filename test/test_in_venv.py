@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -178,7 +179,7 @@ def test_it_sets_up_once_and_again_when_the_stamp_is_old(
     monkeypatch.setattr(script, "pip", lambda environment, *arguments: done.append(arguments[-1]))
     script.make_ready({}, {"fast", "ros"})
     assert done[0] == "venv"
-    assert done[-1] == f"{ROOT}[fast,ros]"
+    assert done[-2:] == [str(script.HASHES), f"{ROOT}[fast,ros]"]
     done.clear()
     script.make_ready({}, {"fast"})
     assert done == []
@@ -189,7 +190,7 @@ def test_it_sets_up_once_and_again_when_the_stamp_is_old(
     version, root, _, extras = stamp.read_text().split("\n")
     stamp.write_text(f"{version}\n{root}\nanother\n{extras}")
     script.make_ready({}, {"fast"})
-    assert done == [f"{ROOT}[fast,lint,ros]"]
+    assert done == [str(script.HASHES), f"{ROOT}[fast,lint,ros]"]
     done.clear()
     stamp.write_text(f"2.7\n{root}\nanother\n{extras}")
     script.make_ready({}, {"fast"})
@@ -205,3 +206,13 @@ def test_the_readme_has_the_command_that_the_checks_run() -> None:
     command = "python3 .ci/in_venv.py pytest"
     assert command in (ROOT / "README.md").read_text()
     assert "step here pytest" in (ROOT / ".ci" / "run").read_text()
+
+
+def test_every_ros_wheel_is_held_to_a_hash(script: ModuleType) -> None:
+    pinned = script.CONSTRAINTS.read_text().split()
+    told = script.HASHES.read_text().replace("\\\n", "").splitlines()[1:]
+    held = {line.split()[0]: line.split()[1:] for line in told}
+    assert set(held) == set(pinned)
+    for hashes in held.values():
+        assert hashes
+        assert all(re.fullmatch("--hash=sha256:[0-9a-f]{64}", each) for each in hashes)

@@ -25,12 +25,13 @@ def main() -> None:
     parser.add_argument("page", help="address of the page, with its token if it has one")
     parser.add_argument("--seconds", type=float, default=10.0)
     given = parser.parse_args()
-    end, pause = time.monotonic() + given.seconds, threading.Event()
+    pause = threading.Event()
     with StreamClient(given.page) as client:
         client.wait(60.0)
         poses = client.poses()
         assert poses is not None
         highest = int(np.argmax(poses[:, 2]))
+        end = time.monotonic() + given.seconds
         while time.monotonic() < end:
             moment, poses = client.sample(), client.poses()
             if moment is not None and poses is not None:

@@ -16,7 +16,7 @@ const { unit } = (parts[0].userData.unit ? parts[0] : parts[0].parent).userData;
 
 function described(description) {
   stage.frame(description.trees[0].height);
-  const scale = description.arrays.basis_scale;
+  const { scale } = description;
   const fits = unit.length === scale.length && unit.every((u, k) => Math.abs(scale[k] / u - 10) < 0.01);
   if (!fits) throw new Error(`${file} is of another tree or model than ${description.name}`);
 }

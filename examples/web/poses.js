@@ -32,13 +32,18 @@ function described(description) {
 function draw(stream) {
   const poses = stream.poses();
   if (!poses || !segments) return;
-  const { segment_length: length, segment_radius: radius } = stream.description.arrays;
-  for (let s = 0; s < segments.count; s++) {
-    const o = STRIDE * s;
-    at.fromArray(poses, o);
-    turn.fromArray(poses, o + 4);
-    size.set(length[s], radius[2 * s], radius[2 * s]);
-    segments.setMatrixAt(s, matrix.compose(at, turn, size));
+  const { kinds, trees } = stream.description;
+  let row = 0;
+  for (const { kind } of trees) {
+    const { segment_length: length, segment_radius: radius } = kinds[kind].arrays;
+    for (let s = 0; s < length.length; s++, row++) {
+      const o = STRIDE * row;
+      at.fromArray(poses, o);
+      turn.fromArray(poses, o + 4);
+      // The fourth number of a pose is the scale of its tree.
+      size.set(length[s], radius[2 * s], radius[2 * s]).multiplyScalar(poses[o + 3]);
+      segments.setMatrixAt(row, matrix.compose(at, turn, size));
+    }
   }
   segments.instanceMatrix.needsUpdate = true;
 }

@@ -38,7 +38,9 @@ class Processes:
 
     def start(self, name, *parameters):
         self._arguments.setdefault(name, parameters)
-        self._running[name] = self._run(name, *self._arguments[name])
+        # With bytecode, as where it is installed, whatever the tests themselves run with.
+        bytecode = {"PYTHONDONTWRITEBYTECODE": ""}
+        self._running[name] = self._run(name, *self._arguments[name], **bytecode)
 
     def kill(self, name):
         process = self._running.pop(name)

@@ -121,21 +121,26 @@ def prefix(tmp_path):
 
 
 @pytest.fixture
-def launched(prefix, ros_environment):
+def environment(prefix, ros_environment):
+    """Variables of a process that launches what stands in `prefix`."""
+    paths = [str(prefix), *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
+    return {
+        **ros_environment,
+        "AMENT_PREFIX_PATH": os.pathsep.join(filter(None, paths)),
+        "PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)]),
+        "PYTHONUNBUFFERED": "1",
+    }
+
+
+@pytest.fixture
+def launched(environment):
     """Launch a file: ``launched("sway.launch.py", tree="goldcrest")``."""
     pytest.importorskip("launch_ros", reason="launch_ros is not installed")
-    made = []
+    made, variables = [], environment
 
     def start(path, mode="terminal", environment=None, **told):
-        paths = [str(prefix), *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
-        whole = {
-            **ros_environment,
-            "AMENT_PREFIX_PATH": os.pathsep.join(filter(None, paths)),
-            "PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)]),
-            "PYTHONUNBUFFERED": "1",
-            **(environment or {}),
-        }
         words = [f"{name}:={value}" for name, value in told.items()]
+        whole = {**variables, **(environment or {})}
         made.append(Launched(ROOT / "launch" / path, words, whole, mode))
         return made[-1]
 

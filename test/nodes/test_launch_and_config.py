@@ -12,6 +12,7 @@ from tree_sway_ros.ros.process.topics import TOPICS
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
     *("tree", "address", "file", "topic", "reader_options", "rate"),
+    *("input_convention", "sensor_yaw", "start", "speed", "loop"),
     *("x", "y", "z", "yaw", "frame_id", "use_sim_time", "lifecycle"),
 )
 GIVEN = dict.fromkeys(ARGUMENTS, "")
@@ -100,6 +101,17 @@ def test_arguments_that_are_not_given_override_nothing(launch_file):
     assert placed == {"x": 3.0, "yaw": 1.57}
 
 
+def test_the_player_is_told_how_to_read_and_where_to_begin(launch_file):
+    given = {"input_convention": "from", "sensor_yaw": "1.57", "topic": "/mast/wind"}
+    given |= {"start": "30", "speed": "2", "loop": "False"}
+    told = launch_file.overrides_of("player", GIVEN | given)
+    assert told == {
+        **{"input_convention": "from", "yaw": 1.57, "topic": "/mast/wind"},
+        **{"start": 30.0, "speed": 2.0, "loop": False},
+    }
+    assert launch_file.overrides_of("solver", GIVEN | given) == {}
+
+
 def test_what_is_shipped_in_config_overrides_no_default():
     for name in ("anemometer", "player", "sensor", "wind", "solver"):
         content = yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text())
@@ -127,5 +139,6 @@ def test_the_transport_profile_has_room():
     space = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
     assert int(root.find(f".//{space}segment_size").text) == 32 * 2**20
     assert int(root.find(f".//{space}receiveBufferSize").text) == 4_194_304
+    assert root.find(f".//{space}non_blocking_send").text == "true"  # nobody waits for a lost host
     transports = {item.text for item in root.iterfind(f".//{space}transport_id")}
     assert transports == {"large_shared_memory", "large_sockets"}

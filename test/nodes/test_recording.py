@@ -62,7 +62,7 @@ def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path
     description = decode_description(read_state_entry(json.loads(described[-1].data)))
     moved = [np.ptp(column) for column in np.array([read_state(each)[1] for each in states]).T]
     assert max(moved) > 1e-6
-    assert len(moved) == len(description.arrays["basis_scale"])
+    assert len(moved) == len(description.scale)
     assert Placer(description).n_segments == 7
 
 

@@ -16,7 +16,11 @@ pytestmark = pytest.mark.ros
 
 from tree_sway_ros.page.placer import Placer  # noqa: E402
 from tree_sway_ros.page.protocol import decode_description, decode_frame  # noqa: E402
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES, TREE_DESCRIPTION, TREE_STATE  # noqa: E402
+from tree_sway_ros.ros.process.topics import (  # noqa: E402
+    SEGMENT_POSES,
+    TREE_DESCRIPTION,
+    TREE_STATE,
+)
 from tree_sway_ros.ros.wire.tree_state import WIND_NAMES, read_state_entry  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
@@ -37,7 +41,7 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    matrix = description.arrays["basis_matrix"].reshape(-1, len(state.position) - 3)
+    matrix = description.arrays["0/basis_matrix"]
     rebuilt = placer.place_rotations(matrix @ np.array(state.position[3:]))
     moved = np.linalg.norm(
         exact - Placer(description).place_rotations(np.zeros(len(matrix)))[:, :3]

@@ -140,7 +140,7 @@ def serve(seconds: float) -> None:
 
     data = (VECTORS / "description.bin").read_bytes()
     description = decode_description(data)
-    steps = np.zeros(len(description.arrays["basis_scale"]), dtype=np.int16)
+    steps = np.zeros(len(description.scale), dtype=np.int16)
     end, pause = time.monotonic() + seconds, threading.Event()
     with PageServer(PageSettings(HERE, PORT, TOKEN)) as server:
         server.describe(data)

@@ -109,7 +109,7 @@ _PROFILE = """{
   };
   for (const name of ['draw', '_upload', '_castShadow', '_drawTree', '_drawGround', '_drawSolids'])
     timed(treeSway.scene, name);
-  timed(treeSway.scene.placer, 'place');
+  timed(treeSway.scene, '_place');
   timed(treeSway.playout, 'sample');
 }"""
 

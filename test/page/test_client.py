@@ -37,7 +37,7 @@ HERE = Path(__file__).parent
 STATIC = HERE.parents[1] / "tree_sway_ros" / "page" / "static"
 DESCRIPTION = (HERE / "vectors" / "description.bin").read_bytes()
 PLACER = Placer(decode_description(DESCRIPTION))
-N = len(PLACER.description.arrays["basis_scale"])
+N = len(PLACER.description.scale)
 
 
 def shape(time_s: float) -> Floats:
@@ -101,7 +101,7 @@ def test_poses_are_those_of_the_sender_a_delay_ago(server: PageServer) -> None:
         moment, poses = client.sample(now), client.poses(now)
         assert moment is not None and poses is not None  # noqa: PT018
         assert 0.1 < now - moment.stamp < 0.5
-        scale = PLACER.description.arrays["basis_scale"]
+        scale = PLACER.description.scale
         exact = PLACER.place_coordinates(scale * shape(moment.stamp % 1e4))
         assert np.linalg.norm(poses[:, :3] - exact[:, :3], axis=1).max() < 1e-3
         assert client.round_trip < 1.0
@@ -186,7 +186,10 @@ def test_javascript_plays_out_the_same() -> None:
         values = np.array(each["values"])
         wind = np.array([values[0], 1.0, 2.0])
         at = float(each["at"])  # type: ignore[arg-type]
-        playout.push(Moment(float(each["stamp"]), values, wind, int(each["flags"])), at)  # type: ignore[arg-type,call-overload]
+        stamp = float(each["stamp"])  # type: ignore[arg-type]
+        flags = int(each["flags"])  # type: ignore[call-overload]
+        moment = Moment(stamp, values, wind, flags)
+        playout.push(moment, at)
         for later in (0.0, 0.011):
             shown = playout.sample(at + later)
             assert shown is not None

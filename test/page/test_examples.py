@@ -51,7 +51,7 @@ def files() -> Iterator[str]:
 def page(files: str) -> Iterator[PageServer]:
     """A live tree whose stream the pages of the examples may follow."""
     simulator = open_tree("goldcrest").simulator(model="modes")
-    session = Session(lambda _: (simulator, None), Choices("goldcrest"), SimulatedWind(9.0))
+    session = Session(lambda _: simulator, Choices("goldcrest"), SimulatedWind(9.0))
     with PageServer(PageSettings(port=0, origins=(files,)), None, session.status) as server:
         session.serve(server)
         yield server

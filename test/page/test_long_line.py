@@ -62,7 +62,7 @@ def server() -> Iterator[PageServer]:
     """A server that is given a state 60 times per second, on a thread of its own."""
     ended = threading.Event()
     description = decode_description(DESCRIPTION)
-    steps = np.zeros(len(description.arrays["basis_scale"]), dtype=np.int16)
+    steps = np.zeros(len(description.scale), dtype=np.int16)
 
     def publish(server: PageServer) -> None:
         due, sequence = time.monotonic(), 0

@@ -4,9 +4,12 @@
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import io
+import json
 from collections.abc import Callable, Coroutine, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +24,9 @@ from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
 from tree_sway_ros.page.session import Choices, Session  # noqa: E402
 from tree_sway_ros.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway_ros.tools import show  # noqa: E402
 
+STAND = Path(__file__).parents[2] / "config" / "stand.yaml"
 Browser = Any
 Script = Callable[[Browser], Coroutine[Any, Any, None]]
 Visit = Callable[..., None]
@@ -33,9 +38,8 @@ class Live:
     def __init__(self) -> None:
         source = open_tree("goldcrest")
         simulator = source.simulator(Settings(), model="modes")
-        leaves = source.leaves(None, 400)
         self.wind = SimulatedWind(9.0)
-        self.session = Session(lambda _: (simulator, leaves), Choices("goldcrest"), self.wind)
+        self.session = Session(lambda _: simulator, Choices("goldcrest"), self.wind)
         controls = (
             Control("mean_speed", "Wind", 9.0, "Mean", "m/s", 0.0, 40.0),
             Control("pause", "Pause", False),
@@ -187,6 +191,48 @@ def test_everything_has_a_name_and_keys_turn_the_tree(visit: Visit) -> None:
         assert await browser.run("treeSway.scene.camera.distance") > far
 
     visit(script)
+
+
+def test_a_stand_of_a_thousand_trees_is_drawn_and_moves(browser_class: Any) -> None:
+    """On levels that grow where the camera comes near, in less than 1 GB."""
+    told = argparse.ArgumentParser()
+    show.add_arguments(told)
+    arguments = told.parse_args([str(STAND)])
+    choices = Choices(str(STAND))
+    session = Session(lambda each: show.build_scene(each, arguments), choices, SimulatedWind(9.0))
+
+    async def whole(url: str) -> None:
+        async with browser_class() as browser:
+            await browser.open(url)
+            await browser.until("window.treeSway && treeSway.state === 'live' && treeSway.fps > 0")
+            assert await browser.run("treeSway.scene.detail.trees.length") == 1000
+            assert await browser.run("treeSway.scene.description.nSegments") > 1_000_000
+            assert await browser.run("treeSway.scene.detail.segments") < 60_000
+            assert await browser.run("treeSway.scene.detail.level.every((each) => each >= 0)")
+            before = await browser.run("treeSway.scene.tip()")
+            shot = picture(await browser.screenshot())
+            await browser.until(
+                "Math.hypot(...treeSway.scene.tip().map((each, c) => each - "
+                f"{json.dumps(before)}[c])) > 0.02"
+            )
+            dark = (shot.sum(axis=2) < 400).mean()  # of trees before a light ground
+            assert dark > 0.01
+            moved = np.abs(picture(await browser.screenshot()) - shot).sum(axis=2) > 30
+            assert moved[220:600, 340:1000].mean() > 0.002
+            await browser.run("treeSway.scene.camera.zoom(0.1)")
+            await browser.until("treeSway.scene.detail.level.some((each) => each < 0)")
+            await browser.until("Math.max(...treeSway.scene.detail.level) > 2")
+            heap = await browser.run("performance.memory.usedJSHeapSize")
+            assert heap < 1e9
+            assert browser.console == []
+
+    with PageServer(PageSettings(port=0), None, session.status) as server:
+        session.serve(server)
+        try:
+            asyncio.run(whole(server.url))
+        finally:
+            session.stop()
+    assert session.failure is None
 
 
 @pytest.mark.parametrize("dark", [False, True])

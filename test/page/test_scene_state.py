@@ -17,7 +17,7 @@ from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
-from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree
+from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree, scaled_tree
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
@@ -84,10 +84,15 @@ def test_python_rebuilds_a_tree_of_8_m_within_a_millimetre(tall: Any) -> None:
 
 
 def test_javascript_rebuilds_it_as_well(tall: Any, tmp_path: Path) -> None:
+    state, frames, exact = tall
+    assert np.quantile(gaps(rebuilt_by_javascript(state, frames, tmp_path), exact), 0.99) < 1e-3
+
+
+def rebuilt_by_javascript(state: SceneState, frames: list[bytes], tmp_path: Path) -> list[Any]:
+    """Poses of every frame as the page places them, each (n, 8)."""
     node = shutil.which("node")
     if node is None:
         pytest.skip("node is not installed here")
-    state, frames, exact = tall
     (tmp_path / "description.bin").write_bytes(state.description)
     for i, frame in enumerate(frames):
         (tmp_path / f"{i}.frame").write_bytes(frame)
@@ -97,11 +102,10 @@ def test_javascript_rebuilds_it_as_well(tall: Any, tmp_path: Path) -> None:
     command = [node, str(program), str(static), str(tmp_path), str(len(frames))]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
-    rebuilt = [
+    return [
         np.fromfile(tmp_path / f"{i}.poses", dtype=np.float32).reshape(-1, 8)
         for i in range(len(frames))
     ]
-    assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
 
 
 @pytest.mark.parametrize("name", BUILTIN_TREES)
@@ -129,7 +133,7 @@ def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
     )
     simulator = ForestFile("three", trees, "").simulator(model="modes")
     state = SceneState(simulator)
-    assert state.bases[0].matrix is state.bases[1].matrix is state.bases[2].matrix
+    assert [kind.numbers for kind in state.kinds] == [[0, 1, 2]]
     frames, exact = swayed(simulator, state, 5.0)
     placer = Placer(decode_description(state.description))
     rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
@@ -159,7 +163,7 @@ def test_a_stand_is_told_on_a_basis_per_kind() -> None:
     ]
     stand = Stand(standing, kinds)
     state = SceneState(stand)
-    assert state.bases[0].matrix is state.bases[1].matrix is state.bases[3].matrix
+    assert [kind.numbers for kind in state.kinds] == [[0, 1, 3], [2]]
     frames, exact = swayed(stand, state, 5.0)
     placer = Placer(decode_description(state.description))
     rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
@@ -177,3 +181,67 @@ def test_a_scene_too_large_to_describe_is_refused(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(scene_state, "MOST_SEGMENTS", 5)
     with pytest.raises(ParameterError, match="by their poses"):
         SceneState(open_tree("goldcrest").simulator(model="frozen"))
+
+
+@pytest.fixture(scope="module")
+def avenue() -> tuple[Stand, SceneState]:
+    """A thousand trees of two kinds, two of them on a model of their own."""
+    kinds = {}
+    for name in ("seedling", "other"):
+        source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
+        tree = source.tree if name == "seedling" else scaled_tree(source.tree, 1.7)
+        kinds[name] = StandKind(tree, source.species)
+    draw = np.random.default_rng(5)
+    trees = [
+        StandTree(
+            f"t{i}", ("seedling", "other")[i % 3 == 0], 3.0 * (i % 50), 3.0 * (i // 50), 0.1 * i,
+            scale=draw.uniform(0.6, 1.6), yaw=draw.uniform(-3.0, 9.0),
+            fidelity="modes" if i in (7, 700) else "wind_basis",
+        )
+        for i in range(1000)
+    ]  # fmt: skip
+    stand = Stand(trees, kinds)
+    return stand, SceneState(stand, 50)
+
+
+def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Path) -> None:
+    stand, state = avenue
+    described = decode_description(state.description)
+    assert len(described.header["trees"]) == 1000
+    assert len(described.header["kinds"]) == 4
+    assert len(state.description) < 300_000
+    wind = simulate_turbulence(12.0, rate=60.0, duration=5.0, rng=np.random.default_rng(3))
+    for each in wind:
+        stand.step(each, 1.0 / 60.0)
+    frame = state.frame(0)
+    assert len(frame) == 28 + 2 * len(described.scale)
+    exact = stand.place()
+    rebuilt = Placer(described).place(decode_frame(frame))
+    assert np.linalg.norm(rebuilt[:, :3] - exact[:, :3], axis=1).max() < 2e-4
+    rest = Placer(described).place_coordinates(np.zeros(len(described.scale)))
+    for name in ("t0", "t7", "t8", "t501", "t700", "t999"):
+        rows = stand.segments_of(name)
+        assert np.linalg.norm(rest[rows, :3] - exact[rows, :3], axis=1).max() > 2e-3
+    by_javascript = rebuilt_by_javascript(state, [frame], tmp_path)[0]
+    assert np.linalg.norm(by_javascript[:, :3] - exact[:, :3], axis=1).max() < 2e-4
+
+
+def test_coordinates_of_a_stand_are_those_of_its_rotations(avenue: Any) -> None:
+    stand, state = avenue
+    told = state.coordinates()
+    first = 0
+    for number in range(len(stand.trees)):
+        kind = next(each for each in state.kinds if number in each.numbers)
+        here = slice(first, first := first + len(kind.basis.scale))
+        if number in (0, 1, 7, 8, 700, 999):
+            exact = kind.basis.projection @ stand._rotations(number)
+            np.testing.assert_allclose(told[here], exact, rtol=1e-9, atol=1e-12)
+    assert first == len(told) == len(state.coordinate_names)
+
+
+def test_more_coordinates_than_a_frame_can_count_are_refused(
+    avenue: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scene_state, "MOST_COORDINATES", 999)
+    with pytest.raises(ParameterError, match="coordinates"):
+        SceneState(avenue[0])

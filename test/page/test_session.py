@@ -43,11 +43,11 @@ class Sink:
         self.told.append(content)
 
 
-def build(choices: Choices) -> tuple[Any, Any]:
+def build(choices: Choices) -> Any:
     if choices.tree == "missing":
         raise FormatError("no tree 'missing'", cure="name another")
     settings = Settings(damping_ratio=choices.damping_ratio or None)
-    return open_tree(choices.tree).simulator(settings, model=choices.fidelity), None
+    return open_tree(choices.tree).simulator(settings, model=choices.fidelity)
 
 
 def until(holds: Callable[[], Any]) -> None:

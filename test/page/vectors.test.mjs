@@ -20,9 +20,9 @@ const description = decodeDescription(read("description.bin"));
 
 test("the description says what it holds", () => {
   assert.equal(description.identity, expected.identity);
-  assert.deepEqual(description.trees.map((tree) => tree.name), ["left", "right"]);
+  assert.deepEqual(description.trees.map((tree) => tree.name), ["left", "right", "turned"]);
   assert.equal(description.nSegments, expected.frames[0].poses.length);
-  assert.equal(description.arrays.leaf_segment.length, 6);
+  assert.equal(description.kinds[0].arrays.leaf_segment.length, 6);
 });
 
 for (const [number, frame] of expected.frames.entries()) {
@@ -53,8 +53,8 @@ test("what is broken is refused in words", () => {
     assert.throws(() => decodeDescription(data), ProtocolError);
   }
   const newer = whole.slice(0);
-  new DataView(newer).setUint32(4, 2, true);
-  assert.throws(() => decodeDescription(newer), /version 2/);
+  new DataView(newer).setUint32(4, 3, true);
+  assert.throws(() => decodeDescription(newer), /version 3/);
   const frame = read("frame1.bin");
   assert.throws(() => decodeFrame(frame.slice(0, 40), description), ProtocolError);
   const other = frame.slice(0);

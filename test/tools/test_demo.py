@@ -151,3 +151,12 @@ def test_the_solver_gets_the_tree_with_the_wood_that_is_said(tmp_path: Path) -> 
     plain = parser.parse_args(["goldcrest", "--species", "spruce"])
     assert demo._tree_of(opened_scene(plain), plain, tmp_path) == "goldcrest"
     assert demo._nodes(plain, "goldcrest")["solver"]["species"] == "spruce"
+
+
+def test_the_player_is_told_how_to_read_a_bag_and_where_to_begin() -> None:
+    parser = argparse.ArgumentParser()
+    demo.add_arguments(parser)
+    words = "goldcrest --wind bag --wind-option topic=/mast/wind --wind-option yaw=1.57 --start 30"
+    player = demo._nodes(parser.parse_args(words.split()), "goldcrest")["player"]
+    told = {"file": "bag", "reader_options": "topic=/mast/wind yaw=1.57", "start": 30.0}
+    assert player == told

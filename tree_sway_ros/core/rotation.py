@@ -16,6 +16,9 @@ from tree_sway_ros.core.kernel import fused, inlined
 SERIES_LIMIT = 2.25
 """Square of half an angle in [rad^2] up to which `half_angle_series` holds: 1.5 rad."""
 
+NEAR_LIMIT = 0.04
+"""The same up to which `half_angle_near` holds: 0.2 rad."""
+
 _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
     (-1.0) ** k / math.factorial(2 * k) for k in range(9)
 )
@@ -33,6 +36,16 @@ def half_angle_series(t: float) -> tuple[float, float]:
     cosine, sinc = cosine * t + _C5, sinc * t + _S5
     cosine, sinc = cosine * t + _C4, sinc * t + _S4
     cosine, sinc = cosine * t + _C3, sinc * t + _S3
+    cosine, sinc = cosine * t + _C2, sinc * t + _S2
+    cosine, sinc = cosine * t + _C1, sinc * t + _S1
+    cosine, sinc = cosine * t + _C0, sinc * t + _S0
+    return cosine, sinc
+
+
+@inlined
+def half_angle_near(t: float) -> tuple[float, float]:
+    """Return what `half_angle` does, for t up to `NEAR_LIMIT` (error below 3e-14)."""
+    cosine, sinc = _C4 * t + _C3, _S4 * t + _S3
     cosine, sinc = cosine * t + _C2, sinc * t + _S2
     cosine, sinc = cosine * t + _C1, sinc * t + _S1
     cosine, sinc = cosine * t + _C0, sinc * t + _S0

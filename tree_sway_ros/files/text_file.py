@@ -87,9 +87,9 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
         raise FormatError(f"cannot be read: {error.strerror}", where=str(path)) from error
 
 
-def read_head(path: Path) -> bytes:
-    """Read the beginning of a file, enough to tell its format, without a byte order mark."""
-    return read_bytes(path, at_most=4096).removeprefix(b"\xef\xbb\xbf")
+def read_head(path: Path) -> str:
+    """Read the beginning of a file, enough to tell its format; what is no text is replaced."""
+    return read_bytes(path, at_most=4096).removeprefix(b"\xef\xbb\xbf").decode("utf-8", "replace")
 
 
 def read_text(path: Path) -> str:
@@ -124,6 +124,11 @@ def finite(text: str) -> float | None:
         return None
     value = float(cell)
     return value if math.isfinite(value) else None
+
+
+def reason_of(error: Exception) -> str:
+    """Kind and text of an error of a library, on one line of at most 200 characters."""
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
 
 
 def why_no_number(text: str) -> str:

@@ -13,17 +13,20 @@ better.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import yaml
 
 from tree_sway_ros.errors import FormatError, nearest
-from tree_sway_ros.files.text_file import finite
+from tree_sway_ros.files.text_file import finite, read_head
 
 Schema = dict[str, Any]
+YAML_SUFFIXES = (".yaml", ".yml", ".json")
 
 # The C parser, where PyYAML was built with it, is ten times faster.
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -39,6 +42,14 @@ def packaged_schema(name: str) -> Schema:
     resource = files("tree_sway_ros.files.trees.yaml").joinpath(name)
     schema: Schema = json.loads(resource.read_text(encoding="utf-8"))
     return schema
+
+
+def begins_with_key(path: Path, key: str) -> bool:
+    """Whether a file is named as YAML and, as far as its beginning tells, has an outermost key."""
+    if path.suffix.lower() not in YAML_SUFFIXES or not path.is_file():
+        return False
+    pattern = rf"""^\{{?\s*["']?{key}["']?\s*:"""
+    return re.search(pattern, read_head(path), re.MULTILINE) is not None
 
 
 def tree_schema() -> Schema:

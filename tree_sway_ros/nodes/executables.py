@@ -1,39 +1,21 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The executables that ``ros2 run tree_sway_ros`` starts; they can be imported without ROS."""
+"""
+The executables that ``ros2 run tree_sway_ros`` starts; they can be imported without ROS.
+
+Each takes a command line without the program's name (that of the process if it is left out) and
+returns the exit code.
+
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import partial
 
+from tree_sway_ros.ros.process.composition import NODE_CLASSES
 from tree_sway_ros.ros.process.spin import run
 
-
-def anemometer(args: Sequence[str] | None = None) -> int:
-    """Run the anemometer node; returns the exit code."""
-    return run("tree_sway_ros.nodes.anemometer", "AnemometerNode", args)
-
-
-def wind(args: Sequence[str] | None = None) -> int:
-    """Run the wind node; returns the exit code."""
-    return run("tree_sway_ros.nodes.wind", "WindNode", args)
-
-
-def solver(args: Sequence[str] | None = None) -> int:
-    """Run the solver node; returns the exit code."""
-    return run("tree_sway_ros.nodes.solver", "SolverNode", args)
-
-
-def sensor(args: Sequence[str] | None = None) -> int:
-    """Run the sensor node; returns the exit code."""
-    return run("tree_sway_ros.nodes.sensor", "SensorNode", args)
-
-
-def viewer(args: Sequence[str] | None = None) -> int:
-    """Run the viewer node; returns the exit code."""
-    return run("tree_sway_ros.nodes.viewer", "ViewerNode", args)
-
-
-def player(args: Sequence[str] | None = None) -> int:
-    """Run the player node; returns the exit code."""
-    return run("tree_sway_ros.nodes.player", "PlayerNode", args)
+anemometer, wind, solver, player, sensor, viewer = (
+    partial(run, *NODE_CLASSES[name])
+    for name in ("anemometer", "wind", "solver", "player", "sensor", "viewer")
+)

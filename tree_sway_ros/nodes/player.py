@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.reader_options import reader_options
 from tree_sway_ros.files.recording.state_record import StateRecord, read_state_record, restamped
-from tree_sway_ros.files.wind.reader_options import reader_options
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.ros.process.node import TreeSwayNode
@@ -144,7 +144,7 @@ class PlayerNode(TreeSwayNode):
             )
 
     def _reader_options(self) -> dict[str, Any]:
-        options = reader_options(self.values["reader_options"])
+        options = reader_options(self.values["reader_options"].split())
         for name in ("topic", "yaw"):
             if self.values[name]:
                 options[name] = self.values[name]

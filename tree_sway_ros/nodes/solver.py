@@ -8,7 +8,7 @@ from typing import Any
 
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
+from tree_sway_ros.core.scene.demand import set_demand, set_pace
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.live_tuning import LIVE
 from tree_sway_ros.core.simulator.protocol import Simulator
@@ -116,15 +116,15 @@ class SolverNode(TreeSwayNode):
         self._refused_cameras = 0
         self.pacer = self._make_pacer()
         self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
-        tell_pace(simulators_of(self.simulator), self._stepper.warm_up())
-        self._tell_demand()
+        set_pace(simulators_of(self.simulator), self._stepper.warm_up())
+        self._set_demand()
         self.simulator.reset()  # on the model that is asked for
         self._intake = WindIntake.of_velocities()
         self._reach = Reach()
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
         self.stream = PoseStream(self, source.tree, leaves)
-        self._state = StatePublisher(self, self.simulator, leaves)
+        self._state = StatePublisher(self, self.simulator, self.values["leaf_clusters"])
         self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, "~/reset", self._reset)
@@ -174,11 +174,11 @@ class SolverNode(TreeSwayNode):
         if changes and self.is_active:
             self._stepper.request(lambda: self.simulator.tune(**changes))
         if self.values["fidelity"] == "auto":
-            self._stepper.request(self._tell_demand)
+            self._stepper.request(self._set_demand)
 
-    def _tell_demand(self) -> None:
+    def _set_demand(self) -> None:
         wanted = self.values("tolerance", "tolerance_pixels", "focal_length", "budget")
-        tell_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
+        set_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
 
     def slip(self, error: Exception) -> None:
         """Go on from rest: what was amid a step is not to be trusted."""

@@ -8,7 +8,6 @@ import math
 import threading
 from typing import Any
 
-from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.errors import TreeSwayError
 from tree_sway_ros.page.scene_state import SceneState
@@ -29,13 +28,13 @@ class StatePublisher:
         A `TreeSwayNode` with the solver's parameters and a `stream`.
     simulator
         Of the trees.
-    leaves
-        Clusters that are drawn; None without.
+    n_leaves
+        Clusters of leaves that are drawn on each kind of tree.
 
     """
 
-    def __init__(self, node: Any, simulator: Simulator, leaves: LeafClusters | None) -> None:
-        self._node, self._simulator, self._leaves = node, simulator, leaves
+    def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:
+        self._node, self._simulator, self._n_leaves = node, simulator, n_leaves
         self._publisher = node.publisher(TREE_STATE, alone=True)
         rate = node.values["state_rate"]
         self._every = max(1, math.ceil(node.values["rate"] / rate)) if rate > 0.0 else 0
@@ -68,7 +67,7 @@ class StatePublisher:
     def _find(self) -> None:
         try:
             frame_id = self._node.values["frame_id"]
-            scene = SceneState(self._simulator, self._leaves, frame_id)
+            scene = SceneState(self._simulator, self._n_leaves, frame_id)
             self._template = state_template(scene.coordinate_names, frame_id)
             self._node.stream.tell_more({"state": state_entry(scene.description)})
             self._scene = scene

@@ -101,7 +101,7 @@ class ViewerNode(TreeSwayNode):
         if description is None:
             return
         wind, coordinates = read_state(message)
-        scale = description.arrays["basis_scale"]
+        scale = description.scale
         if len(coordinates) != len(scale):
             raise FormatError(
                 f"{len(coordinates)} coordinates of a tree with {len(scale)}", where="tree_state"

@@ -17,7 +17,6 @@ from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
 from tree_sway_ros.ros.reports.diagnostics import OK, WARN, Status
 from tree_sway_ros.ros.reports.wind_report import WindReport
-from tree_sway_ros.ros.wire.frames import FrameListener
 from tree_sway_ros.ros.wire.wind_messages import (
     WindSample,
     plane_message,
@@ -53,7 +52,7 @@ class WindNode(TreeSwayNode):
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
         self._attitude: Any = None
-        self._frames: FrameListener | None = None
+        self._frames: Any = None
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
         kind = wind_class(self.values["input_type"])
@@ -82,7 +81,7 @@ class WindNode(TreeSwayNode):
         sample = wind_from_message(message)
         frame_id, turn = self.values["frame_id"], None
         if sample.frame_id not in ("", frame_id):
-            self._frames = self._frames or FrameListener(self, frame_id)
+            self._frames = self._frames or self._listen_for_frames()
             turn = self._frames.rotation(sample.frame_id, sample.stamp)
             if self._frames.is_waiting:
                 return
@@ -98,6 +97,12 @@ class WindNode(TreeSwayNode):
         self._filtered.publish(wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector)))
         self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
         self._plane.publish(plane_message(time, frame_id, self._attitude))
+
+    def _listen_for_frames(self) -> Any:
+        """Load what turns frames, which takes as long as all else here, where there are others."""
+        from tree_sway_ros.ros.wire.frames import FrameListener
+
+        return FrameListener(self, self.values["frame_id"])
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()

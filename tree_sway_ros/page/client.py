@@ -1,19 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A client of the stream in Python: connects, keeps the line, tells where every segment is now.
-
-"""
+"""A client of the stream in Python: connects, keeps the line, tells where every segment is now."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import random
 import threading
 import time
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import TypedDict
 from urllib.parse import urlsplit, urlunsplit
 
 import aiohttp
@@ -21,6 +19,7 @@ import aiohttp
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import TransportError, TreeSwayError
+from tree_sway_ros.page.controls import Value
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.playout import DELAY, Moment, Playout
 from tree_sway_ros.page.protocol import (
@@ -34,6 +33,19 @@ from tree_sway_ros.page.protocol import (
 _CREDIT, _GRANT_EVERY = 24, 4
 _SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
 _PING_EVERY, _SILENCE = 2.0, 6.0
+
+
+class _Refusal(TypedDict):
+    name: str
+    reason: str
+
+
+class _Message(TypedDict, total=False):
+    """What the server says in text."""
+
+    pong: float
+    refused: _Refusal
+    status: dict[str, object]
 
 
 class StreamClient:
@@ -80,12 +92,13 @@ class StreamClient:
         """Why the line was lost, or why something could not be read; empty if nothing was."""
         self.round_trip = float("nan")
         """To the server and back [s]."""
-        self.status: dict[str, Any] = {}
+        self.status: dict[str, object] = {}
         """What the server last told of itself."""
         self._rate, self._on_frame = rate, on_frame
         self._placer: Placer | None = None
         self._more = threading.Condition()
         self._loop = asyncio.new_event_loop()
+        self._ending = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
         self._thread = threading.Thread(target=self._run, name="stream", daemon=True)
         self._socket: aiohttp.ClientWebSocketResponse | None = None
@@ -101,8 +114,13 @@ class StreamClient:
     def close(self) -> None:
         """Close the line and end the thread; may be called twice."""
         if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(lambda: self._task and self._task.cancel())
+            self._loop.call_soon_threadsafe(self._end)
             self._thread.join(timeout=5.0)
+
+    def _end(self) -> None:
+        self._ending.set()
+        if self._task is not None:
+            self._task.cancel()
 
     def wait(self, seconds: float = 30.0, *, frames: int = 1) -> None:
         """
@@ -122,7 +140,7 @@ class StreamClient:
                     cure="start tree-sway show, or look at the address",
                 )
 
-    def set(self, name: str, value: Any) -> None:
+    def set(self, name: str, value: Value) -> None:
         """Change a control of the server; a refusal comes as `problem`."""
         self._loop.call_soon_threadsafe(self._say, {"set": {"name": name, "value": value}})
 
@@ -163,7 +181,7 @@ class StreamClient:
         """Connect again and again."""
         wait = _SHORTEST_WAIT
         async with aiohttp.ClientSession() as session:
-            while True:
+            while not self._ending.is_set():
                 self.state = "connecting"
                 try:
                     async with session.ws_connect(self.url, max_msg_size=0) as socket:
@@ -175,7 +193,9 @@ class StreamClient:
                     self.problem = str(error) or type(error).__name__
                 self._socket, self.state = None, "lost"
                 # Many clients that lose one server do not come back in one instant.
-                await asyncio.sleep(wait * random.uniform(0.75, 1.25))
+                with contextlib.suppress(asyncio.TimeoutError):
+                    pause = wait * random.uniform(0.75, 1.25)
+                    await asyncio.wait_for(self._ending.wait(), pause)
                 wait = min(2.0 * wait, _LONGEST_WAIT)
 
     async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
@@ -194,12 +214,12 @@ class StreamClient:
                 pinged = time.monotonic()
                 self._say({"ping": pinged})
 
-    def _say(self, message: dict[str, Any]) -> None:
+    def _say(self, message: Mapping[str, object]) -> None:
         if self._socket is not None and not self._socket.closed:
             task = self._loop.create_task(self._socket.send_json(message))
             task.add_done_callback(lambda done: done.cancelled() or done.exception())
 
-    def _hear(self, message: dict[str, Any]) -> None:
+    def _hear(self, message: _Message) -> None:
         if "pong" in message:
             self.round_trip = time.monotonic() - message["pong"]
         if "refused" in message:
@@ -225,7 +245,7 @@ class StreamClient:
         description = self.description
         if description is None or frame.identity != description.short_identity:
             return
-        values = frame.coordinates * (description.arrays["basis_scale"] / FULL_SCALE)
+        values = frame.coordinates * (description.scale / FULL_SCALE)
         with self._more:
             moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
             self.playout.push(moment, arrival)

@@ -1,18 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What a viewer may change: each control with its range, and how a change is applied or refused.
-
-"""
+"""What a viewer may change: each control with its range, and how a change is applied or refused."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from tree_sway_ros.errors import ParameterError, TreeSwayError
+
+Value = bool | float | str | None
+"""Of a control, as JSON has it; None for a button."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Control:
 
     name: str
     label: str
-    value: Any
+    value: Value
     description: str = ""
     unit: str = ""
     minimum: float | None = None
@@ -49,7 +48,7 @@ class Control:
     choices: tuple[str, ...] = ()
     is_action: bool = False
 
-    def checked(self, value: Any) -> Any:
+    def checked(self, value: object) -> Value:
         """
         Convert a value that came from outside.
 
@@ -70,7 +69,7 @@ class Control:
             if not (math.isfinite(number) and low <= number <= high):
                 raise self._error(f"{number:g} is out of range")
             return number
-        if type(value) is not type(self.value):
+        if not isinstance(value, bool | str) or type(value) is not type(self.value):
             raise self._error(f"{value!r} is not {type(self.value).__name__}")
         if self.choices and value not in self.choices:
             raise self._error(f"'{value}' is not among its choices")
@@ -100,26 +99,26 @@ class ControlPanel:
     """
 
     def __init__(
-        self, controls: tuple[Control, ...] = (), apply: Callable[[str, Any], None] | None = None
+        self, controls: tuple[Control, ...] = (), apply: Callable[[str, Value], None] | None = None
     ) -> None:
         self._controls = {control.name: control for control in controls}
         self._apply = apply
 
-    def told(self) -> list[dict[str, Any]]:
+    def told(self) -> list[dict[str, object]]:
         """All controls as JSON has them."""
         return [vars(control) for control in self._controls.values()]
 
-    def values(self) -> dict[str, Any]:
+    def values(self) -> dict[str, Value]:
         """Values by name, actions left out."""
         return {c.name: c.value for c in self._controls.values() if not c.is_action}
 
-    def update(self, values: Mapping[str, Any]) -> None:
+    def update(self, values: Mapping[str, Value]) -> None:
         """Note values that were changed from elsewhere; names that are no control are left out."""
         for name, value in values.items():
             if name in self._controls:
                 self._controls[name] = replace(self._controls[name], value=value)
 
-    def set(self, name: Any, value: Any) -> str | None:
+    def set(self, name: object, value: object) -> str | None:
         """Change something; returns why not, None if it was done."""
         control = self._controls.get(name) if isinstance(name, str) else None
         if control is None or self._apply is None:

@@ -1,56 +1,64 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a receiver needs to rebuild every pose from a frame: the rest tree, how its branches bend, and
-the basis of the state.
+What a receiver needs to rebuild every pose from a frame: of each kind of tree the rest geometry,
+how its branches bend, and the basis of its state; of each tree its kind, and where it stands.
 
-A branch that moves with its parent as one body has no coordinate, and slopes of 0. Trees of a scene
-follow each other in every array.
+A branch that moves with its parent as one body has no coordinate, and slopes of 0. A kind stands
+with its root node at the origin.
 
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.rotation import rotated
-from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.page.protocol import encode_description
-from tree_sway_ros.page.told_basis import ToldBasis, ToldTree
+from tree_sway_ros.page.protocol import (
+    Array,
+    LeafyHeader,
+    ToldPlace,
+    ToldShape,
+    encode_description,
+)
+from tree_sway_ros.page.told_kind import ToldKind
 
 RIGID = -1
 """Coordinate of a branch that has none."""
 
 
 def describe_scene(
-    simulator: Simulator,
-    told: Sequence[ToldTree],
-    bases: Sequence[ToldBasis],
+    name: str,
+    kinds: Sequence[ToldKind],
+    tree_names: Sequence[str],
     *,
     frame_id: str = "map",
-    leaves: LeafClusters | None = None,
+    leaves: Sequence[LeafClusters | None] = (),
 ) -> bytes:
     """
     Describe a tree or a forest for receivers of its state.
 
     Parameters
     ----------
-    simulator
-        Of a tree, a forest or a stand, on the model whose state will be sent.
-    told, bases
-        Each tree of it, and its basis.
+    name
+        Of the scene.
+    kinds
+        Its trees by kind.
+    tree_names
+        A name per tree.
     frame_id
         Frame of the poses.
     leaves
-        Clusters of leaves of all trees together; None without.
+        Clusters of leaves of each kind; none if empty.
 
     Returns
     -------
@@ -58,58 +66,53 @@ def describe_scene(
         As `encode_description`.
 
     """
-    parts = [_branches(each, basis) for each, basis in zip(told, bases, strict=True)]
-    arrays: dict[str, Any] = _joined(parts)
-    trees: list[dict[str, Any]] = []
-    coordinates = key = 0
-    blocks: list[list[int]] = []
-    # Trees of one shape share a matrix, which is sent once.
-    place_of: dict[int, int] = {}
-    matrices: list[Any] = []
-    for each, basis in zip(told, bases, strict=True):
-        rows, columns = basis.matrix.shape
-        if id(basis.matrix) not in place_of:
-            place_of[id(basis.matrix)] = sum(len(matrix) for matrix in matrices)
-            matrices.append(_float32(basis.matrix.ravel()))
-        at = place_of[id(basis.matrix)]
-        blocks.append([key, key + rows, coordinates, coordinates + columns, at])
-        tree = each.tree
-        trees.append(
+    places = np.zeros((len(tree_names), 5), dtype=np.float32)
+    kind_of = np.zeros(len(tree_names), dtype=np.int64)
+    told: list[ToldShape] = []
+    arrays: dict[str, Array] = {"tree_place": places}
+    for number, kind in enumerate(kinds):
+        places[kind.numbers], kind_of[kind.numbers] = kind.places, number
+        own, tree = _branches(kind.simulator), kind.simulator.tree
+        own["basis_matrix"] = _float32(kind.basis.matrix)
+        own["basis_scale"] = _float32(kind.basis.scale)
+        clusters = leaves[number] if leaves else None
+        if clusters is not None:
+            own["leaf_segment"] = clusters.segment.astype(np.int32)
+            own |= {
+                "leaf_offset": _float32(clusters.offset),
+                "leaf_orientation": _float32(clusters.orientation),
+                "leaf_size": _float32(clusters.size),
+                "leaf_frequency": _float32(clusters.frequency),
+                "leaf_phase": _float32(clusters.phase),
+            }
+        arrays |= {f"{number}/{field}": array for field, array in own.items()}
+        told.append(
             {
-                "name": tree.name,
                 "species": tree.species,
                 "height": round(tree.height, 4),
-                "branches": tree.n_branches,
-                "segments": tree.n_segments,
-                "coordinates": columns,
-                "model": each.model,
-                "basis_error": float(basis.error.greatest),
+                "model": kind.simulator.model,
+                "basis_error": float(kind.basis.error.greatest),
+                "branch_names": list(tree.branch_names),
             }
         )
-        coordinates, key = coordinates + columns, key + rows
-    arrays["basis_block"] = np.array(blocks, dtype=np.int32)
-    arrays["basis_matrix"] = np.concatenate(matrices)
-    arrays["basis_scale"] = _float32(np.concatenate([basis.scale for basis in bases]))
-    header: dict[str, Any] = {
+    trees: list[ToldPlace] = [
+        {"name": each, "kind": kind}
+        for each, kind in zip(tree_names, kind_of.tolist(), strict=True)
+    ]
+    header: LeafyHeader = {
         "format": "tree_sway description",
-        "name": simulator.tree.name,
+        "name": name,
         "frame_id": frame_id,
+        "kinds": told,
         "trees": trees,
-        "branch_names": list(simulator.tree.branch_names),
     }
-    if leaves is not None:
+    if any(each is not None for each in leaves):
         header["flutter"] = {"gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
-        arrays["leaf_segment"] = leaves.segment.astype(np.int32)
-        for name in ("offset", "orientation", "size", "frequency", "phase"):
-            arrays[f"leaf_{name}"] = _float32(getattr(leaves, name))
     return encode_description(header, arrays)
 
 
-def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
-    """
-    Arrays of one tree: how each branch of the whole tree is placed, by the told key rotations.
-
-    """
+def _branches(simulator: TreeSimulator) -> dict[str, Array]:
+    """Arrays of one kind: how each branch of the whole tree is placed, by the key rotations."""
     bank, tree = simulator.bank, simulator.tree
     arrays = _at_rest(tree)
     record_at = {int(first): i for i, first in enumerate(bank.branches["first"])}
@@ -128,14 +131,14 @@ def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
                 if moving
                 else bank.frozen.base_turn[top_at[first]]
             )
-            turns.append(told.per_key(carrier, base[: bank.branches[carrier]["n_coordinates"]]))
+            turns.append(base[: bank.branches[carrier]["n_coordinates"]])
             arrays["branch_base_turn"][branch] = count
             count += len(turns[-1])
         if first not in record_at:
             continue
         at = record_at[first]
         record, here = bank.branches[at], tree.segments_of(branch)
-        arrays["branch_frame"][branch] = told.frames[at]
+        arrays["branch_frame"][branch] = bank.branches["frame"][at]
         rows = slice(record["block"], record["block"] + here.stop - here.start)
         arrays["branch_coordinate"][branch] = record["coordinate"]
         arrays["branch_keys"][branch] = record["n_coordinates"]
@@ -145,17 +148,14 @@ def _branches(simulator: ToldTree, told: ToldBasis) -> dict[str, Any]:
         if record["n_coordinates"] > 2:
             arrays["branch_turn"][branch] = count
             for turn in turns_of_segments(record, bank.segments):
-                turns.append(told.per_key(at, turn))
+                turns.append(turn)
                 count += len(turn)
     arrays["turn"] = _float32(np.concatenate([np.zeros((0, 3)), *turns]))
     return arrays
 
 
-def _at_rest(tree: Tree) -> dict[str, Any]:
-    """
-    Arrays of a tree none of whose branches bends.
-
-    """
+def _at_rest(tree: Tree) -> dict[str, Array]:
+    """Arrays of a kind none of whose branches bends."""
     b, n = tree.n_branches, tree.n_segments
     rest = tree.rest_frame
     chord = np.empty((n, 3))
@@ -163,15 +163,15 @@ def _at_rest(tree: Tree) -> dict[str, Any]:
     last = tree.branch_first[1:] - 1
     chord[last] = tree.end[last] - tree.start[last]
     under = tree.segment_parent[tree.branch_first[:-1]]
-    offset = tree.start[tree.branch_first[:-1]].copy()
+    offset = tree.start[tree.branch_first[:-1]] - tree.start[0]
     for branch in np.flatnonzero(under >= 0):
         w, x, y, z = rest[under[branch]]
-        away = offset[branch] - tree.start[under[branch]]
+        away = tree.start[tree.branch_first[branch]] - tree.start[under[branch]]
         offset[branch] = rotated.py_func(w, -x, -y, -z, *away)  # type: ignore[attr-defined]
     return {
         "branch_parent": tree.branch_parent.astype(np.int32),
         "branch_base_segment": under.astype(np.int32),
-        "branch_first": tree.branch_first[:-1].astype(np.int32),
+        "branch_first": tree.branch_first.astype(np.int32),
         "branch_coordinate": np.full(b, RIGID, dtype=np.int32),
         "branch_keys": np.zeros(b, dtype=np.uint8),
         "branch_frame": np.zeros((b, 3, 3), dtype=np.float32),
@@ -188,30 +188,5 @@ def _at_rest(tree: Tree) -> dict[str, Any]:
     }
 
 
-def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
-    """
-    Arrays of trees one after another, indices shifted.
-
-    """
-    branch = segment = coordinate = turn = 0
-    for part in parts:
-        for name, shift in (
-            ("branch_parent", branch),
-            ("branch_base_segment", segment),
-            ("branch_coordinate", coordinate),
-            ("branch_base_turn", turn),
-            ("branch_turn", turn),
-        ):
-            part[name] = np.where(part[name] >= 0, part[name] + shift, part[name]).astype(np.int32)
-        part["branch_first"] = part["branch_first"] + np.int32(segment)
-        branch += len(part["branch_parent"])
-        segment += len(part["segment_length"])
-        coordinate += int(part["branch_keys"].sum(dtype=np.int64))
-        turn += len(part["turn"])
-    arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    arrays["branch_first"] = np.append(arrays["branch_first"], np.int32(segment)).astype(np.int32)
-    return arrays
-
-
-def _float32(values: Any) -> Any:
+def _float32(values: ArrayLike) -> Array:
     return np.asarray(values, dtype=np.float32)

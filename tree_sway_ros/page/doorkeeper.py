@@ -12,10 +12,14 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import Any
+from typing import cast
+
+from aiohttp import web
 
 ASKING_TIME = 5.0
 """A socket that has sent no whole request within so long is closed [s]."""
+
+MakeProtocol = Callable[[], asyncio.BaseProtocol]
 
 
 class Doorkeeper:
@@ -33,14 +37,14 @@ class Doorkeeper:
         self.most = most
         self.n_closed = 0
         self.n_open: Callable[[], int] = int
-        self._waiting: dict[Any, asyncio.TimerHandle] = {}
+        self._waiting: dict[asyncio.BaseProtocol, asyncio.TimerHandle] = {}
 
-    def guarding(self, server: Any) -> Callable[[], asyncio.Protocol]:
+    def guarding(self, server: web.Server) -> Callable[[], asyncio.Protocol]:
         """Make protocols that hand their socket on to an HTTP server, if it may come in."""
         self.n_open = lambda: len(server.connections)
         return lambda: _Door(self, server)
 
-    def receive(self, make: Callable[[], Any], transport: Any) -> None:
+    def receive(self, make: MakeProtocol, transport: asyncio.Transport) -> None:
         """Hand a socket on, or close it where too many are open."""
         if self.n_open() >= self.most:
             self.n_closed += 1
@@ -52,13 +56,13 @@ class Doorkeeper:
         loop = asyncio.get_running_loop()
         self._waiting[protocol] = loop.call_later(ASKING_TIME, self._give_up, protocol, transport)
 
-    def let_in(self, protocol: Any) -> None:
+    def let_in(self, protocol: asyncio.BaseProtocol) -> None:
         """Note that a whole request has come."""
         timer = self._waiting.pop(protocol, None)
         if timer is not None:
             timer.cancel()
 
-    def _give_up(self, protocol: Any, transport: Any) -> None:
+    def _give_up(self, protocol: asyncio.BaseProtocol, transport: asyncio.Transport) -> None:
         self._waiting.pop(protocol, None)
         if not transport.is_closing():
             self.n_closed += 1
@@ -68,8 +72,8 @@ class Doorkeeper:
 class _Door(asyncio.Protocol):
     """A socket until it is handed on."""
 
-    def __init__(self, keeper: Doorkeeper, make: Callable[[], Any]) -> None:
+    def __init__(self, keeper: Doorkeeper, make: MakeProtocol) -> None:
         self._keeper, self._make = keeper, make
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self._keeper.receive(self._make, transport)
+        self._keeper.receive(self._make, cast("asyncio.Transport", transport))

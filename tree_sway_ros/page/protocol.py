@@ -16,16 +16,17 @@ import json
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 
-VERSION = 1
+VERSION, FRAME_VERSION = 2, 1
 MAGIC = b"TSWD"
 FRAME_KIND = 0x46
 WIND_UNIT = 0.005
@@ -39,6 +40,42 @@ _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
 _PREFIX = struct.Struct("<4sII")
 _FRAME = struct.Struct("<BBBxIIq3hH")
 _ALIGNMENT = 8
+
+Array = NDArray[Any]
+"""Of float32, int32, int16 or uint8."""
+
+
+class ToldShape(TypedDict):
+    """Names and numbers of a kind of tree."""
+
+    species: str
+    height: float
+    model: str
+    basis_error: float
+    branch_names: list[str]
+
+
+class ToldPlace(TypedDict):
+    """A tree and the number of its kind."""
+
+    name: str
+    kind: int
+
+
+class ToldHeader(TypedDict):
+    """Names and numbers of a tree or a scene, as JSON has them; ``doc/streaming.md`` tells each."""
+
+    format: str
+    name: str
+    frame_id: str
+    kinds: list[ToldShape]
+    trees: list[ToldPlace]
+
+
+class LeafyHeader(ToldHeader, total=False):
+    """The same, of a tree that may bear leaves."""
+
+    flutter: dict[str, float]
 
 
 class Frame(NamedTuple):
@@ -67,7 +104,7 @@ class Frame(NamedTuple):
     stamp: int
     flags: int
     wind: Floats
-    coordinates: Any
+    coordinates: Array
 
 
 @dataclass(frozen=True)
@@ -80,14 +117,14 @@ class Description:
     header
         Names and numbers, as JSON has them.
     arrays
-        Arrays by name.
+        Arrays by name; of a kind under its number and a slash.
     identity
         SHA-256 of the content, the first 16 hexadecimal digits.
 
     """
 
-    header: dict[str, Any]
-    arrays: dict[str, Any]
+    header: LeafyHeader
+    arrays: dict[str, Array]
     identity: str
 
     @property
@@ -95,8 +132,23 @@ class Description:
         """What frames carry of the identity."""
         return int(self.identity[:8], 16)
 
+    def of_kind(self, number: int) -> dict[str, Array]:
+        """Arrays of a kind by name."""
+        begin = f"{number}/"
+        return {
+            name.removeprefix(begin): array
+            for name, array in self.arrays.items()
+            if name.startswith(begin)
+        }
 
-def encode_description(header: Mapping[str, Any], arrays: Mapping[str, Any]) -> bytes:
+    @cached_property
+    def scale(self) -> Floats:
+        """What full scale of each coordinate of all trees stands for, (m,)."""
+        scales = [self.arrays[f"{tree['kind']}/basis_scale"] for tree in self.header["trees"]]
+        return np.concatenate(scales).astype(np.float64)
+
+
+def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]) -> bytes:
     """
     Write a description.
 
@@ -163,8 +215,8 @@ def encode_frame(frame: Frame) -> bytes:
     coordinates = np.asarray(frame.coordinates, dtype="<i2")
     return (
         _FRAME.pack(
-            FRAME_KIND, VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF, frame.stamp,
-            x, y, z, len(coordinates),
+            FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
+            frame.stamp, x, y, z, len(coordinates),
         )
         + coordinates.tobytes()
     )  # fmt: skip
@@ -183,17 +235,17 @@ def decode_frame(data: bytes) -> Frame:
     if len(data) < _FRAME.size or data[0] != FRAME_KIND:
         raise FormatError("not a frame", where="tree state", cure="send frames of doc/streaming.md")
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
-    if version != VERSION or len(data) != _FRAME.size + 2 * count:
+    if version != FRAME_VERSION or len(data) != _FRAME.size + 2 * count:
         raise FormatError(
             f"a frame of version {version}, {count} coordinates and {len(data)} bytes",
             where="tree state",
-            cure=f"send version {VERSION}, {_FRAME.size} bytes and 2 per coordinate",
+            cure=f"send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate",
         )
     coordinates = np.frombuffer(data, dtype="<i2", offset=_FRAME.size)
     return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
 
 
-def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Any, bool]:
+def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
     """
     Coordinates as int16.
 
@@ -213,11 +265,11 @@ def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Any, bool]:
     return cut.astype("<i2"), bool((cut != exact).any())
 
 
-def _json(content: Mapping[str, Any]) -> bytes:
+def _json(content: Mapping[str, object]) -> bytes:
     return json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
 
 
-def _array(body: bytes, entry: Mapping[str, Any]) -> Any:
+def _array(body: bytes, entry: Mapping[str, Any]) -> Array:
     shape = tuple(int(size) for size in entry["shape"])
     count = int(np.prod(shape, dtype=np.int64))
     flat = np.frombuffer(body, dtype=_TYPES[entry["type"]], count=count, offset=entry["offset"])

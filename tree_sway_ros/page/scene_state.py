@@ -1,20 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The state of a running scene as frames: what is described once, what is told of each moment.
-
-"""
+"""The state of a running scene as frames: what is described once, what is told of each moment."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.scene.stand import Stand
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.page.description import describe_scene
 from tree_sway_ros.page.protocol import (
@@ -26,10 +23,17 @@ from tree_sway_ros.page.protocol import (
     encode_frame,
     quantised,
 )
-from tree_sway_ros.page.told_basis import ToldBasis, ToldTree, told_basis
+from tree_sway_ros.page.told_kind import ToldKind, told_kinds
 
 MOST_SEGMENTS = 300_000
-"""Of a scene that is described: some 20 MB, once."""
+"""Of all kinds that are described: some 20 MB, once."""
+
+MOST_COORDINATES = 65_535
+"""That a frame can count."""
+
+
+FULLY_LEAVED = 4
+"""Kinds of which each is described with all the clusters of leaves that are asked for."""
 
 
 class SceneState:
@@ -42,8 +46,9 @@ class SceneState:
     ----------
     simulator
         Of a tree, a forest or a stand.
-    leaves
-        Clusters that are drawn; None without.
+    n_leaves
+        How many clusters of leaves to describe on each kind that is in leaf; fewer where there are
+        more than `FULLY_LEAVED` kinds.
     frame_id
         Frame of the poses.
     is_running
@@ -52,55 +57,76 @@ class SceneState:
     Raises
     ------
     ParameterError
-        More than `MOST_SEGMENTS`.
+        More than `MOST_SEGMENTS` or `MOST_COORDINATES`.
 
     """
 
     def __init__(
         self,
         simulator: Simulator,
-        leaves: LeafClusters | None = None,
+        n_leaves: int = 0,
         frame_id: str = "map",
         *,
         is_running: bool = True,
     ) -> None:
         self.simulator = simulator
-        if simulator.tree.n_segments > MOST_SEGMENTS:
-            raise ParameterError(
-                f"a state of {simulator.tree.n_segments} segments",
-                where=simulator.tree.name,
-                cure=f"tell of up to {MOST_SEGMENTS}, and of more by their poses",
-            )
-        self._parts: tuple[ToldTree, ...] = (
-            simulator.members() if isinstance(simulator, Stand) else simulators_of(simulator)
-        )
-        found: dict[Any, ToldBasis] = {}
-        self.bases = [told_basis(each, found, is_running=is_running) for each in self._parts]
+        self.kinds = told_kinds(simulator, is_running=is_running)
+        own = tuple(each.tree.name for each in simulators_of(simulator))
+        self.names: tuple[str, ...] = simulator.names if isinstance(simulator, Stand) else own
+        self.n_branches = sum(len(k.numbers) * k.simulator.tree.n_branches for k in self.kinds)
+        self.n_segments = sum(len(k.numbers) * k.simulator.tree.n_segments for k in self.kinds)
+        name = simulator.told_as if isinstance(simulator, Stand) else simulator.tree.name
+        self._lay_out(name)
+        count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
+        leaves = [_leaves(kind, count) for kind in self.kinds]
         self.description = describe_scene(
-            simulator, self._parts, self.bases, frame_id=frame_id, leaves=leaves
+            name, self.kinds, self.names, frame_id=frame_id, leaves=leaves
         )
         described = decode_description(self.description)
         self.identity, self._short = described.identity, described.short_identity
         self._sequence = 0
 
+    def _lay_out(self, name: str) -> None:
+        """Number the coordinates of all trees, one tree after another."""
+        sizes = np.zeros(len(self.names), dtype=np.int64)
+        for kind in self.kinds:
+            sizes[kind.numbers] = len(kind.basis.scale)
+        segments = sum(kind.simulator.tree.n_segments for kind in self.kinds)
+        for told, most, what in (
+            (segments, MOST_SEGMENTS, "segments in trees of one shape each"),
+            (int(sizes.sum()), MOST_COORDINATES, "coordinates"),
+        ):
+            if told > most:
+                raise ParameterError(
+                    f"a state of {told} {what}",
+                    where=name,
+                    cure=f"tell of up to {most}, and of more by their poses",
+                )
+        first = np.cumsum([0, *sizes])
+        self._scale = np.zeros(first[-1])
+        self._rows = []
+        for kind in self.kinds:
+            rows = first[kind.numbers][:, None] + np.arange(len(kind.basis.scale))
+            self._scale[rows] = kind.basis.scale
+            self._rows.append(rows)
+        self._sizes = sizes.tolist()
+
     @property
     def coordinate_names(self) -> list[str]:
         """A name per coordinate: ``tree/c0``, or ``c0`` of a tree alone."""
-        is_alone = len(self._parts) == 1
+        is_alone = len(self.names) == 1
         return [
-            f"c{i}" if is_alone else f"{each.tree.name}/c{i}"
-            for each, basis in zip(self._parts, self.bases, strict=True)
-            for i in range(len(basis.scale))
+            f"c{i}" if is_alone else f"{name}/c{i}"
+            for name, size in zip(self.names, self._sizes, strict=True)
+            for i in range(size)
         ]
 
-    def coordinates(self) -> Any:
+    def coordinates(self) -> Floats:
         """Coordinates of all trees now, (m,)."""
-        return np.concatenate(
-            [
-                basis.coordinates(each.rotations())
-                for each, basis in zip(self._parts, self.bases, strict=True)
-            ]
-        )
+        whole = np.empty(len(self._scale))
+        for kind, rows in zip(self.kinds, self._rows, strict=True):
+            whole[rows] = kind.coordinates()
+        return whole
 
     def frame(self, stamp: int, *, is_paused: bool = False, has_restarted: bool = False) -> bytes:
         """
@@ -116,11 +142,17 @@ class SceneState:
             Whether the motion jumped since the frame before.
 
         """
-        steps, flags = [], PAUSED * is_paused + RESTARTED * has_restarted
-        for each, basis in zip(self._parts, self.bases, strict=True):
-            told, is_cut = quantised(basis.coordinates(each.rotations()), basis.scale)
-            steps.append(told)
-            flags |= BEYOND_SCALE if is_cut else 0
+        told, is_cut = quantised(self.coordinates(), self._scale)
+        flags = PAUSED * is_paused + RESTARTED * has_restarted + BEYOND_SCALE * is_cut
         self._sequence += 1
-        whole, wind = np.concatenate(steps), self.simulator.wind
-        return encode_frame(Frame(self._short, self._sequence - 1, stamp, flags, wind, whole))
+        frame = Frame(self._short, self._sequence - 1, stamp, flags, self.simulator.wind, told)
+        return encode_frame(frame)
+
+
+def _leaves(kind: ToldKind, count: int) -> LeafClusters | None:
+    """Clusters of leaves of a kind; None where it bears none."""
+    simulator = kind.simulator
+    if not count or not is_in_leaf(simulator.species, simulator.settings.in_leaf):
+        return None
+    rng, traits = np.random.default_rng(0), simulator.species.leaves
+    return leaf_clusters(simulator.tree, rng, count=count, traits=traits)

@@ -12,22 +12,23 @@ the newest one, so that a slow client sees fewer frames, not old ones.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import ssl
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp.typedefs import Handler
 
 from tree_sway_ros.errors import TransportError
 from tree_sway_ros.page.access import refusal, require_token
-from tree_sway_ros.page.controls import ControlPanel
+from tree_sway_ros.page.controls import ControlPanel, Value
 from tree_sway_ros.page.doorkeeper import Doorkeeper
 
 LARGEST_MESSAGE = 4096
@@ -82,7 +83,7 @@ class PageSettings:
 class _Client:
     """One connected page: its credit, and what it has been sent."""
 
-    def __init__(self, socket: web.WebSocketResponse, transport: Any) -> None:
+    def __init__(self, socket: web.WebSocketResponse, transport: asyncio.Transport | None) -> None:
         self.socket, self.transport = socket, transport
         self.credit = 0
         self.period = 0.0
@@ -119,7 +120,7 @@ class PageServer:
         self,
         settings: PageSettings,
         panel: ControlPanel | None = None,
-        status: Callable[[], dict[str, Any]] | None = None,
+        status: Callable[[], Mapping[str, object]] | None = None,
     ) -> None:
         require_token(settings.address, settings.token)
         self.settings = settings
@@ -198,7 +199,9 @@ class PageServer:
             self._is_woken = True
             self._call(self._wake_all)
 
-    def tell(self, content: dict[str, Any], values: dict[str, Any] | None = None) -> None:
+    def tell(
+        self, content: Mapping[str, object], values: Mapping[str, Value] | None = None
+    ) -> None:
         """
         Tell all pages something, from any thread.
 
@@ -271,7 +274,7 @@ class PageServer:
             await runner.cleanup()
 
     @web.middleware
-    async def _guard(self, request: web.Request, handler: Any) -> web.StreamResponse:
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         self._doors.let_in(request.protocol)
         if request.can_read_body:
             self._counts["refused"] += 1
@@ -369,7 +372,7 @@ class PageServer:
         client.wake.set()
         return True
 
-    def _change(self, client: _Client, change: Any) -> None:
+    def _change(self, client: _Client, change: object) -> None:
         change = change if isinstance(change, dict) else {}
         name = change.get("name")
         why = self._panel.set(name, change.get("value"))
@@ -380,7 +383,7 @@ class PageServer:
             return
         self._tell_all({"values": self._panel.values()})
 
-    def _tell_all(self, content: dict[str, Any]) -> None:
+    def _tell_all(self, content: Mapping[str, object]) -> None:
         text = json.dumps(content)
         for client in self._clients:
             client.texts.append(text)
@@ -420,8 +423,10 @@ class PageServer:
         await client.socket.send_bytes(frame)
 
     async def _tell_status(self) -> None:
-        while True:
-            await asyncio.sleep(STATUS_PERIOD)
+        assert self._ending is not None
+        while not self._ending.is_set():
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._ending.wait(), STATUS_PERIOD)
             silent_since = time.monotonic() - IDLE_TIME
             for client in tuple(self._clients):
                 if client.last_heard < silent_since:

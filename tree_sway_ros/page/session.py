@@ -14,14 +14,13 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
-from tree_sway_ros.core.leaves.foliage import LeafClusters
-from tree_sway_ros.core.scene.demand import tell_demand
+from tree_sway_ros.core.scene.demand import set_demand
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import ParameterError, TreeSwayError
+from tree_sway_ros.page.controls import Value
 from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
@@ -56,8 +55,11 @@ class Choices:
     damping_ratio: float = 0.0
 
 
-Build = Callable[[Choices], tuple[Simulator, LeafClusters | None]]
-"""Makes the simulator and the leaves, or none, of some choices."""
+Build = Callable[[Choices], Simulator]
+"""Makes the simulator of some choices."""
+
+_LEAVES = 1000
+"""Clusters of leaves of each kind of tree."""
 
 
 class Session:
@@ -67,7 +69,7 @@ class Session:
     Parameters
     ----------
     build
-        Makes the simulator and the leaves.
+        Makes the simulator.
     choices
         What to begin with.
     wind
@@ -125,7 +127,7 @@ class Session:
         if self._thread.is_alive():
             self._thread.join(timeout=5.0)
 
-    def apply(self, name: str, value: Any) -> None:
+    def apply(self, name: str, value: Value) -> None:
         """
         Carry out a change of a viewer.
 
@@ -140,20 +142,21 @@ class Session:
         elif name == "reset":
             self._resets = True
         elif name == "tolerance":
-            self._tolerance = float(value)
-            tell_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
+            self._tolerance = float(value or 0.0)
+            set_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
         elif name in ("mean_speed", "intensity", "bearing_to"):
             if not isinstance(self.wind, SimulatedWind):
                 raise ParameterError(
                     "the wind is a record", where=name, cure="start without --wind"
                 )
-            self.wind.set(name, float(value))
+            self.wind.set(name, float(value or 0.0))
         elif name in Choices.__dataclass_fields__:
-            self._want(replace(self._wanted or self.choices, **{name: value}))
+            changed = {name: value}
+            self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
         else:
             raise ParameterError(f"'{name}' cannot be changed", where="page")
 
-    def status(self) -> dict[str, Any]:
+    def status(self) -> dict[str, object]:
         """What the page shows beside the tree."""
         simulator = self._scene.simulator
         return {
@@ -161,17 +164,17 @@ class Session:
             "rate": round(1.0 / max(self._spacing, 1e-6), 1),
             "work_us": round(1e6 * self._work, 1),
             "late": self._late,
-            "branches": simulator.tree.n_branches,
-            "segments": simulator.tree.n_segments,
+            "branches": self._scene.n_branches,
+            "segments": self._scene.n_segments,
             "solved": simulator.n_solved,
             "building": self._wanted is not None,
             "paused": self._is_paused,
         }
 
     def _made(self, choices: Choices) -> SceneState:
-        simulator, leaves = self._build(choices)
-        scene = SceneState(simulator, leaves, is_running=False)
-        tell_demand(simulators_of(simulator), tolerance=self._tolerance)
+        simulator = self._build(choices)
+        scene = SceneState(simulator, _LEAVES, is_running=False)
+        set_demand(simulators_of(simulator), tolerance=self._tolerance)
         simulator.reset()
         return scene
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The wind of a live tree without ROS: simulated, or a record that is played over and over.
-
-"""
+"""The wind of a live tree without ROS: simulated, or a record that is played over and over."""
 
 from __future__ import annotations
 

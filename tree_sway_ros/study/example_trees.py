@@ -134,9 +134,9 @@ def _grown(orders: list[_Order], segments: int, angle: float, name: str) -> Tree
             for along in orders[order].children:
                 turns += 1
                 node = round(along * segments)
-                seat = base + node / segments * orders[order].length * direction
+                carrying = base + node / segments * orders[order].length * direction
                 way = _aside(direction, math.radians(angle), turns * _GOLDEN_ANGLE)
-                shoots.append((seat, way, order + 1, segments * index + node - 1))
+                shoots.append((carrying, way, order + 1, segments * index + node - 1))
     start: list[Floats] = []
     end: list[Floats] = []
     width: list[Floats] = []

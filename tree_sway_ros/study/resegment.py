@@ -60,8 +60,8 @@ def resegment(
     parent[0] = -1
     for branch in range(1, tree.n_branches):
         carrier = int(tree.branch_parent[branch])
-        seat = np.searchsorted(cuts[carrier], _place(tree, branch), side="left") - 1
-        parent[first[branch]] = first[carrier] + np.clip(seat, 0, counts[carrier] - 1)
+        carrying = np.searchsorted(cuts[carrier], _place(tree, branch), side="left") - 1
+        parent[first[branch]] = first[carrier] + np.clip(carrying, 0, counts[carrier] - 1)
     return tree_from_segments(
         *(np.concatenate(column) for column in zip(*pieces, strict=True)),
         parent=parent,
@@ -149,6 +149,6 @@ def _pieces(tree: Tree, branch: int, cuts: Floats) -> tuple[Floats, Floats, Floa
 def _place(tree: Tree, branch: int) -> float:
     """Where a branch sits on its parent, counted in the parent's segments."""
     first = int(tree.branch_first[branch])
-    seat = int(tree.segment_parent[first])
-    within = seat - int(tree.branch_first[tree.branch_parent[branch]])
+    carrying = int(tree.segment_parent[first])
+    within = carrying - int(tree.branch_first[tree.branch_parent[branch]])
     return within + float(tree.place_on_parent[first])

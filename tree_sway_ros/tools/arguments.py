@@ -17,10 +17,15 @@ from tree_sway_ros.core.tree.species import Species, species_keys
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.export.tree_export import write_tree
+from tree_sway_ros.files.reader_options import reader_options
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway_ros.files.wind.record import WindRecord
+from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
+from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools.progress import waiting
 
 OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
@@ -81,7 +86,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
 
     """
     with waiting(f"opening {arguments.tree}"):
-        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments.option))
+        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
     return _of_wood(opened, arguments)
 
 
@@ -96,7 +101,7 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
 
     """
     with waiting(f"opening {arguments.tree}"):
-        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments.option))
+        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments))
     if isinstance(scene, TreeFile):
         return _of_wood(scene, arguments)
     if _wood(arguments):
@@ -127,24 +132,11 @@ def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     return changed
 
 
-def _options(given: list[str]) -> dict[str, Any]:
-    """Options of the reader: numbers and truths as such, all else as text."""
-    options: dict[str, Any] = {}
-    for each in given:
-        name, equals, text = each.partition("=")
-        if not (name and equals and text):
-            raise ParameterError(f"'{each}'", where="--option", cure="write NAME=VALUE")
-        options[name.strip().replace("-", "_")] = _value(text.strip())
-    return options
-
-
-def _value(text: str) -> Any:
-    if text in ("true", "false"):
-        return text == "true"
+def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     try:
-        return float(text)
-    except ValueError:
-        return text
+        return reader_options(arguments.option)
+    except ParameterError as error:
+        raise error.at("--option") from None
 
 
 def add_leaves_argument(parser: argparse.ArgumentParser) -> None:
@@ -176,8 +168,45 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = "") -> Non
     """Add the record of a wind, and the speed of a simulated one; `record` is the first's help."""
     told = record or "a wind record; simulated if left out"
     parser.add_argument("--wind", metavar="FILE", help=told)
+    told = (
+        "how to read it, such as topic=/mast/wind, yaw=1.57, direction_convention=from or rate=20"
+    )
+    parser.add_argument(
+        "--wind-option", action="append", default=[], metavar="NAME=VALUE", help=told
+    )
     told = "mean of the simulated wind [m/s] (%(default)s)"
     parser.add_argument("--speed", type=float, default=6.0, metavar="U", help=told)
+
+
+def opened_record(arguments: argparse.Namespace) -> WindRecord:
+    """Read the record that the arguments name, as they say."""
+    options: dict[str, Any] = {**reader_options(arguments.wind_option)}
+    return read_wind(arguments.wind, **options)
+
+
+def opened_wind(arguments: argparse.Namespace) -> WindSource:
+    """
+    Open the record that the arguments name, over and over, or the simulated wind of their speed.
+
+    Raises
+    ------
+    TreeSwayError
+        A record that cannot be read, or a speed out of the range of the simulated anemometer.
+
+    """
+    if arguments.wind is not None:
+        record = opened_record(arguments)
+        return RecordedWind(record.time, record.velocity)
+    speed = next(p for p in NODE_PARAMETERS["anemometer"] if p.name == "mean_speed")
+    return SimulatedWind(speed.checked(arguments.speed))
+
+
+def add_sway_arguments(parser: argparse.ArgumentParser, record: str = "") -> None:
+    """Add a scene, a wind, a model and leaves: all that a command needs to let a tree sway."""
+    add_tree_arguments(parser, forests=True, default="benjamina")
+    add_wind_arguments(parser, record)
+    add_model_argument(parser)
+    add_leaves_argument(parser)
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:

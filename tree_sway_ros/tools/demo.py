@@ -23,13 +23,7 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
-from tree_sway_ros.tools.arguments import (
-    add_leaves_argument,
-    add_model_argument,
-    add_tree_arguments,
-    add_wind_arguments,
-    opened_scene,
-)
+from tree_sway_ros.tools.arguments import add_sway_arguments, opened_scene
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.only_demo import only_demo
@@ -39,8 +33,10 @@ from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser, forests=True, default="benjamina")
-    add_wind_arguments(parser)
+    add_sway_arguments(parser)
+    parser.add_argument(
+        "--start", type=float, default=0.0, metavar="T", help="skip so much of the record [s]"
+    )
     parser.add_argument(
         "--sensor",
         metavar="ADDRESS",
@@ -53,8 +49,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)"
     )
-    add_model_argument(parser)
-    add_leaves_argument(parser)
     parser.add_argument(
         "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
     )
@@ -78,24 +72,25 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
         f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
         flush=True,
     )
-    with Ending() as ending, only_demo(), Composition({}) as nodes:
-        monitor = StreamMonitor(nodes.context, tree)
+    with (
+        Ending() as ending,
+        only_demo(),
+        Composition({}) as nodes,
+        StreamMonitor(nodes.context, tree) as monitor,
+    ):
 
         def goes_on() -> bool:
             nodes.check()
             return not nodes.is_done
 
-        try:
-            monitor.expect_silence()
-            for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
-                nodes.add(name, values)
-            if not arguments.no_page:
-                _serve_page(nodes, arguments)
-            ending.limit = LONGEST
-            watch(monitor, seconds, goes_on)
-            print(summary(monitor.totals, arguments.rate), flush=True)
-        finally:
-            monitor.close()
+        monitor.expect_silence()
+        for name, values in _nodes(arguments, _tree_of(scene, arguments, folder)).items():
+            nodes.add(name, values)
+        if not arguments.no_page:
+            _serve_page(nodes, arguments)
+        ending.limit = LONGEST
+        watch(monitor, seconds, goes_on)
+        print(summary(monitor.totals, arguments.rate), flush=True)
     return 0
 
 
@@ -142,4 +137,9 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
         return {"sensor": {"address": arguments.sensor}, "wind": {}, "solver": solver}
     if arguments.wind is None:
         return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
-    return {"player": {"file": arguments.wind}, "wind": {}, "solver": solver}
+    player = {
+        "file": arguments.wind,
+        "reader_options": " ".join(arguments.wind_option),
+        "start": arguments.start,
+    }
+    return {"player": player, "wind": {}, "solver": solver}

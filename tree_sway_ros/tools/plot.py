@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.reference.measure import frame_means
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.wind.convention import velocity_of_bearing
@@ -24,36 +25,31 @@ from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.tools.arguments import (
-    add_leaves_argument,
-    add_model_argument,
     add_output_arguments,
-    add_tree_arguments,
-    add_wind_arguments,
+    add_sway_arguments,
     drawn_leaves,
+    opened_record,
     opened_scene,
     output_path,
     told_leaves,
 )
 from tree_sway_ros.tools.progress import bar, waiting
-from tree_sway_ros.tools.sway_in_wind import Samples, recorded, simulated, sway_in_wind
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
+_STEP = 1.0 / 60.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser, forests=True, default="benjamina")
+    add_sway_arguments(parser)
     parser.add_argument(
         "--portrait",
         action="store_true",
         help="draw the tree at rest and, beside it, in a steady wind",
     )
-    add_leaves_argument(parser)
-    add_wind_arguments(parser)
     parser.set_defaults(speed=None)
     parser.add_argument(
         "--from",
@@ -66,7 +62,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
     )
-    add_model_argument(parser)
     picture = "picture (sway.png, or the next name that is free)"
     add_output_arguments(parser, picture, required=False)
 
@@ -123,17 +118,24 @@ def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> S
 def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output: str) -> None:
     speed = 6.0 if arguments.speed is None else arguments.speed
     source = f"simulated wind, mean {speed:g} m/s"
-    samples: Samples
     if arguments.wind is None:
-        bearing_to = math.radians(arguments.bearing + 180.0)
-        samples = simulated(AnemometerModel(speed, bearing_to=bearing_to))
+        model = AnemometerModel(speed, bearing_to=math.radians(arguments.bearing + 180.0))
+        ticks = range(math.ceil(arguments.seconds * model.rate) + 1)
+        time, velocity = np.array(ticks) / model.rate, np.array([*map(model.sample, ticks)])
         if arguments.bearing != 270.0:
             source += f" from {arguments.bearing:g} degrees"
     else:
-        record = read_wind(arguments.wind)
-        samples, source = recorded(record), Path(record.source).name
-    result = sway_in_wind(_simulator(scene, arguments), samples, arguments.seconds)
-    if len(result.time) < 2:
+        record = opened_record(arguments)
+        time, velocity, source = record.time, record.velocity, Path(record.source).name
+    wind = np.zeros((0, 3))
+    if len(time) > 1:
+        wind = frame_means(time, velocity, _STEP)[: round(arguments.seconds / _STEP)]
+    if len(wind) < 2:
         raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
+    simulator, tip = _simulator(scene, arguments), []
+    for mean in bar(wind, "swaying"):
+        simulator.step(mean, _STEP)
+        tip.append(simulator.tip_displacement)
     title = f"{scene.tree.name}, {arguments.model}, {source}"
-    plot_wind_and_tip(result.time, result.wind, result.tip, output, title=title)
+    end = _STEP * np.arange(1, len(wind) + 1)
+    plot_wind_and_tip(end, wind, np.array(tip), output, title=title)

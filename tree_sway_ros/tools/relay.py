@@ -21,18 +21,23 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.page.scene_state import SceneState
 from tree_sway_ros.page.server import PageServer
-from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway_ros.relay.line import Line
 from tree_sway_ros.relay.tree_site import Site
 from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
 from tree_sway_ros.ros.process.ending import Ending
-from tree_sway_ros.tools.arguments import add_tree_arguments, add_wind_arguments, opened_tree
+from tree_sway_ros.ros.process.listener import Listener
+from tree_sway_ros.tools.arguments import (
+    add_tree_arguments,
+    add_wind_arguments,
+    opened_tree,
+    opened_wind,
+)
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 
 _MODELS = tuple(name for name in FIDELITIES if name != "auto")
@@ -73,9 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Send or receive until the time is over or Ctrl-C."""
     for name, low, high in (("rate", 1, 1000), ("pace", 0.01, 1000.0), ("lose", 0.0, 1.0)):
-        value = getattr(arguments, name)
-        if not low <= value <= high:
-            raise ParameterError(f"{value:g}", where=f"--{name}", cure=f"give {low:g} .. {high:g}")
+        within(f"--{name}", getattr(arguments, name), low, high)
     with contextlib.ExitStack() as stack:
         ending = stack.enter_context(Ending())
         line = stack.enter_context(Line(arguments.key, arguments.listen, arguments.connect))
@@ -149,10 +152,7 @@ class _Relay:
             while True:
                 yield from map(decode_wind, self._ros.taken(_LOOK))
         arguments = self._arguments
-        source: WindSource = SimulatedWind(arguments.speed)
-        if arguments.wind is not None:
-            record = read_wind(arguments.wind)
-            source = RecordedWind(record.time, record.velocity)
+        source = opened_wind(arguments)
         begin, wall, pause = time.monotonic(), time.time_ns(), threading.Event()
         for number in range(1 << 40):
             at = number / _WIND_RATE
@@ -218,43 +218,25 @@ class _Relay:
             self._line.put("frame", frame)
 
 
-class _RosWind:
+class _RosWind(Listener):
     """`wind/filtered` of this site as bytes: heard where it sends, published where it receives."""
 
     def __init__(self, hears: bool) -> None:
-        from tree_sway_ros.ros.process.spin import create, init, require_rclpy
         from tree_sway_ros.ros.process.topics import WIND_FILTERED, message_class, qos_profile
 
-        rclpy = require_rclpy()
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.node import Node
-
-        self._context = rclpy.context.Context()
-        off = rclpy.signals.SignalHandlerOptions.NO
-        init(rclpy, [], context=self._context, signal_handler_options=off)
-        self._node: Any = create(lambda **o: Node("tree_sway_relay", **o), context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
+        super().__init__("tree_sway_relay")
         self._heard: list[bytes] = []
         kind, name = message_class(WIND_FILTERED), WIND_FILTERED.name
         quality = qos_profile(WIND_FILTERED)
         self.publish: Callable[[bytes], None] = lambda data: None
         if hears:
-            self._node.create_subscription(kind, name, self._heard.append, quality, raw=True)
+            self.node.create_subscription(kind, name, self._heard.append, quality, raw=True)
         else:
-            self.publish = self._node.create_publisher(kind, name, quality).publish
+            self.publish = self.node.create_publisher(kind, name, quality).publish
 
     def taken(self, seconds: float) -> list[bytes]:
         """What has come, after waiting so long for more [s]."""
-        self._executor.spin_once(timeout_sec=seconds)
+        self.spin_once(seconds)
         taken = self._heard.copy()
         self._heard.clear()
         return taken
-
-    def __enter__(self) -> _RosWind:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._executor.shutdown(timeout_sec=1.0)
-        self._node.destroy_node()
-        self._context.try_shutdown()

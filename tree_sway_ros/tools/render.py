@@ -11,17 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.wind.wind_file import read_wind
-from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
-from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.core.checks import within
+from tree_sway_ros.page.wind_source import WindSource
 from tree_sway_ros.tools.arguments import (
-    add_leaves_argument,
-    add_model_argument,
     add_output_arguments,
-    add_tree_arguments,
-    add_wind_arguments,
+    add_sway_arguments,
     opened_scene,
+    opened_wind,
     output_path,
     told_leaves,
 )
@@ -35,8 +31,7 @@ _BLADES = 2800
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser, forests=True, default="benjamina")
-    add_wind_arguments(parser)
+    add_sway_arguments(parser)
     parser.add_argument(
         "--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)"
     )
@@ -47,29 +42,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--pixels", type=int, default=480, help="height of the picture (%(default)s)"
     )
-    add_model_argument(parser)
-    add_leaves_argument(parser)
     add_output_arguments(parser, "file to write: .gif, .png, .mp4, or a folder for its frames")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Sway the tree, paint it, and say how long that took."""
     for name, low, high in (("seconds", 0.1, 3600.0), ("rate", 1.0, 120.0), ("pixels", 64, 4320)):
-        value = getattr(arguments, name)
-        if not low <= value <= high:
-            raise ParameterError(f"{value:g}", where=f"--{name}", cure=f"give {low:g} .. {high:g}")
+        within(f"--{name}", getattr(arguments, name), low, high)
     from tree_sway_ros.view.animation import animate_poses
     from tree_sway_ros.view.leaf_drawing import blades_per_cluster
 
     target = output_path(arguments)
     scene = opened_scene(arguments)
-    wind: WindSource
-    if arguments.wind is None:
-        speed = next(p for p in NODE_PARAMETERS["anemometer"] if p.name == "mean_speed")
-        wind = SimulatedWind(speed.checked(arguments.speed))
-    else:
-        record = read_wind(arguments.wind)
-        wind = RecordedWind(record.time, record.velocity)
+    wind = opened_wind(arguments)
     with waiting("setting up the tree"):
         simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
     clusters = _BLADES // blades_per_cluster(scene.tree.species)

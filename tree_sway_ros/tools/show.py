@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
-from tree_sway_ros.core.leaves.foliage import LeafClusters
 from tree_sway_ros.core.scene.stand import StandKind, StandTree
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.simulator.settings import Settings
@@ -22,19 +21,16 @@ from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.page.controls import Control, ControlPanel
 from tree_sway_ros.page.server import PageServer
 from tree_sway_ros.page.session import Choices, Session
-from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSource
+from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Parameter
 from tree_sway_ros.tools.arguments import (
-    add_leaves_argument,
-    add_model_argument,
-    add_tree_arguments,
-    add_wind_arguments,
+    add_sway_arguments,
     opened_scene,
+    opened_wind,
     told_leaves,
 )
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
@@ -45,7 +41,6 @@ _SPACING = 1.2
 _BY_TABLE = ("auto", "modes", "wind_basis")
 """Models that a stand has one table per kind for, wherever its trees stand."""
 
-_LEAVES = 1000
 _COUNTS = ("1", "9", "100")
 _LABELS = {
     "mean_speed": "Wind",
@@ -59,10 +54,7 @@ _LABELS = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_tree_arguments(parser, forests=True, default="benjamina")
-    add_wind_arguments(parser, "a wind record, played over and over; simulated if left out")
-    add_model_argument(parser)
-    add_leaves_argument(parser)
+    add_sway_arguments(parser, "a wind record, played over and over; simulated if left out")
     parser.add_argument(
         "--stand", type=int, default=1, metavar="N", help="so many of the tree (%(default)s)"
     )
@@ -78,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
     settings = page_settings(arguments)
     if arguments.stand < 1:
         raise ParameterError(f"a stand of {arguments.stand}", cure="ask for 1 tree or more")
-    wind = _wind(arguments)
+    wind = opened_wind(arguments)
     print(f"{arguments.tree}: starting (the first start compiles, up to a minute)", flush=True)
     choices = Choices(arguments.tree, str(arguments.stand), arguments.model)
     session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
@@ -103,10 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def build_scene(
-    choices: Choices, arguments: argparse.Namespace
-) -> tuple[Simulator, LeafClusters | None]:
-    """Make simulator and leaves of what was chosen."""
+def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
+    """Make the simulator of what was chosen."""
     is_first = choices.tree == arguments.tree
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
     count = int(choices.count)
@@ -114,17 +104,9 @@ def build_scene(
         if isinstance(scene, ForestFile):
             raise ParameterError("a stand of a forest", where="--stand", cure="name one tree")
         scene = stand(scene, count, choices.fidelity)
-    in_leaf = told_leaves(arguments)
-    settings = replace(Settings(), damping_ratio=choices.damping_ratio or None, in_leaf=in_leaf)
-    simulator = scene.simulator(settings, model=choices.fidelity)
-    return simulator, scene.leaves(in_leaf, _LEAVES)
-
-
-def _wind(arguments: argparse.Namespace) -> WindSource:
-    if arguments.wind is None:
-        return SimulatedWind(_parameter("anemometer", "mean_speed").checked(arguments.speed))
-    record = read_wind(arguments.wind)
-    return RecordedWind(record.time, record.velocity)
+    damping, in_leaf = choices.damping_ratio or None, told_leaves(arguments)
+    settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
+    return scene.simulator(settings, model=choices.fidelity)
 
 
 def stand(scene: TreeFile, count: int, fidelity: str) -> StandFile:

@@ -21,7 +21,7 @@ class _Spray:
 
     Parameters
     ----------
-    seats
+    places
         Place of each blade along the spray in lengths of a blade.
     fans, tilts
         How each fans out in the plane of the cluster, and turns about itself, in [rad].
@@ -30,7 +30,7 @@ class _Spray:
 
     """
 
-    seats: Floats
+    places: Floats
     fans: Floats
     tilts: Floats
     length: float
@@ -38,14 +38,14 @@ class _Spray:
 
 
 _LEAVES = _Spray(
-    seats=np.array([-0.55, -0.3, -0.05, 0.15]),
+    places=np.array([-0.55, -0.3, -0.05, 0.15]),
     fans=np.array([0.95, -0.85, 0.7, -0.25]),
     tilts=np.array([0.35, -0.3, 0.4, -0.2]),
     length=0.9,
     width=1.0,
 )
 _NEEDLES = _Spray(
-    seats=np.linspace(-0.7, 0.2, 9),
+    places=np.linspace(-0.7, 0.2, 9),
     fans=np.array([0.8, -0.7, 0.6, -0.8, 0.5, -0.5, 0.4, -0.35, 0.05]),
     tilts=np.linspace(-0.8, 0.8, 9),
     length=1.0,
@@ -59,7 +59,7 @@ _BLADE = np.array([[0.0, 0.0], [0.3, 0.19], [0.6, 0.2], [1.0, 0.0], [0.6, -0.2],
 
 def blades_per_cluster(species: str) -> int:
     """Blades that a cluster of a species is drawn by."""
-    return len(_spray_of(species).seats)
+    return len(_spray_of(species).places)
 
 
 def _spray_of(species: str) -> _Spray:
@@ -86,16 +86,16 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
 
     """
     spray = _spray_of(species)
-    m, k = len(poses), len(spray.seats)
+    m, k = len(poses), len(spray.places)
     cluster = Rotation.from_quat(np.repeat(poses[:, 3:], k, axis=0))
     turn = np.column_stack([np.tile(spray.fans, m), np.tile(spray.tilts, m)])
     own = cluster * Rotation.from_euler("ZX", turn)
     blade = np.column_stack([_BLADE[:, 0], spray.width * _BLADE[:, 1], np.zeros(len(_BLADE))])
     length = spray.length * np.repeat(size, k)
-    seat = np.repeat(poses[:, :3], k, axis=0)
-    seat = seat + (np.tile(spray.seats, m) * length)[:, None] * cluster.apply([1.0, 0.0, 0.0])
+    base = np.repeat(poses[:, :3], k, axis=0)
+    base = base + (np.tile(spray.places, m) * length)[:, None] * cluster.apply([1.0, 0.0, 0.0])
     corners = np.einsum("mij,kj->mki", own.as_matrix(), blade)
-    return seat[:, None] + length[:, None, None] * corners, own.apply([0.0, 0.0, 1.0])
+    return base[:, None] + length[:, None, None] * corners, own.apply([0.0, 0.0, 1.0])
 
 
 def leaf_colors(species: str, normal: Floats, depth: Floats, camera: Camera) -> Floats:

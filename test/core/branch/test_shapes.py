@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.branch.beam import RotationField
+from tree_sway_ros.core.branch.beam import RotationField, energies
 from tree_sway_ros.core.branch.model import branch_models
 from tree_sway_ros.core.branch.shapes import FEWER_TURNS, N_PAIRS, N_TURNS, across
 from tree_sway_ros.core.reduction.matrices import reduce_tree
@@ -46,9 +46,7 @@ def test_an_enriched_branch_has_pairs_and_what_carries_turns(fork):
 
 def test_further_ways_are_orthogonal_in_energy(fork):
     for model in branch_models(fork(), 900.0, carries=True, enriched=frozenset(range(4))):
-        energy = np.array(
-            [[a.stiffness(b, 1.0, 1.0 / 14.0) for b in model.fields] for a in model.fields]
-        )
+        energy = energies(model.fields, 1.0, 1.0 / 14.0)
         scale = 1.0 / np.sqrt(np.diag(energy))
         energy *= np.outer(scale, scale)
         energy[0, 1] = energy[1, 0] = 0.0
@@ -80,7 +78,7 @@ def test_stiffness_of_bending_and_of_twist(stem, sketch):
     twist = RotationField(beam, np.broadcast_to([0.0, 0.0, 0.5], (*beam.place.shape, 3)))
     # A shaft turned at its end: G J / L.
     polar = np.pi / 32.0 * 0.02**4
-    assert twist.stiffness(twist, 9e9, 3.5e9) == pytest.approx(3.5e9 * polar / 2.0)
+    assert energies([twist], 9e9, 3.5e9)[0, 0] == pytest.approx(3.5e9 * polar / 2.0)
 
 
 def test_a_carried_crown_bends_the_branch_as_a_tip_load(sketch):

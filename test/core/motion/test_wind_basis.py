@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import time
 from itertools import pairwise
 
 import numpy as np
@@ -12,8 +11,6 @@ import pytest
 
 from tree_sway_ros.core.fidelity.ladder import TABLE_FLOOR, TABLE_MARGIN
 from tree_sway_ros.core.growth.builtin import builtin_tree
-from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.wind_basis import step_instance
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import ParameterError
@@ -141,25 +138,9 @@ def test_a_degree_that_is_none_is_refused(fork, degree):
         SwaySimulator(fork(), model="wind_basis", degree=degree)
 
 
-@fused
-def _many(tables, paces, instances, winds):
-    for wind in winds:
-        step_instance(tables[0], paces[0], instances[0], False, wind[0], wind[1], wind[2], 0.7)
-
-
-def test_a_step_costs_the_same_whatever_the_size():
-    winds = np.vstack([gusty(6.0)] * 4)
-    banks = []
+def test_a_step_works_on_as_much_whatever_the_size():
+    sizes = set()
     for tree in (crooked(1, n_branches=20), builtin_tree("broadleaf")):
-        sim = SwaySimulator(tree, model="wind_basis")
-        sim.step((1.0, 0.0, 0.0), DT)
-        bank = sim.bank.oscillators
-        banks.append((bank.record, bank.pace, bank.instance))
-        _many(*banks[-1], winds[:5])
-    times = np.full(2, np.inf)
-    for _ in range(20):
-        for row, bank in enumerate(banks):
-            begun = time.perf_counter()
-            _many(*bank, winds)
-            times[row] = min(times[row], time.perf_counter() - begun)
-    assert times.max() <= 1.2 * times.min()
+        bank = SwaySimulator(tree, model="wind_basis").bank.oscillators
+        sizes.add((bank.record.nbytes, bank.pace.nbytes, bank.instance.nbytes))
+    assert len(sizes) == 1

@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway_ros.core.scene.demand import tell_demand, tell_pace
+from tree_sway_ros.core.scene.demand import set_demand, set_pace
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
@@ -23,7 +23,7 @@ def pair(fork):
 
 def test_each_tree_gets_its_share_of_the_budget(pair):
     pinned = SwaySimulator(pair[0].tree, OAK)
-    tell_demand([*pair, pinned], tolerance=0.01, budget=40.0)
+    set_demand([*pair, pinned], tolerance=0.01, budget=40.0)
     assert [each.budget for each in pair] == pytest.approx([10.0, 30.0])
     assert [each.tolerance for each in pair] == [0.01, 0.01]
     assert not hasattr(pinned, "tolerance")
@@ -31,13 +31,13 @@ def test_each_tree_gets_its_share_of_the_budget(pair):
 
 def test_a_camera_turns_pixels_into_metres(pair):
     far = pair[0].tree.start[0] - (50.0, 0.0, 0.0)
-    tell_demand(pair, tolerance=9.0, camera=far, tolerance_pixels=2.0, focal_length=500.0)
+    set_demand(pair, tolerance=9.0, camera=far, tolerance_pixels=2.0, focal_length=500.0)
     assert pair[0].tolerance == pytest.approx(2.0 * 50.0 / 500.0, rel=0.05)
     assert pair[0].budget == 0.0
 
 
 def test_pace_makes_foreseen_costs_real(pair):
-    tell_pace(pair, 1234.0)
-    tell_pace(pair, 1234.0)
+    set_pace(pair, 1234.0)
+    set_pace(pair, 1234.0)
     assert sum(each.frame_cost for each in pair) == pytest.approx(1234.0)
     assert pair[0].pace == pair[1].pace

@@ -14,7 +14,7 @@ from tree_sway_ros.files.stands.shard import dealt
 from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
 
-ROWS = [(4.0 * i, 3.0 * (i % 3), ("pine", "oak")[i % 2], 3.0 + 0.2 * i) for i in range(7)]
+ROWS = [(4.0 * i, 3.0 * (i % 3), ("pine", "oak")[i % 2], 1.5 + 0.1 * i) for i in range(7)]
 
 
 @pytest.fixture

@@ -6,8 +6,9 @@ Make the test vectors that Python and JavaScript both read: a description, frame
     python test/page/vectors/make_vectors.py
 
 The scene is small but has all that placing knows: enriched branches with further shapes and
-twists, a tree whose twigs move with their parents as one body, deep bending, two trees. The poses
-are placed by the solver from key rotations, not by a decoder of frames.
+twists, a tree whose twigs move with their parents as one body, deep bending, two kinds, of one of
+which a second tree stands turned and scaled. The poses are placed by the solver from key rotations,
+not by a decoder of frames.
 
 """
 
@@ -19,9 +20,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.scene.placed_tree import joined
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
 from tree_sway_ros.core.simulator.settings import Settings
@@ -35,6 +36,12 @@ from tree_sway_ros.page.protocol import PAUSED, Frame, decode_description, encod
 HERE = Path(__file__).parent
 N_COORDINATES = 5
 SETTINGS = Settings(model="coupled", enrich="all")
+TREES = (
+    ("left", 0, (0.0, 0.0, 0.0, 0.0, 1.0)),
+    ("right", 1, (1.5, 0.0, 0.0, 0.0, 1.0)),
+    ("turned", 0, (-2.0, 1.0, 0.25, 2.2, 1.4)),
+)
+"""Name, kind and place of each tree."""
 
 
 def small_tree(name: str, x: float) -> Tree:
@@ -61,48 +68,50 @@ def small_tree(name: str, x: float) -> Tree:
     return tree_from_segments(start, end, diameter, parent=parent, name=name)
 
 
-def scene() -> Any:
-    """Two trees: one that moves all over, one whose twig is frozen."""
+def simulators() -> list[SwaySimulator]:
+    """A tree that moves all over, and one whose twig is frozen."""
     first, second = small_tree("left", 0.0), small_tree("right", 1.5)
     species = species_named(first.species)
     frozen = np.array([name == second.branch_names[-1] for name in second.branch_names])
     part = PartlyFrozenTree(CalibratedTree(second, species, SETTINGS), frozen)
-    simulators = (
+    return [
         SwaySimulator(first, species, SETTINGS),
         SwaySimulator(second, species, SETTINGS, calibrated=part),
-    )
-    return SimpleNamespace(tree=joined([first, second]), simulators=simulators)
+    ]
 
 
-def rotations_of(simulator: Any) -> int:
-    """How many key rotations a tree has."""
-    return int(simulator.joints["n_coordinates"].sum())
-
-
-def placed(simulator: Any, rotations: Any) -> Any:
-    """Poses of one tree by the solver's kernels."""
-    return simulator.place_rotations(rotations)
+def placed(kind: Any, coordinates: Any, place: tuple[float, ...]) -> Any:
+    """Poses of one tree: of its kind by the solver's kernels, then scaled, turned and moved."""
+    x, y, z, yaw, scale = np.float32(place).astype(np.float64).tolist()
+    poses = kind.simulator.place_rotations(kind.basis.matrix.astype(np.float64) @ coordinates)
+    turn = Rotation.from_rotvec([0.0, 0.0, yaw])
+    away = turn.apply(scale * (poses[:, :3] - kind.simulator.tree.start[0]))
+    poses[:, :3] = away + np.array([x, y, z])
+    poses[:, 3:] = (turn * Rotation.from_quat(poses[:, 3:])).as_quat()
+    return poses
 
 
 def main() -> None:
     """Write the files beside this one."""
     rng = np.random.default_rng(7)
-    both = scene()
-    bases = [
-        SimpleNamespace(
-            matrix=rng.normal(0.0, 0.1, (rotations_of(each), N_COORDINATES)).astype(np.float32),
+    kinds = []
+    for simulator in simulators():
+        size = int(simulator.joints["n_coordinates"].sum()), N_COORDINATES
+        basis = SimpleNamespace(
+            matrix=rng.normal(0.0, 0.1, size).astype(np.float32),
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
             error=SimpleNamespace(greatest=0.001),
-            frames=each.joints["frame"],
-            per_key=lambda branch, turns: turns,
         )
-        for each in both.simulators
-    ]
-    leaves = leaf_clusters(both.simulators[0].tree, np.random.default_rng(0), count=6)
-    data = describe_scene(both, both.simulators, bases, frame_id="map", leaves=leaves)
+        kinds.append(SimpleNamespace(simulator=simulator, basis=basis, numbers=[], places=[]))
+    for number, (_, kind, place) in enumerate(TREES):
+        kinds[kind].numbers.append(number)
+        kinds[kind].places.append(place)
+    leaves = leaf_clusters(kinds[0].simulator.tree, np.random.default_rng(0), count=6)
+    names = [name for name, _, _ in TREES]
+    data = describe_scene("forest", kinds, names, leaves=[leaves, None])  # type: ignore[arg-type]
     description = decode_description(data)
     (HERE / "description.bin").write_bytes(data)
-    scale = np.concatenate([basis.scale for basis in bases]).astype(np.float64)
+    scale = np.concatenate([kinds[kind].basis.scale for _, kind, _ in TREES]).astype(np.float64)
     expected = []
     for number, size in enumerate((0.0, 0.3, 0.9, 3.0)):
         values = size * scale * rng.uniform(-1.0, 1.0, len(scale))
@@ -114,8 +123,8 @@ def main() -> None:
         (HERE / f"frame{number}.bin").write_bytes(encode_frame(frame))
         told = steps * (scale / 32767)
         poses = [
-            placed(each, np.asarray(basis.matrix, dtype=np.float64) @ part)
-            for each, basis, part in zip(both.simulators, bases, np.split(told, 2), strict=True)
+            placed(kinds[kind], part, place)
+            for (_, kind, place), part in zip(TREES, np.split(told, len(TREES)), strict=True)
         ]
         expected.append(
             {

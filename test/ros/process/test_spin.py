@@ -160,6 +160,9 @@ def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
     error = type("RCLError", (RuntimeError,), {})("failed to create domain participant")
     with pytest.raises(TransportError, match="cannot join domain 7"):
         spin.create(raises(error))
+    unsafe = type("RCLError", (RuntimeError,), {})("error creating node: no security libraries")
+    with pytest.raises(TransportError, match="no security libraries; use the rclpy of a ROS"):
+        spin.create(raises(unsafe))
     with pytest.raises(RuntimeError, match="a bug"):
         spin.create(raises(RuntimeError("a bug")))
 

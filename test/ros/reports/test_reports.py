@@ -10,7 +10,13 @@ from builtin_interfaces.msg import Time  # noqa: E402
 from tree_sway_ros.core.wind.gate import SECOND, GateCounts, WindGate  # noqa: E402
 from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
 from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
-from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status, status_array  # noqa: E402
+from tree_sway_ros.ros.reports.diagnostics import (  # noqa: E402
+    OK,
+    STALE,
+    WARN,
+    Status,
+    status_array,
+)
 from tree_sway_ros.ros.reports.sway_report import SwayReport  # noqa: E402
 from tree_sway_ros.ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
 from tree_sway_ros.ros.timing.pacer import Pace  # noqa: E402

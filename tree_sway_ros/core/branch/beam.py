@@ -14,6 +14,7 @@ Symbols: s arc length from the base [m]; V shear force, M bending moment per uni
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -153,6 +154,9 @@ class BranchBeam:
         np.cumsum((self.weight[:, None, :] @ flat)[:, 0], axis=0, out=nodes[1:])
         points = nodes[:-1, None] + self.length[:, None, None] * (_TO_POINTS @ flat)
         segment = self.children.segment
+        if len(segment) == 0:
+            none = np.zeros((0, *tail))
+            return points.reshape(values.shape), nodes.reshape(-1, *tail), none
         within = (self._child_rows[:, None, :] @ flat[segment])[:, 0]
         children = nodes[segment] + self.length[segment, None] * within
         return points.reshape(values.shape), nodes.reshape(-1, *tail), children.reshape(-1, *tail)
@@ -190,33 +194,37 @@ class BranchBeam:
         Parameters
         ----------
         load
-            Force per length at the points in [N/m], (m, 5, 3).
+            Force per length at the points in [N/m] in each of some cases, (m, 5, k, 3).
         force, moment
-            Force that each child hands over, and its moment about the root of the tree, (c, 3).
+            Force that each child hands over, and its moment about the root of the tree, both (c, k,
+            3).
 
         Returns
         -------
         Floats
-            Of all that acts beyond each point, about that point, (m, 5, 3).
+            Of all that acts beyond each point, about that point, (m, 5, k, 3).
 
         """
-        both = np.concatenate([load, cross(self.point, load)], axis=-1)
+        point = self.point[:, :, None]
+        both = np.concatenate([load, cross(point, load)], axis=-1)
         points, nodes, _ = self.from_base(both)
         beyond = nodes[-1] - points
         if len(force) > 0:
-            beyond += self.child_lever[1] @ np.hstack([force, moment])
-        out: Floats = beyond[..., 3:] - cross(self.point, beyond[..., :3])
+            handed = np.concatenate([force, moment], axis=-1).reshape(len(force), -1)
+            beyond += (self.child_lever[1] @ handed).reshape(beyond.shape)
+        out: Floats = beyond[..., 3:] - cross(point, beyond[..., :3])
         return out
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
         """
         Curvature by an internal moment, for a modulus of 1: bent by what acts across the branch,
-        twisted by what acts about it, (m, 5, 3).
+        twisted by what acts about it, both (m, 5, k, 3).
 
         """
-        along = self.tangent[:, None, :]
+        along = self.tangent[:, None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
-        out: Floats = (moment - twist + twist / (2.0 * shear_ratio)) / self.second_moment[..., None]
+        bent = moment + (0.5 / shear_ratio - 1.0) * twist
+        out: Floats = bent / self.second_moment[..., None, None]
         return out
 
     @cached_property
@@ -230,12 +238,12 @@ class BranchBeam:
         cut at the child.
 
         """
-        seat, each = self.children.segment, np.arange(len(self.children.segment))
+        carrying, each = self.children.segment, np.arange(len(self.children.segment))
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         within = (lever > 0.0).astype(np.float64)
         twice = _integration_rows(self.children.fraction, times=2)
-        lever[seat, :, each] = self.length[seat, None] * twice / _WEIGHTS
-        within[seat, :, each] = self._child_rows / _WEIGHTS
+        lever[carrying, :, each] = self.length[carrying, None] * twice / _WEIGHTS
+        within[carrying, :, each] = self._child_rows / _WEIGHTS
         return lever, within
 
     def slope_shape(self, bending: Floats) -> SlopeShape:
@@ -344,21 +352,21 @@ class RotationField:
         """Turn about one axis, (3,), by the slope of a shape."""
         return cls(shape.beam, shape.curvature[..., None] * axis)
 
-    @cached_property
-    def twisting(self) -> Floats:
-        """Curvature about the branch itself, (m, 5)."""
-        return np.asarray(np.einsum("sgk,sk->sg", self.curvature, self.beam.tangent))
 
-    def stiffness(self, other: RotationField, modulus: float, shear_modulus: float) -> float:
-        """
-        Energy between two fields in [N m/rad]: E I of bending, across the branch as it runs in
-        space, and G J of twist about it, J = 2 I.
+def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:
+    """
+    Energy between fields of one branch in [N m/rad], (k, k): E I of bending, across the branch as
+    it runs in space, and G J of twist about it, J = 2 I.
 
-        """
-        twist = self.twisting * other.twisting
-        bend = np.einsum("sgk,sgk->sg", self.curvature, other.curvature) - twist
-        rigidity = modulus * bend + 2.0 * shear_modulus * twist
-        return float(self.beam.integral(self.beam.second_moment * rigidity))
+    """
+    beam, n = fields[0].beam, len(fields)
+    curvature = np.stack([one.curvature for one in fields])
+    twisting = (curvature * beam.tangent[:, None, :]).sum(axis=-1)
+    measure = beam.weight * beam.second_moment
+    whole = (measure[..., None] * curvature).reshape(n, -1) @ curvature.reshape(n, -1).T
+    twist = (measure * twisting).reshape(n, -1) @ twisting.reshape(n, -1).T
+    energy: Floats = modulus * (whole - twist) + 2.0 * shear_modulus * twist
+    return energy
 
 
 def cross(a: Floats, b: Floats) -> Floats:

@@ -28,7 +28,7 @@ from tree_sway_ros.core.branch.shapes import (
     N_TURNS,
     Carried,
     ways_to_move,
-    wind_load,
+    wind_loads,
 )
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.tree.tree import Tree
@@ -162,11 +162,9 @@ def branch_models(
         area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
         area_moment[branch] = np.einsum("sg,sgk->k", beam.weight * drag_area, point)
         area_moment[branch] += area_moment[children].sum(axis=0)
-        for case, wind in enumerate(np.eye(3)):
-            pushed = beam.weight[..., None] * wind_load(beam, drag_area, wind)
-            force[branch, case] = pushed.sum(axis=(0, 1))
-            torque[branch, case] = cross(point, pushed).sum(axis=(0, 1))
-        force[branch] += force[children].sum(axis=0)
+        loads = wind_loads(beam, drag_area)
+        force[branch] = beam.integral(loads) + force[children].sum(axis=0)
+        torque[branch] = beam.integral(cross(point[:, :, None], loads))
         torque[branch] += torque[children].sum(axis=0)
         weight[branch] = dm.sum() + weight[children].sum()
         weight_moment[branch] = np.einsum("sg,sgk->k", dm, point)
@@ -188,8 +186,8 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
     if len(children) == 0:
         return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
     first = tree.branch_first[children]
-    seat = tree.segment_parent[first]
-    return Attachments(seat - tree.branch_first[branch], tree.place_on_parent[first])
+    carrying = tree.segment_parent[first]
+    return Attachments(carrying - tree.branch_first[branch], tree.place_on_parent[first])
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:

@@ -53,7 +53,7 @@ class Carried:
     area, area_moment
         Drag area in [m^2], (c,), and its first moment in [m^3], (c, 3).
     force, moment
-        Force of winds along x, y and z, as of `wind_load`, and its moment about the root of the
+        Force of winds along x, y and z, as of `wind_loads`, and its moment about the root of the
         tree, both (c, 3, 3), the wind first.
     mass, mass_moment, mass_second
         Mass in [kg], (c,), its first moment in [kg m], (c, 3), and second in [kg m^2], (c, 3, 3).
@@ -135,13 +135,8 @@ def ways_to_move(
 
     """
     e1, e2 = across(beam.chord)
-    moments = [
-        beam.moment_in_space(
-            wind_load(beam, drag_area, wind), carried.force[:, i], carried.moment[:, i]
-        )
-        for i, wind in enumerate(np.eye(3))
-    ]
-    curvatures = np.stack([beam.curvature_in_space(m, shear_ratio) for m in moments])
+    moments = beam.moment_in_space(wind_loads(beam, drag_area), carried.force, carried.moment)
+    curvatures = beam.curvature_in_space(moments, shear_ratio)
     pair = _static_pair(beam, curvatures, e1, e2)
     if pair is None:
         drawn = _static_shape(beam, drag_area, carried)
@@ -155,15 +150,17 @@ def ways_to_move(
     return drawn, tuple(fields)
 
 
-def wind_load(beam: BranchBeam, drag_area: Floats, wind: Floats) -> Floats:
+def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     """
     Force per length on the branch at rest, of winds from all sides along the ground, as far as it
-    is linear in the wind: per m/s of a wind (3,) and kg/m^3 in winds of 1 m/s, (m, 5, 3).
+    is linear in the wind: per m/s of winds along x, y and z and kg/m^3 in winds of 1 m/s, (m, 5, 3,
+    3), the wind first.
 
     """
-    across = wind - (beam.tangent @ wind)[:, None] * beam.tangent
-    load: Floats = (drag_area * exposure(beam)[:, None])[..., None] * across[:, None, :]
-    return load
+    tangent = beam.tangent
+    across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
+    loads: Floats = (drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None]
+    return loads
 
 
 def exposure(beam: BranchBeam) -> Floats:
@@ -179,7 +176,7 @@ _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
     Curvatures that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do, (2, m,
-    5, 3).
+    5, 3), out of those of the three, (m, 5, 3, 3).
 
     Of all that do, these come nearest to what the three winds make of the branch (least squares, an
     upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both ways, what
@@ -187,13 +184,14 @@ def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -
     turns.
 
     """
-    ends = np.stack([RotationField(beam, each).nodes[-1] for each in curvatures])
+    slopes = beam.from_base(curvatures)[0]
+    ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
     turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
-    largest = np.linalg.svd(turns, compute_uv=False)
+    sides, largest, ways = np.linalg.svd(turns, full_matrices=False)
     if not largest[-1] > 0.02 * largest[0]:
         return None
-    mix = np.linalg.pinv(turns) * _WIND_WEIGHTS
-    pair: Floats = np.einsum("cw,wsgk->csgk", mix, curvatures)
+    mix = (ways.T / largest) @ sides.T * _WIND_WEIGHTS
+    pair: Floats = np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0))
     return pair
 
 
@@ -242,8 +240,8 @@ def _further(
         ways = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
         bent = [
             [rest_of(beam.curvature_in_space(
-                inertial_moment(beam, mass, carried, one), shear_ratio
-            )) for one in part]
+                inertial_moment(beam, mass, carried, one)[:, :, None], shear_ratio
+            )[:, :, 0]) for one in part]
             for part in ways
         ]  # fmt: skip
         new = [[one for one in part if one is not None] for part in bent]
@@ -272,7 +270,8 @@ def inertial_moment(
     force = carried.mass[:, None] * at_root + cross(turn, carried.mass_moment)
     trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None]
     spin = trace * turn - np.einsum("cij,cj->ci", carried.mass_second, turn)
-    return beam.moment_in_space(load, force, cross(carried.mass_moment, at_root) + spin)
+    moment = cross(carried.mass_moment, at_root) + spin
+    return beam.moment_in_space(load[:, :, None], force[:, None], moment[:, None])[:, :, 0]
 
 
 def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:

@@ -302,7 +302,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     def _feel(self, wind_mean: ArrayLike, dt: float) -> None:
         """Notice a load beyond what the model was chosen for, before the step in which it comes."""
-        x, y, z = float(wind_mean[0]), float(wind_mean[1]), float(wind_mean[2])  # type: ignore[index, arg-type]
+        x, y, z = np.asarray(wind_mean, dtype=np.float64).tolist()
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self.settings.max_wind):

@@ -74,8 +74,8 @@ def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed:
 
 def _swings(tree: Tree, branches: Any, rotations: Complexes) -> tuple[Floats, float]:
     """
-    Sum over the tips of each subtree of the squared way on its base, (b,), and that of all tips on
-    the ground.
+    Sum over the tips of each subtree of the squared displacement from its base, (b,), and that of
+    all tips from the ground.
 
     """
     base, tips = base_motion(branches, rotations), tip_motion(branches, rotations)

@@ -85,7 +85,7 @@ def grow_axis(
     rng
         Source of randomness.
     wander
-        Standard deviation of the change of heading a segment in [rad].
+        Standard deviation of the change of heading per segment in [rad].
     unevenness
         Largest relative deviation of a segment's length from the mean.
     floor

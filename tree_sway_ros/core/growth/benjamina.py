@@ -35,14 +35,8 @@ def grow_benjamina(
 
     Parameters
     ----------
-    rng
-        Source of randomness; the same state gives the same tree.
-    height
-        Height in [m].
-    diameter
-        Diameter of the stock at its base in [m].
-    name, species
-        What the tree is called, and the key of its wood.
+    rng, height, diameter, name, species
+        As of `grow_broadleaf`; the diameter is that of the stock at its base.
 
     """
     skeleton = Skeleton()
@@ -77,11 +71,11 @@ def _add_stem(
         here = node / n_nodes
         # Branches shorten to the top; away from the middle of the plant there is light.
         reach = 0.50 * (1.0 - 0.6 * here) * rng.uniform(0.8, 1.2)
-        way = aim(
+        heading = aim(
             skeleton.shoots[stem].tangent(node), rng.uniform(0.5, 0.9), roll + i * GOLDEN_ANGLE
         )
-        way = way + 1.5 * nodes[node] * np.array([1.0, 1.0, 0.0])
-        _add_branch(skeleton, stem, node, heading_of(way), reach, rng)
+        heading = heading + 1.5 * nodes[node] * np.array([1.0, 1.0, 0.0])
+        _add_branch(skeleton, stem, node, heading_of(heading), reach, rng)
 
 
 def _add_branch(

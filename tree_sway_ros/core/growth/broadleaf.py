@@ -93,31 +93,31 @@ def _add_limb(
     (low, high), (bent_low, bent_high) = form.rise, form.turn
     rise = low + (high - low) * here + rng.uniform(-0.1, 0.1)
     end = min(rise + bent_low + (bent_high - bent_low) * here, 1.4)
-    way = direction_of(azimuth, 0.5 * (rise + end))
-    length = max(0.85 * form.outline.reach(origin, way), 0.08) * rng.uniform(0.85, 1.0)
+    heading = direction_of(azimuth, 0.5 * (rise + end))
+    length = max(0.85 * form.outline.reach(origin, heading), 0.08) * rng.uniform(0.85, 1.0)
     axis = grow_axis(origin, azimuth, (rise, end), length, 8, rng, wander=form.wander)
     limb = skeleton.add(axis, trunk, at)
     roll = rng.uniform(0.0, np.pi)
     for i, node in enumerate(np.linspace(2.0, 8.0, form.n_branches).round().astype(int).tolist()):
         side = roll + _turn_of(i, form.is_opposite) + rng.uniform(-0.3, 0.3)
         angle = form.spread * rng.uniform(0.8, 1.2)
-        way = aim(skeleton.shoots[limb].tangent(node), angle, side)
-        _add_branch(skeleton, limb, node, way, form, rng)
+        heading = aim(skeleton.shoots[limb].tangent(node), angle, side)
+        _add_branch(skeleton, limb, node, heading, form, rng)
 
 
 def _add_branch(
     skeleton: Skeleton,
     limb: int,
     at: int,
-    way: Floats,
+    heading: Floats,
     form: BroadleafForm,
     rng: np.random.Generator,
 ) -> None:
     """Add a branch of a limb with its twigs in a flat spray."""
     origin = skeleton.shoots[limb].nodes[at]
-    azimuth, rise = heading_of(way)
+    azimuth, rise = heading_of(heading)
     longest = 0.55 * form.outline.half_width
-    length = float(np.clip(0.85 * form.outline.reach(origin, way), 0.06, longest))
+    length = float(np.clip(0.85 * form.outline.reach(origin, heading), 0.06, longest))
     length *= rng.uniform(0.8, 1.0)
     end = float(np.clip(rise + form.branch_turn, -1.3, 1.4))
     n_segments = 6 if length > 0.1 else 4

@@ -39,14 +39,8 @@ def grow_conifer(
 
     Parameters
     ----------
-    rng
-        Source of randomness; the same state gives the same tree.
-    height
-        Height in [m].
-    diameter
-        Diameter in [m] at breast height, or at the base of a tree below twice that height.
-    name, species
-        What the tree is called, and the key of its wood and of its form.
+    rng, height, diameter, name, species
+        As of `grow_broadleaf`.
 
     """
     form, skeleton = conifer_form(species), Skeleton()
@@ -92,8 +86,8 @@ def _add_branch(
     origin = skeleton.shoots[stem].nodes[at]
     low, high = form.rise
     first = low + (high - low) * here + rng.uniform(-0.08, 0.08)
-    way = direction_of(azimuth, first + 0.5 * form.turn)
-    length = max(form.outline.reach(origin, way), 0.012) * rng.uniform(0.85, 1.08)
+    heading = direction_of(azimuth, first + 0.5 * form.turn)
+    length = max(form.outline.reach(origin, heading), 0.012) * rng.uniform(0.85, 1.08)
     n_segments = 6 if here < 0.7 else 4 if here < 0.9 else 2
     nodes = grow_axis(
         origin,

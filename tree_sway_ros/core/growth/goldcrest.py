@@ -34,14 +34,8 @@ def grow_goldcrest(
 
     Parameters
     ----------
-    rng
-        Source of randomness; the same state gives the same tree.
-    height
-        Height in [m].
-    diameter
-        Diameter of the stem at its base in [m].
-    name, species
-        What the tree is called, and the key of its wood.
+    rng, height, diameter, name, species
+        As of `grow_broadleaf`; the diameter is that of the stem at its base.
 
     """
     skeleton = Skeleton()

@@ -86,12 +86,8 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
 
     Parameters
     ----------
-    motion
-        Displacement, tilt or acceleration at even steps, (n, c).
-    dt
-        Step in [s].
-    rough
-        Frequency to look around in [Hz].
+    motion, dt, rough
+        As of `ambient_sway`.
 
     Returns
     -------
@@ -155,9 +151,9 @@ def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
         slow = signal.sosfiltfilt(low, motion, axis=0)
     edges = np.array([0.5, min(1.7, 0.9 * nyquist / rough)]) * rough / nyquist
     band = signal.sosfiltfilt(signal.butter(2, edges, "bandpass", output="sos"), motion, axis=0)
-    # The transform is periodic: room behind the end keeps a large start out of it.
-    room = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
-    analytic = signal.hilbert(band, room, axis=0)[: len(motion)]
+    # The transform is periodic: zeros behind the end keep a large start out of it.
+    padded = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
+    analytic = signal.hilbert(band, padded, axis=0)[: len(motion)]
     envelope: Floats = np.sqrt((np.abs(analytic) ** 2).sum(axis=1))
     return slow, envelope
 

@@ -144,10 +144,7 @@ def _is_release(decay: FreeDecay) -> bool:
 
 
 def _refuse_lost(decay: FreeDecay) -> None:
-    """
-    Refuse a swing that the wind's own motion soon drowns: its damping could be anything.
-
-    """
+    """Refuse a swing that the wind's own motion soon drowns: its damping could be anything."""
     f, z = decay.frequency, decay.damping_ratio
     clear = np.log(1.0 / max(decay.quiet, 1e-9)) / (2.0 * np.pi * z)
     if decay.frequency_error > _UNSURE[0] * f or decay.damping_error > _UNSURE[1] * z:

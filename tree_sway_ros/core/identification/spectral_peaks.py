@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Where a spectrum has peaks, seen with the same relative width at every frequency.
-
-"""
+"""Where a spectrum has peaks, seen with the same relative width at every frequency."""
 
 from __future__ import annotations
 

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.foliage import LeafClusters
@@ -88,6 +87,8 @@ def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) ->
         Pose block of the clusters' centres, (m, 7), in the same order.
 
     """
+    from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
+
     carrier = poses[clusters.segment]
     turn = Rotation.from_quat(carrier[:, 3:])
     flutter = np.zeros((len(clusters.segment), 3))

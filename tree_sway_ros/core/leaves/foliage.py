@@ -118,9 +118,9 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
     section = 0.25 * np.pi * float(tree.base_diameter[0]) ** 2
     total = min(leaf.area_per_section * section, MAX_LEAF_AREA_INDEX * ground)
     outline = 0.25 * np.pi * np.sqrt(max(wide, leaf.size) * max(deep, leaf.size)) * high
-    met = outline * -np.expm1(-0.5 * total / outline)
+    facing = outline * -np.expm1(-0.5 * total / outline)
     share = np.add.reduceat(leafy, tree.branch_first[:-1]) / leafy.sum()
-    return Foliage(leaf.fresh_mass * total * share, total * share, met * share)
+    return Foliage(leaf.fresh_mass * total * share, total * share, facing * share)
 
 
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:

@@ -106,16 +106,17 @@ def head_records(branches: Any, segments: Any) -> Any:
     heads["block"] = [*first, len(segments)]
     heads["n_records"][:-1] = np.diff(heads["block"])
     heads["n_lanes"][:-1] = segments["n_lanes"][first]
+    np.maximum.at(heads["n_bearing"], block[parent[1:]], lane[parent[1:]] + 1)
     np.maximum.at(heads["n_rows"], block, branches["n_coordinates"])
     heads["branch"][block, lane] = np.arange(len(branches))
     heads["is_joined"][:-1] = np.logical_and.reduceat(_joined(segments), first)
-    heads["is_parent_plain"][block, lane] = (branches["n_coordinates"] == 2)[parent]
+    np.maximum.at(heads["n_parent_rows"], block, branches["n_coordinates"][parent])
     for name in ("parent", "coordinate", "base_segment", "first"):
         heads[name][block, lane] = branches[name]
     for name in ("frame", "skew", "tip_skew", "offset"):
         heads[name][block, ..., lane] = branches[name]
     heads["steepest"][block, lane] = branches["steepest"][:, 0]
-    heads["base_turn"][block, ..., lane] = branches["twist"][:, :2, 3:]
+    heads["base_turn"][block, ..., lane] = branches["twist"][..., 3:]
     return heads
 
 
@@ -250,23 +251,23 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     exposed = exposure(beam)
     exposed /= float(share.sum(axis=1) @ exposed)
-    into_push = np.linalg.pinv(across, rcond=_STRAIGHT, hermitian=True)
+    amounts, ways = np.linalg.eigh(across)
+    kept = amounts > _STRAIGHT * amounts[-1]
+    into_push = ways[:, kept] / amounts[kept] @ ways[:, kept].T
+    n = len(model.fields)
+    fields = np.stack([one.points for one in model.fields])
+    own = exposed[:, None] * (share[..., None] * fields).sum(axis=2)
+    own -= (own * beam.tangent).sum(axis=-1, keepdims=True) * beam.tangent
     mean = np.zeros_like(record["push"])
-    moved = np.zeros(share.shape)
-    for i, one in enumerate(model.fields):
-        field = one.points
-        own = np.einsum("s,sg,sgk->sk", exposed, share, field)
-        own -= np.einsum("sk,sk->s", own, beam.tangent)[:, None] * beam.tangent
-        mean[i] = own.sum(axis=0)
-        record["push"][i] = into_push @ mean[i]
-        if i < 2:
-            moved += np.square(field).sum(axis=-1)
-            moved -= np.square(np.einsum("sgk,sk->sg", field, beam.tangent))
+    mean[:n] = own.sum(axis=1)
+    record["push"][:n] = mean[:n] @ into_push
+    along_it = (fields[:2] * beam.tangent[:, None, :]).sum(axis=-1)
+    moved = (np.square(fields[:2]).sum(axis=-1) - np.square(along_it)).sum(axis=0)
     # What moves most does most work, and it is turned most.
     work = share * np.sqrt(np.maximum(moved, 0.0))
     work /= work.sum() if work.sum() > 0.0 else 1.0
     slopes = np.stack([one.slope for one in model.fields])
-    record["turn"][: len(slopes)] = np.einsum("sg,csgk->ck", work, slopes)
+    record["turn"][:n] = work.ravel() @ slopes.reshape(n, -1, 3)
     if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
         _fit_load(model, share, record)
     _fill_flow(record, mean, float((share * moved).sum()), float((share * _cubes(moved)).sum()))
@@ -536,8 +537,8 @@ def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
         rows = records.dtype[name].shape[0]
         records[name][block, ..., lane] = branches[name][:, :rows]
     records["along"][block, :, lane] = branches["lever"][:, None] * branches["frame"][:, 0]
-    couple = branches["couple"] - np.array([cross_matrix(base) for base in branches["base"]])
-    records["couple"][block, ..., lane] = couple
+    at_base = cross(branches["base"][:, None], np.eye(3)).swapaxes(1, 2)
+    records["couple"][block, ..., lane] = branches["couple"] - at_base
     records["is_solved"][block, lane] = branches["source"] == np.arange(len(branches))
     np.maximum.at(records["n_rows"], block, branches["n_coordinates"])
     return records

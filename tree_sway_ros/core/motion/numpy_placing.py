@@ -114,8 +114,8 @@ class NumpyPlacing:
         on, first, end = parts.rows.T
         turn = self._turns(parts.parent, parts.base_turn, angles)
         turn = quaternion_product(base[parts.parent], turn)
-        seat = out[on]
-        place = seat[:, :3] + quaternion_rotated(seat[:, [6, 3, 4, 5]], parts.offset)
+        carrying = out[on]
+        place = carrying[:, :3] + quaternion_rotated(carrying[:, [6, 3, 4, 5]], parts.offset)
         part = np.repeat(np.arange(len(on)), end - first)
         count = np.cumsum(end - first) - (end - first)
         rows = np.arange(len(part)) - count[part] + first[part]

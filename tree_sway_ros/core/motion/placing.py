@@ -28,8 +28,10 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import (
+    NEAR_LIMIT,
     SERIES_LIMIT,
     half_angle,
+    half_angle_near,
     half_angle_series,
     product,
     quaternion,
@@ -93,18 +95,21 @@ def place_standing_at(
     for block in range(last):
         head = heads[block]
         _read_parents(branches, head, scratch, work, x, east, north, up, cosine, sine, out)
+        _turn_on_parents(head, scratch)
         _turn_bases(head, scratch, scale)
-        is_far = _write_bases(head, scratch, work)
+        farthest = _write_bases(head, scratch, work)
         if head.n_rows > 2:
-            is_far = _set_further_keys(branches, head, scratch, x) or is_far
+            farthest = max(farthest, _set_further_keys(branches, head, scratch, x))
         for rank in range(head.n_records):
             segment = segments[head.block + rank]
-            if is_far:
+            if not farthest <= SERIES_LIMIT:
                 _bend_far(segment, scratch, head.n_rows)
-            elif head.n_rows == 2:
-                _bend_in_plane(segment, scratch)
+            elif head.n_rows > 2:
+                _bend(segment, scratch)
+            elif farthest <= NEAR_LIMIT:
+                _bend_in_plane(segment, scratch, True)
             else:
-                _bend(segment, scratch, head.n_rows)
+                _bend_in_plane(segment, scratch, False)
             if head.is_joined:
                 _join(segment, scratch, scale)
             else:
@@ -136,13 +141,6 @@ def turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float,
         Quaternion w x y z, from rest.
 
     """
-    hx, hy, hz = _half_turn_at(parent, turns, x)
-    return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
-
-
-@inlined
-def _half_turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float]:
-    """Half the rotation vector of a place on a branch, as `turn_at`."""
     i = parent.coordinate
     half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
     ux, uy = half * x[i], half * x[i + 1]
@@ -152,7 +150,7 @@ def _half_turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, 
     for c in range(2, parent.n_coordinates):
         u = 0.5 * x[i + c]
         hx, hy, hz = hx + u * turns[c, 0], hy + u * turns[c, 1], hz + u * turns[c, 2]
-    return hx, hy, hz
+    return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
 
 
 @fused
@@ -161,36 +159,66 @@ def _read_parents(
     east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
-    turned, base, carrier = scratch.carrier_turn, scratch.parent_base, scratch.carrier
+    key, parent_key = scratch.key, scratch.parent_key
+    base, carrier = scratch.parent_base, scratch.carrier
+    if head.n_parent_rows > 2:
+        parent_key[2:] = 0.0
     for j in range(head.n_lanes):
-        i = head.coordinate[j]
-        scratch.key[0, j], scratch.key[1, j] = x[i], x[i + 1]
-        if head.parent[j] < 0:
-            hx, hy, hz = 0.0, 0.0, 0.0
-            bw, bx, by, bz = cosine, 0.0, 0.0, sine
-            px, py, pz = east, north, up
-            sx, sy, sz, sw = 0.0, 0.0, sine, cosine
-        else:
-            below, on = work[head.parent[j]], head.base_segment[j]
-            if head.is_parent_plain[j]:
-                ux, uy, per = below.key[0], below.key[1], head.base_turn
-                hx = ux * per[0, 0, j] + uy * per[1, 0, j]
-                hy = ux * per[0, 1, j] + uy * per[1, 1, j]
-                hz = ux * per[0, 2, j] + uy * per[1, 2, j]
-            else:
-                turns = branches[head.branch[j]].twist[:, 3:]
-                hx, hy, hz = _half_turn_at(branches[head.parent[j]], turns, x)
-            bw, bx, by, bz = below.base[0], below.base[1], below.base[2], below.base[3]
-            if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:
-                qw, qx, qy, qz = quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
-                bw, bx, by, bz = product(bw, bx, by, bz, qw, qx, qy, qz)
-                hx, hy, hz = 0.0, 0.0, 0.0
-            px, py, pz = out[on, 0], out[on, 1], out[on, 2]
-            sx, sy, sz, sw = out[on, 3], out[on, 4], out[on, 5], out[on, 6]
-        turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
-        base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
-        carrier[0, j], carrier[1, j], carrier[2, j] = px, py, pz
-        carrier[3, j], carrier[4, j], carrier[5, j], carrier[6, j] = sx, sy, sz, sw
+        i, parent = head.coordinate[j], head.parent[j]
+        key[0, j], key[1, j] = x[i], x[i + 1]
+        if parent < 0:
+            parent_key[:, j], carrier[:, j] = 0.0, 0.0
+            base[0, j], base[1, j], base[2, j], base[3, j] = cosine, 0.0, 0.0, sine
+            carrier[0, j], carrier[1, j], carrier[2, j] = east, north, up
+            carrier[5, j], carrier[6, j] = sine, cosine
+            continue
+        below, on = work[parent], out[np.uintp(head.base_segment[j])]
+        parent_key[0, j], parent_key[1, j] = below.key[0], below.key[1]
+        base[0, j], base[1, j] = below.base[0], below.base[1]
+        base[2, j], base[3, j] = below.base[2], below.base[3]
+        carrier[0, j], carrier[1, j], carrier[2, j] = on[0], on[1], on[2]
+        carrier[3, j], carrier[4, j], carrier[5, j], carrier[6, j] = on[3], on[4], on[5], on[6]
+        if head.n_parent_rows > 2:
+            i = branches[parent].coordinate
+            for c in range(2, branches[parent].n_coordinates):
+                parent_key[c, j] = 0.5 * x[i + c]
+
+
+@inlined
+def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> None:
+    """Sum what the first rows of keys turn the lane j by."""
+    hx, hy, hz = 0.0, 0.0, 0.0
+    for c in range(n_rows):
+        u = key[c, j]
+        hx, hy, hz = hx + u * per[c, 0, j], hy + u * per[c, 1, j], hz + u * per[c, 2, j]
+    turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
+
+
+@fused
+def _turn_on_parents(head: Any, scratch: Any) -> None:
+    """Find how sixteen branches are turned from the bases of their parents, by half the vector."""
+    key, per, turned = scratch.parent_key, head.base_turn, scratch.carrier_turn
+    if head.n_parent_rows == 2:
+        for j in range(LANES):
+            _turn_by(key, per, turned, 2, j)
+    else:
+        for j in range(LANES):
+            _turn_by(key, per, turned, per.shape[0], j)
+    n_far = 0
+    for j in range(LANES):
+        hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
+        n_far += 1 if hx * hx + hy * hy + hz * hz > SERIES_LIMIT else 0
+    if n_far == 0:
+        return
+    base = scratch.parent_base
+    for j in range(head.n_lanes):
+        hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
+        if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:
+            qw, qx, qy, qz = quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
+            base[0, j], base[1, j], base[2, j], base[3, j] = product(
+                base[0, j], base[1, j], base[2, j], base[3, j], qw, qx, qy, qz
+            )
+            turned[0, j], turned[1, j], turned[2, j] = 0.0, 0.0, 0.0
 
 
 @fused
@@ -243,29 +271,32 @@ def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
 
 
 @fused
-def _write_bases(head: Any, scratch: Any, work: Any) -> bool:
+def _write_bases(head: Any, scratch: Any, work: Any) -> float:
     """
-    Leave for the children how their parents are turned; return whether any of these bends beyond
-    the series.
+    Leave for the children how their parents are turned; return a bound on the square of half the
+    angle that any segment turns by.
 
     """
-    is_far = False
-    for j in range(head.n_lanes):
+    for j in range(head.n_bearing):
         here = work[head.branch[j]]
-        for k in range(4):
-            here.base[k] = scratch.base[k, j]
+        here.base[0], here.base[1] = scratch.base[0, j], scratch.base[1, j]
+        here.base[2], here.base[3] = scratch.base[2, j], scratch.base[3, j]
         here.key[0], here.key[1] = scratch.bent[0, j], scratch.bent[1, j]
-        is_far |= not scratch.half_angle[j] <= SERIES_LIMIT
-    return is_far
+    together = 0.0
+    for j in range(head.n_lanes):
+        together += scratch.half_angle[j]
+    if together <= NEAR_LIMIT:
+        return together
+    farthest = 0.0
+    for j in range(head.n_lanes):
+        farthest = max(farthest, scratch.half_angle[j])
+    return farthest
 
 
 @fused
-def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> bool:
-    """
-    Set the further coordinates; return whether any branch with them bends beyond the series.
-
-    """
-    is_far, half_key = False, scratch.half_key
+def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> float:
+    """Set the further coordinates; return as `_write_bases`, of the branches that have them."""
+    farthest, half_key = 0.0, scratch.half_key
     half_key[2:] = 0.0
     for j in range(head.n_lanes):
         branch = branches[head.branch[j]]
@@ -278,17 +309,18 @@ def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> bool
             further += half * half * branch.steepest[c]
         # The square of a sum is at most twice the square of its first and twice that of the others.
         others = branch.n_coordinates - 2
-        is_far |= not 2.0 * (scratch.half_angle[j] + others * further) <= SERIES_LIMIT
-    return is_far
+        farthest = max(farthest, 2.0 * (scratch.half_angle[j] + others * further))
+    return farthest
 
 
 @inlined
-def _half_vector(segment: Any, scratch: Any, n_rows: int, j: int) -> tuple[float, float, float]:
+def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
     far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
     hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
-    for c in range(n_rows):
+    # All rows that there is room for: a count known when compiled lets the lanes be a vector.
+    for c in range(turn.shape[0]):
         key = half_key[c, j]
         hx, hy, hz = hx + key * turn[c, 0, j], hy + key * turn[c, 1, j], hz + key * turn[c, 2, j]
     return hx, hy, hz
@@ -333,12 +365,16 @@ def _join_gaps(segment: Any, scratch: Any, scale: float) -> None:
 
 
 @fused
-def _bend_in_plane(segment: Any, scratch: Any) -> None:
+def _bend_in_plane(segment: Any, scratch: Any, is_near: bool) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
     slope, base, swing = segment.slope, scratch.base, scratch.swing
     for j in range(LANES):
         first = slope[j] + scratch.blend[j] * (segment.tip_slope[j] - slope[j])
-        c, s = half_angle_series(first * first * scratch.square[j])
+        t = first * first * scratch.square[j]
+        if is_near:
+            c, s = half_angle_near(t)
+        else:
+            c, s = half_angle_series(t)
         s *= first
         _turn(
             segment, scratch, j,
@@ -348,25 +384,11 @@ def _bend_in_plane(segment: Any, scratch: Any) -> None:
 
 
 @fused
-def _bend(segment: Any, scratch: Any, n_rows: int) -> None:
+def _bend(segment: Any, scratch: Any) -> None:
     """Turn sixteen segments of branches with further coordinates."""
-    turn, half_key, half_turn, half = (
-        segment.turn, scratch.half_key, scratch.half_turn, scratch.half,
-    )  # fmt: skip
-    for j in range(LANES):
-        far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
-        for k in range(3):
-            half[k, j] = far * half_turn[k, j]
-    # Lane by lane within each coordinate, so that the loop is one of vectors.
-    for row in range(n_rows):
-        for j in range(LANES):
-            key = half_key[row, j]
-            half[0, j] += key * turn[row, 0, j]
-            half[1, j] += key * turn[row, 1, j]
-            half[2, j] += key * turn[row, 2, j]
     base = scratch.base
     for j in range(LANES):
-        hx, hy, hz = half[0, j], half[1, j], half[2, j]
+        hx, hy, hz = _half_vector(segment, scratch, j)
         c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
@@ -379,7 +401,7 @@ def _bend_far(segment: Any, scratch: Any, n_rows: int) -> None:
     base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):
         if n_rows > 2:
-            hx, hy, hz = _half_vector(segment, scratch, n_rows, j)
+            hx, hy, hz = _half_vector(segment, scratch, j)
         else:
             slope = segment.slope[j]
             slope += scratch.blend[j] * (segment.tip_slope[j] - slope)

@@ -146,12 +146,13 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("block", "i8"),  # first record of their segments
             ("n_records", "i8"),
             ("n_lanes", "i8"),
+            ("n_bearing", "i8"),  # lanes up to the last that others sit on
             ("n_rows", "i8"),  # most coordinates that one of them has; 2 where all are plain
+            ("n_parent_rows", "i8"),  # the same of their parents
             ("is_joined", "i8"),  # whether each segment starts where the one before ends
             # As in `BRANCH`:
             ("branch", "i8", (LANES,)),
             ("parent", "i8", (LANES,)),
-            ("is_parent_plain", "i8", (LANES,)),  # whether its parent has two coordinates
             ("coordinate", "i8", (LANES,)),
             ("base_segment", "i8", (LANES,)),
             ("first", "i8", (LANES,)),
@@ -159,11 +160,12 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("skew", "f8", (LANES,)),
             ("tip_skew", "f8", (LANES,)),
             ("steepest", "f8", (LANES,)),
-            # Rotation of its base per unit of the first two of its parent's coordinates:
-            ("base_turn", "f8", (2, 3, LANES)),
+            # Rotation of its base per unit of each of its parent's coordinates:
+            ("base_turn", "f8", (n_coordinates, 3, LANES)),
             ("offset", "f8", (3, LANES)),
             # Scratch:
             ("key", "f8", (2, LANES)),  # key rotation
+            ("parent_key", "f8", (n_coordinates, LANES)),  # half of each of its parent's, stretched
             ("parent_base", "f8", (4, LANES)),  # orientation, from rest, w x y z
             ("carrier", "f8", (7, LANES)),  # pose of the base segment
             (

@@ -91,11 +91,11 @@ def _moved(branches: Any, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any
         yield rotations[branches["coordinate"][rows, None] + np.arange(count)], rows
 
 
-def _sums(ways: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
+def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
     """Motion (k, d, ...) of branches by what a unit of each coordinate moves, (k, c, d)."""
     flat = rotations.reshape(*rotations.shape[:2], math.prod(rotations.shape[2:]))
-    moved = np.swapaxes(ways, 1, 2) @ flat
-    return moved.reshape(len(ways), ways.shape[2], *rotations.shape[2:])
+    moved = np.swapaxes(twists, 1, 2) @ flat
+    return moved.reshape(len(twists), twists.shape[2], *rotations.shape[2:])
 
 
 def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
@@ -110,8 +110,8 @@ def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
         place = np.full(len(branches) + 1, -1)
         place[rows] = np.arange(len(rows))
         children = np.flatnonzero(place[parents] >= 0)
-        ways = branches["twist"][children, : own.shape[1]]
-        base[children] = _sums(ways, own[place[parents[children]]])
+        twists = branches["twist"][children, : own.shape[1]]
+        base[children] = _sums(twists, own[place[parents[children]]])
     for branch in np.flatnonzero(parents > 0):  # children of the stem have all that is theirs
         base[branch] += base[parents[branch]]
     return base
@@ -119,7 +119,7 @@ def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
 
 def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
     """
-    Displacement of points (p, 3) that ride on bodies moving by (v, w) about the root, (p, 6, ...),
+    Displacement of points (p, 3) of bodies moving by (v, w) about the root, (p, 6, ...),
     (p, 3, ...).
 
     """

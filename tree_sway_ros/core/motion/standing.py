@@ -22,7 +22,7 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.placing import place_standing_at
-from tree_sway_ros.core.motion.wind_basis import expand, step_instance
+from tree_sway_ros.core.motion.wind_basis import expand, find_rest, step_instance
 from tree_sway_ros.core.motion.wind_basis_table import STEEPEST
 
 STANDING = np.dtype(
@@ -106,6 +106,13 @@ def step_standing(
                 instance.eta[i] = instance.rate[i] = instance.force[i] = 0.0
                 instance.middle[i] = instance.middle_rate[i] = 0.0
     return held, restarted
+
+
+@fused
+def find_rests(tables: Any, standing: Any, instances: Any, which: Ints) -> None:
+    """Write the static rest of some trees; arrays as of `step_standing`."""
+    for t in which:
+        find_rest(tables[standing[t].kind], instances[t])
 
 
 @fused

@@ -21,9 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.kernel import entry_of, fused
+from tree_sway_ros.core.kernel import entry_of, fused, inlined
+from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway_ros.core.motion.modal import ModalBank
+from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.wind_basis_force import (
     N_REST,
     pace_layout,
@@ -54,6 +56,8 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
         ]
     )
 
+
+_pressure = inlined(pressure)
 
 CARRIED = ("eta", "rate", "force", "rest", "middle", "middle_rate", "wind", "pressure", "outside")
 """Fields of an instance that a state holds."""
@@ -96,8 +100,10 @@ class WindBasisBank:
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
-        if not self._step(wx, wy, wz, per_speed_squared):
-            return 0
+        return self.step_outside() if self._step(wx, wy, wz, per_speed_squared) else 0
+
+    def step_outside(self) -> int:
+        """Step on the loads of the branches, in the wind that was last; returns as `advance`."""
         self.n_outside += 1
         return step_outside(self.instance[0], self.modal, self.all_shapes, self._x)
 
@@ -105,6 +111,31 @@ class WindBasisBank:
     def _step(self) -> Callable[..., int]:
         arrays = self.record, self.pace, self.instance
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    def stepping(
+        self, wind: Floats, max_wind: float, law: DragLaw
+    ) -> Callable[[float, float, float], int]:
+        """
+        Return a step as one compiled call: `step_in_wind` of the components of a wind in [m/s].
+
+        Parameters
+        ----------
+        wind, max_wind
+            As of `take_wind`.
+        law
+            Drag of the tree.
+
+        """
+        arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
+        return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
+
+    def placing(self, segments: Any, heads: Any) -> Callable[[Floats, Floats], None]:
+        """Return the placing of the state as one compiled call, of a root node and a pose block."""
+        arrays = (
+            self.record, self.instance, self.all_shapes, self._x,
+            self.branches, segments, heads, self.work,
+        )  # fmt: skip
+        return partial(entry_of(place_one, *arrays, np.zeros(3), np.zeros((1, 7))), *arrays)
 
     @cached_property
     def _expand(self) -> Callable[[], None]:
@@ -197,6 +228,21 @@ def step_outside(instance: Any, modal: ModalBank, shapes: Floats, rotations: Flo
 
 
 @fused
+def find_rest(table: Any, instance: Any) -> None:
+    """Write the static rest of an instance, as of `expand`, in the wind of its last step."""
+    if not instance.outside:
+        wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
+        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+        drag = instance.pressure * speed
+        if speed > 0.0:
+            fill_harmonics(wx / speed, wy / speed, wz / speed, table.degree, instance.values)
+        wind_rest(
+            table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
+            instance.values, instance.rest,
+        )  # fmt: skip
+
+
+@fused
 def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
     """
     Key rotations of an instance: by its modes and by its static rest.
@@ -211,28 +257,38 @@ def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
         Written, (N,).
 
     """
-    if not instance.outside:
-        wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
-        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-        drag = instance.pressure * speed
-        if speed > 0.0:
-            fill_harmonics(wx / speed, wy / speed, wz / speed, table.degree, instance.values)
-        wind_rest(
-            table, wx, wy, drag * speed, drag, instance.middle, instance.middle_rate,
-            instance.values, instance.rest,
-        )  # fmt: skip
+    find_rest(table, instance)
     eta, rest, n = instance.eta, instance.rest, len(shapes) - N_REST
     x[:] = 0.0
-    for k in range(n):
+    few = n - n % 4
+    for k in range(few, n):
         for i in range(len(x)):
             x[i] += shapes[k, i] * eta[k]
-    for r in range(0, N_REST, 4):
-        a, b, c, d, k = rest[r], rest[r + 1], rest[r + 2], rest[r + 3], n + r
-        for i in range(len(x)):
-            x[i] += (
-                shapes[k, i] * a + shapes[k + 1, i] * b + shapes[k + 2, i] * c
-                + shapes[k + 3, i] * d
-            )  # fmt: skip
+    for k in range(0, few, 4):
+        _add_four(shapes, k, eta, k, x)
+    for k in range(0, N_REST, 4):
+        _add_four(shapes, n + k, rest, k, x)
+
+
+@inlined
+def _add_four(shapes: Floats, row: int, amounts: Floats, k: int, x: Floats) -> None:
+    """Add four shapes in one pass."""
+    a, b, c, d = amounts[k], amounts[k + 1], amounts[k + 2], amounts[k + 3]
+    for i in range(len(x)):
+        x[i] += (
+            shapes[row, i] * a + shapes[row + 1, i] * b + shapes[row + 2, i] * c
+            + shapes[row + 3, i] * d
+        )  # fmt: skip
+
+
+@fused
+def place_one(
+    tables: Any, instances: Any, shapes: Floats, x: Floats, branches: Any, segments: Any,
+    heads: Any, work: Any, origin: Floats, out: Floats,
+) -> None:  # fmt: skip
+    """Do what `expand` does for the first record of each array, then what `place` does."""
+    expand(tables[0], instances[0], shapes, x)
+    place(branches, segments, heads, work, x, origin, out)
 
 
 @fused
@@ -308,3 +364,36 @@ def _advance(
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     return step_instance(tables[0], paces[0], instances[0], False, wx, wy, wz, per_speed_squared)
+
+
+@fused
+def step_in_wind(
+    tables: Any, paces: Any, instances: Any, limits: Floats, kept: Floats,
+    x: float, y: float, z: float,
+) -> int:  # fmt: skip
+    """
+    Take a wind and step the first record of each array.
+
+    Parameters
+    ----------
+    tables, paces, instances
+        As of `step_instance`.
+    limits
+        Speed above which a wind is refused in [m/s], then C, N and C0 of a `DragLaw`, (4,).
+    kept
+        The wind of the last step in [m/s], (3,); written unless the new one is refused.
+    x, y, z
+        The wind in [m/s].
+
+    Returns
+    -------
+    int
+        1 if the wind was refused, and 2 more where wind or lean is outside of the table.
+
+    """
+    refused = 1
+    if math.sqrt(x * x + y * y + z * z) <= limits[0]:
+        refused, kept[0], kept[1], kept[2] = 0, x, y, z
+    x, y, z = kept[0], kept[1], kept[2]
+    load = _pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
+    return refused + 2 * step_instance(tables[0], paces[0], instances[0], False, x, y, z, load)

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Modal forces of an even wind, out of the table of a tree.
-
-"""
+"""Modal forces of an even wind, out of the table of a tree."""
 
 from __future__ import annotations
 

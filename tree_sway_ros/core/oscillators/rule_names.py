@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Names of the step rules that the solver can run, for who only asks what there is to choose.
-
-"""
+"""Names of the step rules that the solver can run, for who only asks what there is to choose."""
 
 from __future__ import annotations
 

@@ -36,7 +36,8 @@ class Oscillator(NamedTuple):
 
     def acceleration(self, x: Array, v: Array, m: Array) -> Array:
         """Angular acceleration in [rad/s^2]."""
-        return (m - self.damping * v - self.stiffness * x) / self.inertia  # type: ignore[no-any-return]
+        force = m - self.damping * v - self.stiffness * x
+        return force / self.inertia  # type: ignore[no-any-return]
 
     def implicit(self, x: Array, v: Array, m: Array, step: float) -> tuple[Array, Array]:
         """Solve x1 = x + s v1, v1 = v + s a(x1, v1, m)."""

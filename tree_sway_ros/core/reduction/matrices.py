@@ -3,9 +3,9 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child rides on its parent's curve: a unit of a parent's coordinate moves everything the child
+A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the child
 carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
-(linear, angular) of a unit rate of coordinate j with all that rides on it, the entries for an
+(linear, angular) of a unit rate of coordinate j with all that it carries, the entries for an
 ancestor's coordinate i are
 
     M_ij = (v, w)_i . H_j          mass
@@ -29,7 +29,7 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import cross, cross_matrix
+from tree_sway_ros.core.branch.beam import cross, cross_matrix, energies
 from tree_sway_ros.core.branch.model import BranchModel
 from tree_sway_ros.core.branch.shapes import MAX_COORDINATES
 from tree_sway_ros.core.tree.tree import Tree
@@ -109,7 +109,7 @@ def reduce_tree(
     gravity
         In [m/s^2]; 0 leaves weight out.
     carries
-        Whether children ride on their parents and load them; if not, every branch is alone.
+        Whether children move with their parents and load them; if not, every branch is alone.
 
     Returns
     -------
@@ -137,21 +137,21 @@ def reduce_tree(
         momentum[own, 3:] = (lever - lever.transpose(0, 2, 1))[:, [1, 2, 0], [2, 0, 1]]
         own_weight = gravity * _own_geometric(model, body[model.children])
         for number, child in enumerate(model.children):
-            rides = twists[:, number]
-            twist[child, : len(rides)] = rides
+            base_twists = twists[:, number]
+            twist[child, : len(base_twists)] = base_twists
             if not carries:
                 continue
-            carried = rides @ body[child]
-            own_mass += carried @ rides.T
+            carried = base_twists @ body[child]
+            own_mass += carried @ base_twists.T
             momentum[own] += carried
             below = slice(int(first[child]), int(first[tree.subtree_end[child]]))
-            mass.add(own, below, rides @ momentum[below].T)
+            mass.add(own, below, base_twists @ momentum[below].T)
             lift = momentum[below]
-            tilt = np.outer(rides[:, 3], lift[:, 1]) - np.outer(rides[:, 4], lift[:, 0])
+            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(base_twists[:, 4], lift[:, 0])
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
-        elastic.add(own, own, _own_elastic(model, modulus, shear_modulus))
+        elastic.add(own, own, energies(model.fields, modulus, shear_modulus))
         if carries:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
@@ -198,12 +198,6 @@ def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     return np.stack([one.points for one in model.fields]), np.stack(twists)
 
 
-def _own_elastic(model: BranchModel, modulus: float, shear_modulus: float) -> Floats:
-    """Energy between the coordinates of a branch in [N m/rad]."""
-    fields = model.fields
-    return np.array([[a.stiffness(b, modulus, shear_modulus) for b in fields] for a in fields])
-
-
 def _spatial_inertia(model: BranchModel) -> Floats:
     """Inertia (6, 6) of a branch as a rigid body about the root: momentum of a twist (v, w)."""
     point = model.beam.point
@@ -241,12 +235,11 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
     hanging = moment - masses[:, None] * beam.child_point
     arms = np.vstack([lever.reshape(-1, 3), hanging])
-    turns = [np.vstack([a.reshape(-1, 3), c]) for a, c in zip(slopes, child_slopes, strict=True)]
+    turns = np.stack(
+        [np.vstack([a.reshape(-1, 3), c]) for a, c in zip(slopes, child_slopes, strict=True)]
+    )
+    once = turns[..., 2] @ (turns * arms).sum(axis=-1).T
     n = len(turns)
-    lift = np.zeros((n, n))
-    for i in range(n):
-        for j in range(i, n):
-            a, b = turns[i], turns[j]
-            twice = a[:, 2] * (b * arms).sum(axis=1) + b[:, 2] * (a * arms).sum(axis=1)
-            lift[i, j] = lift[j, i] = (0.5 * twice - (a * b).sum(axis=1) * arms[:, 2]).sum()
+    both = (turns * arms[:, 2:]).reshape(n, -1) @ turns.reshape(n, -1).T
+    lift: Floats = 0.5 * (once + once.T) - both
     return lift

@@ -3,7 +3,7 @@
 """
 Linear modes of the articulated tree: mass and stiffness of its joints at rest.
 
-Both matrices couple a joint with those it rides on and those that ride on it only, so they are
+Both matrices couple a joint with those that carry it and those that it carries only, so they are
 sparse.
 
 """

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What a scene asks of its trees: an error that nobody sees, a time that a frame may take.
-
-"""
+"""What a scene asks of its trees: an error that nobody sees, a time that a frame may take."""
 
 from __future__ import annotations
 
@@ -17,7 +14,7 @@ from tree_sway_ros.core.fidelity.estimate import distance_to, tolerance_in_metre
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 
 
-def tell_demand(
+def set_demand(
     simulators: Iterable[TreeSimulator],
     *,
     tolerance: float,
@@ -32,7 +29,7 @@ def tell_demand(
     Parameters
     ----------
     simulators
-        One a tree.
+        One per tree.
     tolerance
         Largest error of the tips in [m], where there is no camera.
     budget
@@ -53,14 +50,14 @@ def tell_demand(
             each.tolerance = tolerance_in_metres(tolerance_pixels, distance, focal_length)
 
 
-def tell_pace(simulators: Iterable[TreeSimulator], spent: float) -> None:
+def set_pace(simulators: Iterable[TreeSimulator], spent: float) -> None:
     """
     Tell the trees that choose their model how fast this machine is.
 
     Parameters
     ----------
     simulators
-        One a tree.
+        One per tree.
     spent
         What a frame of all of them takes here, with the models now in use, in [us].
 

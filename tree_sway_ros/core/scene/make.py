@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-One way to every model of a tree, by its name.
-
-"""
+"""One way to every model of a tree, by its name."""
 
 from __future__ import annotations
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Trees that stand in one place: each with its name, where it stands and which way it is turned.
-
-"""
+"""Trees that stand in one place: each with its name, where it stands and which way it is turned."""
 
 from __future__ import annotations
 
@@ -19,6 +16,14 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
+
+
+def refuse_nowhere(name: str, x: float, y: float, z: float, yaw: float) -> None:
+    """Raise a `ParameterError` for a tree whose place or heading is not finite."""
+    if not all(map(math.isfinite, (x, y, z, yaw))):
+        raise ParameterError(
+            f"a pose of ({x}, {y}, {z}) m and {yaw} rad", where=name, cure="give finite numbers"
+        )
 
 
 @dataclass(frozen=True)
@@ -62,12 +67,7 @@ class PlacedTree:
 
     def __post_init__(self) -> None:
         """Refuse what is nowhere."""
-        if not all(map(math.isfinite, (self.x, self.y, self.z, self.yaw))):
-            raise ParameterError(
-                f"a pose of ({self.x}, {self.y}, {self.z}) m and {self.yaw} rad",
-                where=self.name,
-                cure="give finite numbers",
-            )
+        refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
 
     def placed(self) -> Tree:
         """

@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ from tree_sway_ros.core.checks import array_to_fill, within
 from tree_sway_ros.core.motion.harmonics import COUNT
 from tree_sway_ros.core.motion.placing import place_standing_at
 from tree_sway_ros.core.motion.records import zeros_in_lines
-from tree_sway_ros.core.motion.standing import STANDING, place_standing, step_standing
+from tree_sway_ros.core.motion.standing import STANDING, find_rests, place_standing, step_standing
 from tree_sway_ros.core.motion.wind_basis import (
     CARRIED,
     WindBasisBank,
@@ -37,8 +37,7 @@ from tree_sway_ros.core.motion.wind_basis import (
 )
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
-from tree_sway_ros.core.scene.stand_member import StandMember
+from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined, refuse_nowhere
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings
@@ -103,12 +102,7 @@ class StandTree:
 
     def __post_init__(self) -> None:
         """Refuse what is nowhere."""
-        if not all(map(math.isfinite, (self.x, self.y, self.z, self.yaw))):
-            raise ParameterError(
-                f"a pose of ({self.x}, {self.y}, {self.z}) m and {self.yaw} rad",
-                where=self.name,
-                cure="give finite numbers",
-            )
+        refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
         within(f"{self.name}: scale", self.scale, SMALLEST, LARGEST)
 
 
@@ -201,12 +195,13 @@ class Stand(KeepsState):
         layout = instance_layout(n_modes, COUNT[self.settings.degree])
         self._instances = np.zeros(len(trees), dtype=layout)
         self._paces = np.zeros(0, dtype=pace_layout(n_modes))
-        self._own = {
+        self.own = {
             t: _own_simulator(tree, self._kinds[tree.kind], self.settings)
             for t, tree in enumerate(trees)
             if tree.fidelity not in ("wind_basis", "frozen")
         }
-        for t in self._own:
+        """Simulators of the trees that are solved on a model of their own, by their numbers."""
+        for t in self.own:
             self._standing["is_still"][t] = 1
         sizes = [self._models[k].tree.n_segments for k in self._standing["kind"]]
         self._ends = np.cumsum([0, *sizes])
@@ -214,19 +209,19 @@ class Stand(KeepsState):
             self._standing["at"], anemometer, convection_ratio=convection_ratio
         )
         self._wind, self._dt = np.zeros(3), math.nan
-        self._rooms = [self._room() for _ in range(int(within("threads", threads, 1, 64)))]
+        self._scratch = [self._allocate() for _ in range(int(within("threads", threads, 1, 64)))]
         self._pool = ThreadPoolExecutor(threads - 1, "placing") if threads > 1 else None
 
     @property
     def model(self) -> str:
         """Models in use."""
         shared = ["wind_basis"] if not self._standing["is_still"].all() else []
-        return ", ".join([*shared, *dict.fromkeys(sim.model for sim in self._own.values())])
+        return ", ".join([*shared, *dict.fromkeys(sim.model for sim in self.own.values())])
 
     @property
     def simulators(self) -> tuple[TreeSimulator, ...]:
         """The simulators of the trees that are solved on a model of their own."""
-        return tuple(self._own.values())
+        return tuple(self.own.values())
 
     @property
     def n_segments(self) -> int:
@@ -238,13 +233,13 @@ class Stand(KeepsState):
         """Branches that are solved, of kinds once for each tree."""
         sizes = np.array([model.n_solved for model in self._models])
         moving = self._standing["is_still"] == 0
-        own = sum(sim.n_solved for sim in self._own.values())
+        own = sum(sim.n_solved for sim in self.own.values())
         return int(sizes[self._standing["kind"][moving]].sum()) + own
 
     @property
     def n_copied(self) -> int:
         """Branches that copy the motion of another."""
-        return sum(sim.n_copied for sim in self._own.values())
+        return sum(sim.n_copied for sim in self.own.values())
 
     @property
     def n_frozen(self) -> int:
@@ -271,15 +266,7 @@ class Stand(KeepsState):
         return _standing_tree(told, self._kinds[told.kind].tree)
 
     def segments_of(self, name: str) -> slice:
-        """
-        Return the rows of a tree in the pose block.
-
-        Raises
-        ------
-        ParameterError
-            If no tree has that name.
-
-        """
+        """Return the rows of a tree in the pose block, as `Forest.segments_of`."""
         if name not in self.names:
             raise ParameterError(f"no tree is called '{name}'", where="stand")
         number = self.names.index(name)
@@ -297,7 +284,7 @@ class Stand(KeepsState):
         held, restarted = step_standing(
             self._tables, self._paces, self._standing, self._instances, self._laws, felt
         )
-        for number, simulator in self._own.items():
+        for number, simulator in self.own.items():
             status |= simulator.step(felt[number].tolist(), dt)
         self.counts.steps += 1
         self.counts.held += held
@@ -338,16 +325,16 @@ class Stand(KeepsState):
         """
         shape = (self.n_segments, 7)
         poses = np.zeros(shape) if out is None else array_to_fill("out", out, shape)
-        shares = [np.array_split(rows, len(self._rooms)) for rows in self._rows(which)]
+        shares = [np.array_split(rows, len(self._scratch)) for rows in self._rows(which)]
         others = [
             self._pool.submit(self._place, poses, shares, thread)  # type: ignore[union-attr]
-            for thread in range(1, len(self._rooms))
+            for thread in range(1, len(self._scratch))
         ]
         self._place(poses, shares, 0)
         for other in others:
             other.result()
         wanted = None if which is None else set(np.atleast_1d(which).tolist())
-        for number, simulator in self._own.items():
+        for number, simulator in self.own.items():
             if wanted is None or number in wanted:
                 simulator.place(poses[self._ends[number] : self._ends[number + 1]])
         return poses
@@ -357,21 +344,21 @@ class Stand(KeepsState):
         for kind, share in enumerate(shares):
             if len(share[thread]):
                 bank, records = self._banks[kind], self._models[kind].bank
-                heads, work, x, block = self._rooms[thread][kind]
+                heads, work, x, block = self._scratch[thread][kind]
                 place_standing(
                     self._tables, self._standing, self._instances, share[thread], bank.all_shapes,
                     records.branches, records.segments, heads, work, x, block, poses,
                 )  # fmt: skip
 
-    def _room(self) -> list[tuple[Any, Any, Floats, Floats]]:
+    def _allocate(self) -> list[tuple[Any, Any, Floats, Floats]]:
         """What placing works in, of each kind."""
-        room = []
+        scratch = []
         for model, bank in zip(self._models, self._banks, strict=True):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
             heads[:] = model.bank.heads
             block = np.zeros((model.tree.n_segments, 7))
-            room.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
-        return room
+            scratch.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
+        return scratch
 
     @property
     def held(self) -> tuple[str, ...]:
@@ -391,30 +378,35 @@ class Stand(KeepsState):
     def memory(self) -> tuple[Any, ...]:
         """Views of what is carried from one step to the next, the wind first."""
         carried = (self._instances[name] for name in CARRIED)
-        own = (array for simulator in self._own.values() for array in _memory_of(simulator))
+        own = (array for simulator in self.own.values() for array in _memory_of(simulator))
         return self._wind, *self.gusts.memory(), *carried, *own
 
     def rotations(self) -> Floats:
         """Key rotations of all trees, one after another, in [rad], (N,)."""
         return np.concatenate([self._rotations(number) for number in range(len(self.trees))])
 
-    def members(self) -> tuple[StandMember | TreeSimulator, ...]:
-        """Each tree by itself: what it is, and how it bends at any time."""
-        return tuple(
-            self._own.get(number)
-            or StandMember(
-                self.tree_of(number),
-                self._models[self._used.index(told.kind)],
-                told.yaw,
-                partial(self._rotations, number),
-            )
-            for number, told in enumerate(self.trees)
-        )
+    @property
+    def shared(self) -> list[tuple[SwaySimulator, Ints]]:
+        """Each model, in a frame of its own, and the numbers of the trees that share it."""
+        is_shared = np.ones(len(self.trees), dtype=bool)
+        is_shared[list(self.own)] = False
+        found = [
+            (model, np.flatnonzero(is_shared & (self._standing["kind"] == kind)))
+            for kind, model in enumerate(self._models)
+        ]
+        return [(model, numbers) for model, numbers in found if len(numbers)]
+
+    def shares(self, numbers: Ints) -> Floats:
+        """How much trees of one kind bend in each shape of their table, (t, m + r)."""
+        find_rests(self._tables, self._standing, self._instances, numbers)
+        n_modes = self._banks[self._standing["kind"][numbers[0]]].shapes.shape[1]
+        eta, rest = self._instances["eta"], self._instances["rest"]
+        return np.hstack([eta[numbers, :n_modes], rest[numbers]])
 
     def _rotations(self, number: int) -> Floats:
         """Key rotations of a tree in [rad], (N,)."""
-        if number in self._own:
-            return self._own[number].rotations()
+        if number in self.own:
+            return self.own[number].rotations()
         bank, here = self._banks[self._standing["kind"][number]], slice(number, number + 1)
         found = np.zeros(len(bank.shapes))
         expand_one(bank.record, self._instances[here], bank.all_shapes, found)
@@ -428,13 +420,13 @@ class Stand(KeepsState):
         for number, here in enumerate(self._standing):
             rows = poses[self._ends[number] : self._ends[number + 1]]
             kind = int(here["kind"])
-            own, records = self._own.get(number), self._models[kind].bank
+            own, records = self.own.get(number), self._models[kind].bank
             size = len(own.rotations() if own else self._banks[kind].shapes)
             x, first = rotations[first : first + size], first + size
             if own:
                 own.place_rotations(x, rows)
                 continue
-            heads, work = self._rooms[0][kind][:2]
+            heads, work = self._scratch[0][kind][:2]
             east, north, up = here["at"].tolist()
             place_standing_at(
                 records.branches, records.segments, heads, work, x, east, north, up,
@@ -463,7 +455,7 @@ class Stand(KeepsState):
     def reset(self) -> None:
         """Bring every tree to rest and forget the wind; the counts stay."""
         self._instances[:] = np.zeros((), dtype=self._instances.dtype)
-        for simulator in self._own.values():
+        for simulator in self.own.values():
             simulator.reset()
         self.gusts.reset()
         self._wind[:] = 0.0
@@ -476,7 +468,7 @@ class Stand(KeepsState):
             raise ParameterError(
                 f"tree {numbers[-1]} of a stand of {n}", where="which", cure=f"give 0 to {n - 1}"
             )
-        shared = np.array([t for t in numbers.tolist() if t not in self._own], dtype=np.int64)
+        shared = np.array([t for t in numbers.tolist() if t not in self.own], dtype=np.int64)
         kinds = self._standing["kind"][shared]
         return [
             np.ascontiguousarray(np.stack([here, self._ends[here]], axis=1))

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
     from tree_sway_ros.core.motion.rigid_placing import RigidParts
     from tree_sway_ros.core.motion.uncoupled import UncoupledBank
+    from tree_sway_ros.core.motion.wind_basis import WindBasisBank
     from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
     from tree_sway_ros.core.wind.crown_wind import CrownDelays
 
@@ -199,6 +200,14 @@ class Bank:
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
         return partial(entry_of(place, *arrays, *given), *arrays)
 
+    @cached_property
+    def place_now(self) -> Callable[[Floats, Floats], None]:
+        """Place every segment as the oscillators stand, from a root node (3,) on, as `place`."""
+        if self.frozen is None and self.oscillators.is_tabled:
+            tabled = cast("WindBasisBank", self.oscillators)
+            return tabled.placing(self.segments, self.heads)
+        return lambda origin, out: self.place(self.oscillators.rotations(), origin, out)
+
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
         """
         Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
@@ -215,10 +224,7 @@ class Bank:
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
-    """
-    Calibrate a tree for the model of its settings; see `CalibratedTree.bank`.
-
-    """
+    """Calibrate a tree for the model of its settings; see `CalibratedTree.bank`."""
     return CalibratedTree(tree, species, settings).bank(settings.model, settings.n_modes)
 
 

@@ -42,8 +42,10 @@ class PartlyFrozenTree(CalibratedTree):
 
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out the frozen."""
+        bank = super().bank(model, n_modes)
+        bank.heads["n_bearing"] = bank.heads["n_lanes"]
         return replace(
-            super().bank(model, n_modes),
+            bank,
             frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),
             n_frozen=int(self.pruning.frozen.sum()),
         )

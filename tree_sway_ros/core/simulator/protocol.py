@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What every simulator is used by, whatever its model, and whether of one tree or of a forest.
-
-"""
+"""What every simulator is used by, whatever its model, and whether of one tree or of a forest."""
 
 from __future__ import annotations
 

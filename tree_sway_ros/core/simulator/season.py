@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Whether a tree bears leaves, decided in one place, and what they weigh, catch and damp.
-
-"""
+"""Whether a tree bears leaves, decided in one place, and what they weigh, catch and damp."""
 
 from __future__ import annotations
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What a simulator can be told, in one place.
-
-"""
+"""What a simulator can be told, in one place."""
 
 from __future__ import annotations
 

@@ -1,13 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The tree in the wind: owns the order of work, and no clock.
-
-"""
+"""The tree in the wind: owns the order of work, and no clock."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -116,7 +114,7 @@ class SwaySimulator(OneTree, KeepsState):
         self.drag_law = calibrated.drag_law
         self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
         self._advance = self.bank.oscillators.advance
-        self._place = self.bank.place
+        self._in_one_call: Callable[[float, float, float], int] | None = None
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
         if self.settings.crown_coherence < 1.0:
@@ -195,7 +193,10 @@ class SwaySimulator(OneTree, KeepsState):
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
-        return self._placed(array_to_read("rotations", rotations, self._expected), out)
+        out = self._to_fill(out)
+        read = array_to_read("rotations", rotations, self._expected)
+        self.bank.place(read, self._origin, out)
+        return out
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """
@@ -223,27 +224,39 @@ class SwaySimulator(OneTree, KeepsState):
             integrator; later ones are cut into pieces no longer than those it could take.
 
         """
+        counts = self.counts
+        if dt != self._dt or (self._tuning is not None and self._tuning.step(dt)):
+            self._set_step(dt)
+        counts.steps += 1
+        if self._in_one_call is not None:
+            told = self._in_one_call(wind_mean[0], wind_mean[1], wind_mean[2])  # type: ignore[index, arg-type]
+            if told == 0:
+                return OK
+            counts.refused += told & 1
+            held = self.bank.oscillators.step_outside() if told & 2 else 0  # type: ignore[attr-defined]
+            return (WIND_REFUSED if told & 1 else OK) | self._count(held)
         status = OK
         if not take_wind(self._wind, wind_mean, self._max_wind):
             status = WIND_REFUSED
-            self.counts.refused += 1
-        if dt != self._dt or (self._tuning is not None and self._tuning.step(dt)):
-            self._set_step(dt)
+            counts.refused += 1
         wx, wy, wz = self._wind.tolist()
         load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
         if self._gusts is not None:
             wx, wy, wz = self._gusts.felt(self._wind, dt)
         for _ in range(self._pieces):
-            held = self._advance(wx, wy, wz, load)
-            if held > 0:
-                self.counts.held += held
-                status |= LOAD_HELD
-            elif held < 0:
-                self.bank.oscillators.reset()
-                self.counts.restarted += 1
-                status |= RESTARTED
-        self.counts.steps += 1
+            status |= self._count(self._advance(wx, wy, wz, load))
         return status
+
+    def _count(self, held: int) -> int:
+        """Take what an advance returned; returns what `step` tells of it."""
+        if held > 0:
+            self.counts.held += held
+            return LOAD_HELD
+        if held < 0:
+            self.bank.oscillators.reset()
+            self.counts.restarted += 1
+            return RESTARTED
+        return OK
 
     def place(self, out: Floats | None = None) -> Floats:
         """
@@ -266,14 +279,15 @@ class SwaySimulator(OneTree, KeepsState):
             An array that cannot hold the poses.
 
         """
-        return self._placed(self.bank.oscillators.rotations(), out)
+        out = self._to_fill(out)
+        self.bank.place_now(self._origin, out)
+        return out
 
-    def _placed(self, rotations: Floats, out: Floats | None) -> Floats:
+    def _to_fill(self, out: Floats | None) -> Floats:
         if out is None:
-            out = np.empty(self._poses.shape)
-        elif out is not self._filled:
+            return np.empty(self._poses.shape)
+        if out is not self._filled:
             self._filled = array_to_fill("out", out, self._poses.shape)
-        self._place(rotations, self._origin, out)
         return out
 
     @property
@@ -365,6 +379,14 @@ class SwaySimulator(OneTree, KeepsState):
         self.bank.oscillators.set_step(dt / pieces)
         self._longest = max(self._longest, dt / pieces)
         self._dt, self._pieces = dt, pieces
+        of = self.bank.oscillators
+        if of.is_tabled and self._gusts is None and pieces == 1:
+            if self._in_one_call is None:
+                self._in_one_call = of.stepping(  # type: ignore[attr-defined]
+                    self._wind, self._max_wind, self.drag_law
+                )
+        else:
+            self._in_one_call = None
 
 
 _pressure = fused(pressure)

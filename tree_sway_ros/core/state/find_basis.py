@@ -149,16 +149,17 @@ def _run(
 
 def _singular_shapes(joints: Any, runs: list[Floats]) -> tuple[Floats, Floats]:
     """
-    Shapes by falling share in the motion of the tips, (N, m), and the way back to them, (m, N).
+    Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
+    (m, N).
 
     """
-    shapes, ways = [], []
+    shapes, projections = [], []
     for rotations in runs:
         tips = tip_motion(joints, rotations).reshape(-1, rotations.shape[1])
         size = max(float(np.linalg.norm(tips)), np.finfo(np.float64).tiny)
         shapes.append(rotations / size)
-        ways.append(tips / size)
-    moved = np.hstack(ways)
+        projections.append(tips / size)
+    moved = np.hstack(projections)
     squares, mixes = np.linalg.eigh(moved.T @ moved)
     kept = np.flatnonzero(squares > 1e-14 * squares[-1])[::-1]
     mixes = mixes[:, kept] / np.sqrt(np.maximum(squares[kept], np.finfo(np.float64).tiny))

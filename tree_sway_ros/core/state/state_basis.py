@@ -95,10 +95,7 @@ class StateBasis:
         return out
 
     def quantised(self, coordinates: Floats) -> tuple[NDArray[np.int16], int]:
-        """
-        Coordinates (m,) as int16, and how many were held at full scale.
-
-        """
+        """Coordinates (m,) as int16, and how many were held at full scale."""
         steps = np.rint(coordinates * (FULL_SCALE / self.scale))
         held = np.clip(steps, -FULL_SCALE, FULL_SCALE)
         return held.astype(np.int16), int((held != steps).sum())

@@ -95,10 +95,7 @@ def refuse_version(version: object) -> None:
 
 
 def digest_of(*told: Any) -> str:
-    """
-    Digest of trees and of frozen dataclasses that tell how they are modelled, 16 hex digits.
-
-    """
+    """Digest of trees and of frozen dataclasses that tell how they are modelled, 16 hex digits."""
     digest = hashlib.sha256()
     for each in told:
         for field in fields(each):

@@ -15,7 +15,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.tree.parents_first import parents_first
@@ -163,6 +162,8 @@ def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
     Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size.
 
     """
+    from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
+
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
     # Two are asked for, as the end nearest to the start of a very short root is its own.
     distance, index = cKDTree(ends).query(starts, k=2, distance_upper_bound=1e-4 * extent)

@@ -169,7 +169,7 @@ def _size(tree: Tree) -> tuple[float, float, float]:
 
 
 def _lean(tree: Tree) -> float:
-    """Angle between the vertical and the way from the base to the middle of the wood in [deg]."""
+    """Angle between the vertical and the line from the base to the middle of the wood in [deg]."""
     middle = 0.5 * (tree.start + tree.end) - tree.start[0]
     x, y, z = (tree.length @ middle).tolist()
     return math.degrees(math.atan2(math.hypot(x, y), z))

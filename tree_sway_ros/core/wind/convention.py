@@ -18,7 +18,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.errors import ParameterError
@@ -194,14 +193,12 @@ class WindConvention:
 
         """
         along = self.project(np.asarray(vector, dtype=np.float64))
-        if not np.linalg.norm(along) >= CALM_SPEED:
+        if not math.hypot(*along) >= CALM_SPEED:
             if previous is not None:
                 return previous
             east, north = self.project(np.eye(3)[0]), self.project(np.eye(3)[1])
             along = east if np.linalg.norm(east) > 0.1 else north
-        along = along / np.linalg.norm(along)
-        axes = np.column_stack([along, np.cross(self.normal, along), self.normal])
-        return np.roll(Rotation.from_matrix(axes).as_quat(), 1)
+        return _quaternion_of_axes(along / math.hypot(*along), self._unit_normal)
 
     def describe(self) -> str:
         """Return one line that says how the wind is read."""
@@ -213,3 +210,18 @@ class WindConvention:
         if not np.array_equal(self.normal, (0.0, 0.0, 1.0)):
             text += ", on the plane across ({:g}, {:g}, {:g})".format(*self.normal)
         return text
+
+
+def _quaternion_of_axes(along: Floats, normal: tuple[float, float, float]) -> Floats:
+    """Unit quaternion w, x, y, z, (4,), that turns x and z into these unit vectors, each (3,)."""
+    (xx, xy, xz), (zx, zy, zz) = along.tolist(), normal
+    yx, yy, yz = zy * xz - zz * xy, zz * xx - zx * xz, zx * xy - zy * xx
+    # Four times its product with itself: each row is the quaternion times one of its components.
+    rows = (
+        (1.0 + xx + yy + zz, yz - zy, zx - xz, xy - yx),
+        (yz - zy, 1.0 + xx - yy - zz, xy + yx, xz + zx),
+        (zx - xz, xy + yx, 1.0 - xx + yy - zz, yz + zy),
+        (xy - yx, xz + zx, yz + zy, 1.0 - xx - yy + zz),
+    )
+    row = rows[max(range(4), key=lambda i: rows[i][i])]
+    return np.array(row) / math.hypot(*row)

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A curve through knots, straight lines or steps, of bounded memory, with its exact integral.
-
-"""
+"""A curve through knots, straight lines or steps, of bounded memory, with its exact integral."""
 
 from __future__ import annotations
 

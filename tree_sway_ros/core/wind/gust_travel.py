@@ -9,9 +9,9 @@ at x feels ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the
 gusts travel, the mean speed itself over open ground and up to 1.8 of it over a closed canopy
 (Raupach, Finnigan & Brunet 1996). Waves that run through a stand follow from that alone.
 
-The wind is kept as its run, the way of the air since the start, at the end of every step: the mean
-over any span is then the difference of two runs over the span. As the mean wind turns or freshens,
-delays follow so slowly that for every tree time goes on.
+The wind is kept as its run, the displacement of the air since the start, at the end of every step:
+the mean over any span is then the difference of two runs over the span. As the mean wind turns or
+freshens, delays follow so slowly that for every tree time goes on.
 
 """
 
@@ -78,7 +78,7 @@ class GustHistory:
         memory: float = 60.0,
         capacity: int = 1 << 15,
     ) -> None:
-        """Make room for the history; nothing is made later."""
+        """Allocate the history; nothing is allocated later."""
         points = np.array(places, dtype=np.float64).reshape(-1, 3)
         if not np.isfinite(points).all():
             raise ParameterError("a place that is not finite", where="places", cure="give metres")
@@ -104,7 +104,7 @@ class GustHistory:
 
     @property
     def n_ahead(self) -> int:
-        """Places that stand upwind of the anemometer, by more than 0.1 s of the wind's way."""
+        """Places that stand upwind of the anemometer, by more than the wind travels in 0.1 s."""
         return int((self._wanted < -0.1).sum())
 
     @property
@@ -172,10 +172,7 @@ class GustHistory:
 def remember(
     run: Floats, at: NDArray[np.int64], finest: float, x: float, y: float, z: float, dt: float
 ) -> None:
-    """
-    Write time and run of the wind at the end of the step; the ring begins with its start.
-
-    """
+    """Write time and run of the wind at the end of the step; the ring begins with its start."""
     size = len(run)
     if at[1] == 0:
         run[0] = 0.0

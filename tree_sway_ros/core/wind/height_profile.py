@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Wind over height: what an anemometer at one height says of the wind at another.
-
-"""
+"""Wind over height: what an anemometer at one height says of the wind at another."""
 
 from __future__ import annotations
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The one way in for samples of wind: units and sign, then the gate, then the force plane.
-
-"""
+"""The one way in for samples of wind: units and sign, then the gate, then the force plane."""
 
 from __future__ import annotations
 

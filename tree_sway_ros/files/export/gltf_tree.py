@@ -246,12 +246,12 @@ def _linear_form(
     """Set the vertices that weights give against those of the poses."""
     at_rest = mesh.placed(rest)
     changes = np.array([_change(mesh, step).ravel() for step in steps])
-    gaps, ways = [], []
+    gaps, displacements = [], []
     for weight, pose in zip(weights, poses, strict=True):
-        way = mesh.placed(pose) - at_rest
-        gaps.append(np.linalg.norm((weight @ changes).reshape(-1, 3) - way, axis=1))
-        ways.append(np.linalg.norm(way, axis=1))
-    gap, motion = np.array(gaps), np.array(ways)
+        displacement = mesh.placed(pose) - at_rest
+        gaps.append(np.linalg.norm((weight @ changes).reshape(-1, 3) - displacement, axis=1))
+        displacements.append(np.linalg.norm(displacement, axis=1))
+    gap, motion = np.array(gaps), np.array(displacements)
     return LinearForm(
         names,
         float(np.sqrt(np.mean(gap**2))),

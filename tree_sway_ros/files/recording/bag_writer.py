@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A rosbag2 bag that messages are written to as the bytes that they came as, through rosbags.
-
-"""
+"""A rosbag2 bag that messages are written to as the bytes that they came as, through rosbags."""
 
 from __future__ import annotations
 

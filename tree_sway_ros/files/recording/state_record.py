@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The recorded state of a tree: its description and `tree_state` as the messages that were sent.
-
-"""
+"""The recorded state of a tree: its description and `tree_state` as the messages that were sent."""
 
 from __future__ import annotations
 
@@ -14,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.errors import FormatError, MissingDependencyError
-from tree_sway_ros.files.wind.bag import bag_of
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.recording.bag_reader import read_bag
 
 STATE_TYPE = "sensor_msgs/msg/JointState"
 DESCRIPTION_TYPE = "std_msgs/msg/String"
@@ -70,41 +67,18 @@ def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
     FormatError
         Not a bag, or one without both.
     MissingDependencyError
-        If rosbags is not installed.
+        If it is compressed by what is not installed.
 
     """
-    try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise MissingDependencyError(
-            "bags need rosbags", where=str(path), cure="pip install rosbags"
-        ) from error
     source = str(path)
-    if not path.exists():
-        raise FormatError("no such bag", where=source, cure="check the path")
-    found: list[tuple[int, bytes]] = []
-    description = b""
-    try:
-        with AnyReader([bag_of(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as bag:
-            topic = next(
-                (
-                    c.topic
-                    for c in bag.connections
-                    if c.msgtype == STATE_TYPE and f"/{c.topic}".endswith(f"/{name.lstrip('/')}")
-                ),
-                "",
-            )
-            beside = f"{topic.rpartition('/')[0]}/tree_description"
-            wanted = [c for c in bag.connections if c.topic in (topic, beside)]
-            for connection, _, data in bag.messages(wanted) if wanted else ():
-                if connection.msgtype == DESCRIPTION_TYPE:
-                    description = bytes(data)
-                elif connection.msgtype == STATE_TYPE:
-                    found.append((_stamp(bytes(data)), bytes(data)))
-    except Exception as error:  # rosbags, sqlite3, lz4 or struct: it is the bag's fault
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
-        raise FormatError(f"not a bag that can be read: {reason}", where=source) from error
+    bag = read_bag(path, (STATE_TYPE, DESCRIPTION_TYPE))
+    end = f"/{name.lstrip('/')}"
+    topics = [t for t, kind in bag.types.items() if kind == STATE_TYPE and f"/{t}".endswith(end)]
+    topic = topics[0] if topics else ""
+    described = bag.messages.get(f"{topic.rpartition('/')[0]}/tree_description", [])
+    description = described[-1][1] if described else b""
+    sent = [data for _, data in bag.messages.get(topic, [])]
+    found = [(_stamp(data), data) for data in sent if len(data) >= _AFTER_HEAD + _STAMP.size]
     if not found or b'"state"' not in description:
         raise FormatError(
             f"no '{name}' with the description that it is read by",
@@ -122,8 +96,8 @@ def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
         tuple(data for _, data in kept),
         description,
         source,
-        len(found) - len(kept),
-        (f"{topic}: {len(kept)} states",),
+        len(sent) - len(kept),
+        (f"{topic}: {len(kept)} states", *([f"damaged: {bag.damage}"] if bag.damage else [])),
     )
 
 

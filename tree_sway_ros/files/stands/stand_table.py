@@ -24,9 +24,11 @@ from tree_sway_ros.core.scene.stand import LARGEST, SMALLEST, StandKind, StandTr
 from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import FormatError, ParameterError, TreeSwayError
+from tree_sway_ros.files.file_format import has_columns
 from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
 from tree_sway_ros.files.table_file import TextTable, parse_table
 from tree_sway_ros.files.text_file import read_head, read_lines
+from tree_sway_ros.files.trees.yaml.forest_file import refuse_same_names
 
 COLUMNS = ("x", "y", "species", "height")
 """Columns that a stand has."""
@@ -36,13 +38,7 @@ _CLASS = 3.0
 
 def is_stand_table(path: Path) -> bool:
     """Whether a file is a table with the columns of a stand."""
-    if not path.is_file():
-        return False
-    for line in read_head(path).decode("utf-8", errors="replace").splitlines():
-        if line.strip() and not line.startswith("#"):
-            cells = {cell.strip(' "').lower() for cell in line.replace(";", ",").split(",")}
-            return set(COLUMNS) <= cells
-    return False
+    return path.is_file() and has_columns(*COLUMNS)(read_head(path))
 
 
 def read_stand_table(
@@ -75,7 +71,7 @@ def read_stand_table(
     x, y, height = table.strict(["x", "y", "height"]).T
     species = _texts(table, "species")
     names = _texts(table, "name") or [f"tree{row + 1}" for row in range(len(x))]
-    _refuse_same(names, table)
+    refuse_same_names(names, table.where)
     given = dict(kinds or {})
     classes = _height_classes(species, height)
     standing, made = [], dict[str, StandKind]()
@@ -151,19 +147,3 @@ def _numbers(table: TextTable, column: str, otherwise: Floats) -> Floats:
         return otherwise
     numbers: Floats = table.strict([column])[:, 0]
     return numbers
-
-
-def _refuse_same(names: list[str], table: TextTable) -> None:
-    seen: dict[str, int] = {}
-    for row, name in enumerate(names):
-        if name in seen:
-            raise FormatError(
-                f"a second tree called '{name}', the first is in line {table.numbers[seen[name]]}",
-                where=table.where(row),
-                cure="name each",
-            )
-        if "/" in name:
-            raise FormatError(
-                f"a slash in the name '{name}'", where=table.where(row), cure="leave it out"
-            )
-        seen[name] = row

@@ -15,7 +15,6 @@ Keys, kinds and ranges are those of ``stand_schema.json``::
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -23,18 +22,14 @@ from tree_sway_ros.core.scene.stand import StandKind
 from tree_sway_ros.errors import TreeSwayError
 from tree_sway_ros.files.stands.stand_file import StandFile
 from tree_sway_ros.files.stands.stand_table import read_stand_table
-from tree_sway_ros.files.text_file import path_of, read_head, read_text
+from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
-from tree_sway_ros.files.yaml_document import packaged_schema, read_yaml
-
-_STAND = re.compile(r"""^\{?\s*["']?stand["']?\s*:""", re.MULTILINE)
+from tree_sway_ros.files.yaml_document import begins_with_key, packaged_schema, read_yaml
 
 
 def is_stand_yaml(path: Path) -> bool:
     """Whether a file looks like a stand: YAML with ``stand`` at its outermost."""
-    if path.suffix.lower() not in (".yaml", ".yml", ".json") or not path.is_file():
-        return False
-    return _STAND.search(read_head(path).decode("utf-8", errors="replace")) is not None
+    return begins_with_key(path, "stand")
 
 
 def read_stand_yaml(path: Path, open_tree: Callable[[str | Path], TreeFile]) -> StandFile:

@@ -34,11 +34,10 @@ class FileUnits:
 
     def __post_init__(self) -> None:
         """Refuse what is no unit and no axis."""
-        for name in ("length_unit", "diameter_unit"):
-            if not 1e-6 <= getattr(self, name) <= 1e3:
-                raise ParameterError(
-                    f"{name} is {getattr(self, name):g} m", cure="give 0.01 for cm"
-                )
+        units = {"length_unit": self.length_unit, "diameter_unit": self.diameter_unit}
+        for name, unit in units.items():
+            if not 1e-6 <= unit <= 1e3:
+                raise ParameterError(f"{name} is {unit:g} m", cure="give 0.01 for cm")
         if self.up not in ("z", "y"):
             raise ParameterError(f"up is '{self.up}'", cure="use 'z' or 'y'")
 

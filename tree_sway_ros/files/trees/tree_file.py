@@ -3,22 +3,22 @@
 """
 Read a tree from a file of any known format.
 
-The content decides, the suffix breaks ties: files of the field come with the suffix of the day. A
-new format is one module in `formats`, with a `TreeFormat`.
+The content decides before the suffix: files of the field come with the suffix of the day. A new
+format is one module in `formats`, with a `TreeFormat`.
 
 """
 
 from __future__ import annotations
 
 import pkgutil
-import re
 from dataclasses import fields, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.text_file import path_of, read_head
+from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.file_format import format_of
+from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.trees import formats
 from tree_sway_ros.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
 from tree_sway_ros.files.trees.file_units import FileUnits
@@ -67,13 +67,8 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
 
     """
     path = path_of(path)
-    chosen = _format_of(path) if format is None else _format_named(format)
-    for option in options:
-        if option not in options_of(chosen):
-            names = ", ".join(options_of(chosen))
-            raise ParameterError(
-                f"format {chosen.name} has no option '{option}'", cure=f"it has: {names}"
-            )
+    chosen = format_of(path, format, TREE_FORMATS, "tree")
+    chosen.refuse_others(options, options_of(chosen))
     _check_kinds(chosen, options)
     own = {name: options.pop(name) for name in chosen.own_options if name in options}
     shared = {field.name for field in fields(FileUnits)} & set(options)
@@ -115,33 +110,3 @@ def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
         }[wanted]
         if not (fits or (value is None and "None" in kinds[name])):
             raise ParameterError(f"option {name} is '{value}'", cure=f"give {kind}")
-
-
-def _format_named(name: str) -> TreeFormat:
-    for known in TREE_FORMATS:
-        if known.name == name:
-            return known
-    raise ParameterError(
-        f"unknown tree format '{name}'", cure=f"use {', '.join(f.name for f in TREE_FORMATS)}"
-    )
-
-
-def _format_of(path: Path) -> TreeFormat:
-    head = read_head(path).decode("utf-8", errors="replace")
-    by_content = [known for known in TREE_FORMATS if known.recognise(head)]
-    with_points = re.sub(r"(?<=\d),(?=\d)", ".", head)
-    if not by_content and any(known.recognise(with_points) for known in TREE_FORMATS):
-        raise FormatError(
-            "numbers with a decimal comma", where=str(path), cure="export it with decimal points"
-        )
-    by_suffix = [
-        known for known in by_content or TREE_FORMATS if path.suffix.lower() in known.suffixes
-    ]
-    for candidates in (by_suffix, by_content):
-        if candidates:
-            return candidates[0]
-    raise FormatError(
-        "a file of no known tree format",
-        where=str(path),
-        cure=f"give one of {', '.join(f.name for f in TREE_FORMATS)}, or say its format",
-    )

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Wind in a ROS 2 bag, sqlite3 or mcap, read without ROS through rosbags.
+Wind in a ROS 2 bag, sqlite3 or mcap, read without ROS.
 
 Any of the wind's four message types: Vector3Stamped, TwistStamped, TwistWithCovarianceStamped
 (linear part) and Vector3, all of geometry_msgs. The time is the header's; a zero stamp or a message
@@ -12,11 +12,12 @@ up (REP-103); ``direction_convention`` and ``yaw`` say otherwise.
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
-from typing import Any
 
 from tree_sway_ros.core.wind.convention import WindConvention
-from tree_sway_ros.errors import FormatError, MissingDependencyError
+from tree_sway_ros.errors import FormatError
+from tree_sway_ros.files.recording.bag_reader import read_bag
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
 
 WIND_TYPES = tuple(
@@ -24,6 +25,7 @@ WIND_TYPES = tuple(
     for name in ("Vector3Stamped", "TwistStamped", "TwistWithCovarianceStamped", "Vector3")
 )
 """Message types that can hold wind."""
+_BODY = 4  # bytes of encapsulation, from which on numbers are aligned
 
 
 def read_bag_wind(
@@ -48,46 +50,28 @@ def read_bag_wind(
     FormatError
         Not a bag, no such topic, several to choose from, or no good message.
     MissingDependencyError
-        If rosbags is not installed.
+        If it is compressed by what is not installed.
 
     """
     WindConvention(direction_convention)  # refused before the file is read
-    try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise MissingDependencyError(
-            "bags need rosbags", where=str(path), cure="pip install rosbags"
-        ) from error
     source = str(path)
-    if not path.exists():
-        raise FormatError("no such bag", where=source, cure="check the path")
+    bag = read_bag(path, WIND_TYPES)
+    chosen = _chosen(bag.types, topic, source)
+    kind, messages = bag.types[chosen], bag.messages[chosen]
     rows = WindRows(source, row_name="message")
-    epoch, n_unstamped, notes = -1, 0, list[str]()
-    # A damaged bag fails in rosbags, sqlite3, lz4 or struct: whatever it is, it is the bag's fault.
-    try:
-        with AnyReader([bag_of(path)], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as bag:
-            connection = _chosen(bag.connections, topic, source)
-            for number, (_, recorded, data) in enumerate(bag.messages([connection]), start=1):
-                message = bag.deserialize(data, connection.msgtype)
-                stamp = _stamp(message)
-                n_unstamped += not stamp
-                epoch = (stamp or recorded) if epoch < 0 else epoch
-                vector = _vector(message)
-                seconds = ((stamp or recorded) - epoch) * 1e-9
-                rows.add(number, seconds, (vector.x, vector.y, vector.z))
-    except FormatError:
-        raise
-    except Exception as error:
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
-        if not rows.time:
-            raise FormatError(
-                f"not a bag that can be read: {reason}",
-                where=source,
-                cure="if it was cut off, mend it with 'mcap recover' or 'sqlite3 FILE .recover'",
-            ) from error
-        notes.append(f"damaged after {len(rows.time)} messages, which were read: {reason}")
-    notes.append(f"topic {connection.topic}, {connection.msgtype}")
+    epoch, n_unstamped = -1, 0
+    for number, (recorded, data) in enumerate(messages, start=1):
+        try:
+            stamp, velocity = _sample(data, has_header=not kind.endswith("/Vector3"))
+        except struct.error:
+            rows.refuse(number, "it is too short")
+            continue
+        n_unstamped += not stamp
+        epoch = (stamp or recorded) if epoch < 0 else epoch
+        rows.add(number, ((stamp or recorded) - epoch) * 1e-9, velocity)
+    notes = [f"topic {chosen}, {kind}"]
+    if bag.damage:
+        notes.insert(0, f"damaged after {len(messages)} messages, which were read: {bag.damage}")
     if n_unstamped:
         notes.append(f"{n_unstamped} messages without a stamp have the time they were recorded at")
     return rows.record(
@@ -98,25 +82,20 @@ def read_bag_wind(
     )
 
 
-def bag_of(path: Path) -> Path:
-    """Return the folder of a bag's file if its metadata is there, else the file itself."""
-    return path.parent if path.is_file() and (path.parent / "metadata.yaml").exists() else path
-
-
-def _chosen(connections: list[Any], topic: str | None, source: str) -> Any:
-    of_wind = {c.topic: c for c in connections if c.msgtype in WIND_TYPES}
+def _chosen(types: dict[str, str], topic: str | None, source: str) -> str:
+    of_wind = [name for name, kind in types.items() if kind in WIND_TYPES]
     if topic is not None:
         for name in (topic, f"/{topic}"):
             if name in of_wind:
-                return of_wind[name]
+                return name
     elif len(of_wind) == 1:
-        return next(iter(of_wind.values()))
+        return of_wind[0]
     names = ", ".join(sorted(of_wind)) or "none"
     if topic is not None:
         raise FormatError(f"no wind on topic '{topic}'", where=source, cure=f"wind is on: {names}")
     if of_wind:
         raise FormatError("wind on several topics", where=source, cure=f"choose a topic: {names}")
-    there = ", ".join(f"{c.topic} ({c.msgtype})" for c in connections[:10]) or "nothing"
+    there = ", ".join(f"{name} ({kind})" for name, kind in [*types.items()][:10]) or "nothing"
     raise FormatError(
         f"no topic of a wind type; there is {there}",
         where=source,
@@ -124,14 +103,12 @@ def _chosen(connections: list[Any], topic: str | None, source: str) -> Any:
     )
 
 
-def _stamp(message: Any) -> int:
-    """Stamp of the header in [ns]; 0 if it is zero or there is no header."""
-    header = getattr(message, "header", None)
-    return 0 if header is None else header.stamp.sec * 1_000_000_000 + header.stamp.nanosec
-
-
-def _vector(message: Any) -> Any:
-    """Return the vector of any of the four types."""
-    for name in ("vector", "twist"):
-        message = getattr(message, name, message)
-    return getattr(getattr(message, "twist", message), "linear", message)
+def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:
+    """Stamp [ns], 0 without one, and vector, which comes first in each of the types; of CDR."""
+    order, at, stamp = "<" if data[1:2] == b"\1" else ">", 0, 0
+    if has_header:
+        second, nanosecond, size = struct.unpack_from(f"{order}iII", data, _BODY)
+        stamp = second * 1_000_000_000 + nanosecond
+        at = -(-(12 + size) // 8) * 8
+    x, y, z = struct.unpack_from(f"{order}3d", data, _BODY + at)
+    return stamp, (x, y, z)

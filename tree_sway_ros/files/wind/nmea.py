@@ -29,12 +29,7 @@ from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.text_file import finite
 from tree_sway_ros.files.wind.record import WindRecord
-from tree_sway_ros.files.wind.sensor_line import (
-    MAX_LINE,
-    SensorLine,
-    checksum_of,
-    read_sensor_log,
-)
+from tree_sway_ros.files.wind.sensor_line import SensorLine, line_of, read_sensor_log
 from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing
 
 SENTENCES = ("MWD", "MWV T", "VWT", "MWV R", "VWR")
@@ -71,30 +66,18 @@ def parse_nmea(
     sentence = _SENTENCE.match(line, max(line.rfind("$"), 0))
     if sentence is None:
         return None
-    name, body, check = sentence.groups()
-    fields = body.strip().split(",")
+    name, content, check = sentence.groups()
+    fields = content.strip().split(",")
     if name == "MWV":
         reference = fields[1] if len(fields) > 1 else ""
         if reference not in ("R", "T"):
             return None
         name = f"MWV {reference}"
-    if len(line) > MAX_LINE:
-        return SensorLine(name, None, f"a line of {len(line)} characters")
-    if check is None:
-        found: Velocity | str = "no checksum" if need_checksum else ""
-    else:
-        told = check[1:].strip().upper()
-        found = (
-            ""
-            if told == checksum_of(line[sentence.start() + 1 : sentence.start(3)])
-            else ("wrong checksum")
-        )
-    if not found:
-        if name == "MWD":
-            found = _mwd(fields, declination)
-        else:
-            found = _mwv(fields, heading) if name[:3] == "MWV" else _vwr(fields, heading)
-    return SensorLine(name, None, found) if isinstance(found, str) else SensorLine(name, found)
+    told = None if check is None else check[1:].strip().upper()
+    body = line[sentence.start() + 1 : sentence.start(3)]
+    own_angle = declination if name == "MWD" else heading
+    read = partial(_READERS[name[:3]], fields, own_angle)
+    return line_of(name, len(line), told, [body], read, need_checksum=need_checksum)
 
 
 def read_nmea_wind(
@@ -176,3 +159,7 @@ def _vwr(fields: list[str], heading: float) -> Velocity | str:
         return "no speed" if speed is None else f"speed is {speed:g} m/s"
     turn = angle * pi / 180.0
     return velocity_of_bearing(speed, heading + (turn if side == "R" else -turn))
+
+
+_READERS = {"MWV": _mwv, "MWD": _mwd, "VWR": _vwr, "VWT": _vwr}
+"""Readers of the fields of a sentence, which also take the heading, or the declination for MWD."""

@@ -49,6 +49,31 @@ def checksum_of(body: str) -> str:
     return f"{reduce(xor, body.encode('utf-8', 'replace'), 0):02X}"
 
 
+def line_of(
+    kind: str,
+    length: int,
+    told: str | None,
+    bodies: Sequence[str],
+    read: Callable[[], Velocity | str],
+    *,
+    need_checksum: bool,
+) -> SensorLine:
+    """
+    Return what `read` finds in a line of so many characters, unless its length or checksum refuses
+    it; `told` is the checksum that stands in it, of one of these bodies, None without one.
+
+    """
+    if length > MAX_LINE:
+        found: Velocity | str = f"a line of {length} characters"
+    elif told is None and need_checksum:
+        found = "no checksum"
+    elif told is not None and told not in map(checksum_of, bodies):
+        found = "wrong checksum"
+    else:
+        found = read()
+    return SensorLine(kind, None, found) if isinstance(found, str) else SensorLine(kind, found)
+
+
 def read_sensor_log(
     path: Path, parse: ParseLine, kinds: Sequence[str], rate: float, notes: Sequence[str] = ()
 ) -> tuple[str, WindRecord]:

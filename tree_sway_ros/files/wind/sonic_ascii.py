@@ -24,12 +24,7 @@ from pathlib import Path
 from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.files.text_file import finite
 from tree_sway_ros.files.wind.record import WindRecord
-from tree_sway_ros.files.wind.sensor_line import (
-    MAX_LINE,
-    SensorLine,
-    checksum_of,
-    read_sensor_log,
-)
+from tree_sway_ros.files.wind.sensor_line import MAX_LINE, SensorLine, line_of, read_sensor_log
 from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing
 
 KINDS = ("gill", "trisonica")
@@ -67,25 +62,17 @@ def parse_sonic(
     """
     begin = line.rfind("\x02") if "\x02" in line else len(line) - len(line.lstrip())
     gill = _GILL.match(line, begin)
-    kind, found = KINDS[0], None
-    if len(line) > MAX_LINE:
-        found = f"a line of {len(line)} characters"
-    elif gill is not None:
-        told = (gill[2] or "").strip().upper()[:2]
+    if gill is not None:
+        body, told = gill[1], (gill[2] or "").strip().upper()[:2] or None
         # The examples of one manual (WindSonic) leave ETX out, those of another (WindObserver) not.
-        if told and told not in (checksum_of(gill[1]), checksum_of(f"{gill[1]}\x03")):
-            found = "wrong checksum"
-        elif need_checksum and not told:
-            found = "no checksum"
-        else:
-            return _said(kind, _gill([field.strip() for field in gill[1].split(",")], heading))
-    else:
-        words = line.replace(",", " ").split()
-        if len(words) < 4 or words[0] not in ("S", "S2", "D", "U"):
-            return None
-        kind = KINDS[1]
-        return _said(kind, _trisonica(words, heading))
-    return SensorLine(kind, None, found)
+        bodies = [body, f"{body}\x03"]
+        read = partial(_gill, [field.strip() for field in body.split(",")], heading)
+        return line_of(KINDS[0], len(line), told, bodies, read, need_checksum=need_checksum)
+    words = line[: MAX_LINE + 1].replace(",", " ").split()
+    if len(words) < 4 or words[0] not in ("S", "S2", "D", "U"):
+        return None
+    read = partial(_trisonica, words, heading)
+    return line_of(KINDS[1], len(line), None, (), read, need_checksum=False)
 
 
 def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> WindRecord:
@@ -111,10 +98,6 @@ def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> Win
     """
     north = f"the north marker is taken to point to {heading * 180.0 / pi:g} degrees"
     return read_sensor_log(path, partial(parse_sonic, heading=heading), KINDS, rate, [north])[1]
-
-
-def _said(kind: str, found: Velocity | str) -> SensorLine:
-    return SensorLine(kind, None, found) if isinstance(found, str) else SensorLine(kind, found)
 
 
 def _gill(fields: list[str], heading: float) -> Velocity | str:

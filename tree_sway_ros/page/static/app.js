@@ -28,7 +28,6 @@ let scene = null;
 /** @type {"connecting" | "open" | "lost"} */
 let line = "connecting";
 let retryAt = 0;
-let highest = 0;
 /** @type {number[]} */
 let tipAtRest = [0, 0, 0];
 let lastFrameAt = 0;
@@ -58,18 +57,11 @@ const stream = new TreeStream(location.href, {
   },
   onDescription(description) {
     scene?.describe(description);
-    const { segment_length: length } = description.arrays;
-    highest = 0;
-    if (scene) {
-      for (let s = 1; s < length.length; s++) {
-        if (scene.position(s)[2] > scene.position(highest)[2]) highest = s;
-      }
-      tipAtRest = scene.position(highest);
-    }
+    if (scene) tipAtRest = scene.tip();
     element("name").textContent = description.name;
     document.title = `${description.name} – tree sway`;
-    element("segments").textContent = String(description.nSegments);
-    element("model").textContent = description.trees[0]?.model ?? "–";
+    element("segments").textContent = description.nSegments.toLocaleString("en");
+    element("model").textContent = [...new Set(description.kinds.map((kind) => kind.model))].join(", ");
     traces.tip.clear();
     showState();
   },
@@ -194,7 +186,7 @@ function draw(now) {
   scene.draw(coordinates, sceneTime, playout.isPaused);
   drawn += 1;
   if (coordinates && stateNow()[0] === "live") {
-    const at = scene.position(highest);
+    const at = scene.tip();
     const moved = Math.hypot(at[0] - tipAtRest[0], at[1] - tipAtRest[1], at[2] - tipAtRest[2]);
     traces.wind.add(now / 1000, Math.hypot(...playout.wind));
     traces.tip.add(now / 1000, moved);

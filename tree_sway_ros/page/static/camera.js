@@ -30,13 +30,16 @@ export class Camera {
    */
   frame(low, high) {
     this._home = () => {
-      const size = Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-      this._size = size;
+      const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
+      const tall = high[2] - low[2];
+      this._size = Math.hypot(wide, tall);
       this.azimuth = -0.6;
-      this.elevation = 0.16;
+      // What is much wider than high is seen from higher up.
+      this.elevation = Math.min(0.45, 0.16 + 0.025 * Math.max(0, wide / tall - 3));
       this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
-      const across = Math.tan(FIELD / 2) * Math.min(1, this.aspect);
-      this.distance = (0.5 * size) / across;
+      const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
+      const half = Math.max(seen, wide / this.aspect, 0.7 * this._size) / 2;
+      this.distance = half / Math.tan(FIELD / 2) + 0.4 * wide;
     };
     this._home();
   }

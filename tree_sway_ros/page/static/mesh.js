@@ -5,14 +5,25 @@
  * graphics unit looks up. A branch is one tube: the ring between two segments belongs to both.
  */
 
-import { Placer, STRIDE } from "./placing.js";
+import { STRIDE } from "./placing.js";
 
-/** Segments that are drawn at most; the thickest branches of a larger scene. */
-export const MOST_SEGMENTS = 9000;
 const POTTED = new Set(["benjamina", "goldcrest"]);
 const NEEDLES = new Set(["goldcrest", "spruce", "sitka", "douglas_fir", "pine"]);
 
-/** @typedef {import("./protocol.js").Description} Description */
+/** Clusters of leaves are at most so much larger where few of them are drawn. */
+const LARGEST_LEAVES = 7;
+/** Rings of bark are no nearer to each other on the screen [px]. */
+const RING_SPACING = 6;
+
+/**
+ * @typedef {import("./protocol.js").Kind} Kind
+ *
+ * @typedef {object} Level how much of a kind is drawn
+ * @property {number} branches the first of its order
+ * @property {number} segments of these
+ * @property {number} blades of its leaves
+ * @property {number} pixels height of a tree from which so much is worth drawing
+ */
 
 /** Vertex arrays that grow. */
 class Growing {
@@ -41,57 +52,50 @@ class Growing {
   }
 }
 
-/** @param {Description} description */
-export function speciesOf(description) {
-  return description.trees[0]?.species ?? "";
-}
-
-/** @param {Description} description */
+/** @param {import("./protocol.js").Description} description */
 export function isPotted(description) {
-  return description.trees.length === 1 && POTTED.has(speciesOf(description));
+  return description.trees.length === 1 && POTTED.has(description.kinds[0].species);
 }
 
-/** @param {Description} description */
-export function hasNeedles(description) {
-  return NEEDLES.has(speciesOf(description));
+/** @param {Kind} kind */
+export function hasNeedles(kind) {
+  return NEEDLES.has(kind.species);
+}
+
+/** @param {Float32Array} rest */
+export function highestOf(rest) {
+  let highest = 0;
+  for (let s = 1; STRIDE * s < rest.length; s++) {
+    if (rest[STRIDE * s + 2] > rest[STRIDE * highest + 2]) highest = s;
+  }
+  return highest;
 }
 
 /**
- * Branches to draw, parents first: all, or the thickest of a scene with too many segments.
+ * Branches by what they cover of a picture, parents before their children; what carries the highest
+ * segment comes first.
  *
- * @param {Description} description
- * @param {number} [most]
+ * @param {Kind} kind
+ * @param {Float32Array} rest
  */
-export function drawnBranches(description, most = MOST_SEGMENTS) {
-  const { arrays, nBranches, nSegments } = description;
-  const all = Int32Array.from({ length: nBranches }, (_, i) => i);
-  if (nSegments <= most) return all;
+export function branchOrder(kind, rest) {
+  const { arrays, nBranches } = kind;
   const first = arrays.branch_first;
-  const weight = new Float32Array(nBranches);
+  const highest = highestOf(rest);
+  let top = nBranches - 1;
+  while (first[top] > highest) top--;
+  const isTop = new Uint8Array(nBranches);
+  for (; top >= 0; top = arrays.branch_parent[top]) isTop[top] = 1;
+  const weight = new Float64Array(nBranches);
   for (let b = 0; b < nBranches; b++) {
     let length = 0;
     for (let s = first[b]; s < first[b + 1]; s++) length += arrays.segment_length[s];
-    const own = length * arrays.segment_radius[2 * first[b]];
+    const own = isTop[b] ? Infinity : length * arrays.segment_radius[2 * first[b]];
     const parent = arrays.branch_parent[b];
-    weight[b] = parent < 0 ? Infinity : Math.min(own, weight[parent] * (1 - 1e-6));
+    weight[b] = parent < 0 ? Infinity : Math.min(own, weight[parent]);
   }
-  const heaviest = all.slice().sort((a, b) => weight[b] - weight[a]);
-  let total = 0;
-  let kept = 0;
-  while (kept < nBranches && total < most) {
-    total += first[heaviest[kept] + 1] - first[heaviest[kept]];
-    kept++;
-  }
-  return heaviest.slice(0, kept).sort();
-}
-
-/**
- * Poses at rest, of every segment.
- *
- * @param {Description} description
- */
-export function restPoses(description) {
-  return new Placer(description).place(new Float32Array(description.nCoordinates));
+  const order = Int32Array.from({ length: nBranches }, (_, i) => i);
+  return order.sort((a, b) => (weight[a] === weight[b] ? a - b : weight[b] > weight[a] ? 1 : -1));
 }
 
 /**
@@ -118,36 +122,41 @@ export function boxOf(poses) {
  * The bark: rings of [along, across cosine, across sine, shade], joined to tubes; of twigs two edges
  * of a ribbon, [along, across, 0, shade - 2].
  *
- * @param {Description} description
+ * @param {Kind} kind
  * @param {Int32Array} branches
  * @param {Float32Array} rest
+ * @param {number} pixels height of the tree on the screen
  */
-export function barkMesh(description, branches, rest) {
-  const { arrays } = description;
+export function barkMesh(kind, branches, rest, pixels) {
+  const { arrays } = kind;
   const radius = arrays.segment_radius;
   const length = arrays.segment_length;
   const { low, high } = boxOf(rest);
   const size = Math.max(high[2] - low[2], 0.1);
-  const few = branches.length > 3000;
+  const pixel = size / pixels;
   const mesh = new Growing(4);
   for (const branch of branches) {
     const from = arrays.branch_first[branch];
     const end = arrays.branch_first[branch + 1];
-    const thick = radius[2 * from] / size;
-    const sides = thick > 0.006 ? 12 : thick > 0.0025 && !few ? 6 : 2;
-    const shade = Math.min(1, thick / 0.01);
+    const thick = radius[2 * from];
+    const sides = thick > 4.8 * pixel ? 12 : thick > 2 * pixel ? 6 : 2;
+    const shade = Math.min(1, thick / (0.01 * size));
     const isStem = arrays.branch_parent[branch] < 0;
     let turn = 0;
     let risen = 0;
+    let drawn = 0;
     for (let s = from; s <= end; s++) {
       const segment = Math.min(s, end - 1);
       const isLast = s === end;
       if (s > from && !isLast) turn += twistBetween(rest, s - 1, s);
+      if (s > from) risen += length[s - 1];
+      if (s > from && !isLast && risen - drawn < RING_SPACING * pixel) continue;
+      drawn = risen;
       // At a joint both segments agree on the thickness: no steps in the bark.
       let r = isLast
         ? radius[2 * segment + 1]
         : s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : radius[2 * s];
-      r = Math.max(r, 0.0007 * size);
+      r = Math.max(r, 0.56 * pixel);
       if (isStem) r *= 1 + 0.9 * Math.exp(-risen / (2.5 * radius[2 * from]));
       const along = isLast ? length[segment] : 0;
       for (let k = 0; k < sides; k++) {
@@ -155,7 +164,6 @@ export function barkMesh(description, branches, rest) {
         if (sides === 2) mesh.add(segment, along, k ? -r : r, 0, shade - 2);
         else mesh.add(segment, along, r * Math.cos(angle), r * Math.sin(angle), shade);
       }
-      risen += isLast ? 0 : length[s];
       if (s === from) continue;
       const ring = mesh.count - sides;
       for (let k = 0; k < (sides === 2 ? 1 : sides); k++) {
@@ -234,25 +242,33 @@ function seeded() {
  * They come in a mixed order, so that any first part of them is a thinner crown. Per vertex: centre of the cluster (3), its orientation w x y z (4), place in it (3), normal in it
  * (3), flutter frequency and phase (2), shade (1).
  *
- * @param {Description} description
+ * @param {Kind} kind
  * @param {Int32Array} branches that are drawn
  * @param {Float32Array} rest
- * @param {number} blades that may be drawn
+ * @param {Level} level
+ * @param {number} most blades of the whole crown, whose area fewer have as well
  * @param {boolean} areFolded
  */
-export function leafMesh(description, branches, rest, blades, areFolded) {
-  const { arrays } = description;
+export function leafMesh(kind, branches, rest, level, most, areFolded) {
+  const { arrays } = kind;
   const mesh = new Growing(16);
   const carrier = arrays.leaf_segment;
   if (!carrier) return mesh;
   const random = seeded();
-  const needles = hasNeedles(description);
-  const each = Math.max(2, Math.min(needles ? 12 : 8, Math.floor(blades / carrier.length)));
-  const hung = hungOn(description, branches);
+  const fullest = hasNeedles(kind) ? 12 : 8;
+  const perCluster = (/** @type {number} */ blades) =>
+    Math.max(1, Math.min(fullest, Math.floor(blades / carrier.length)));
+  const each = perCluster(level.blades);
+  const order = Array.from(carrier, (_, i) => i);
+  const clusters = mixed(order, 1, random).slice(0, level.blades);
+  const larger = Math.min(LARGEST_LEAVES,
+    Math.sqrt((carrier.length * perCluster(most)) / (clusters.length * each)));
+  const needles = hasNeedles(kind) && larger < 2;
+  const hung = hungOn(kind, branches);
   const { low, high } = boxOf(rest);
   const middle = [0, 1, 2].map((c) => 0.5 * (low[c] + high[c]));
   const half = [0, 1, 2].map((c) => 0.5 * Math.max(high[c] - low[c], 0.1));
-  for (let i = 0; i < carrier.length; i++) {
+  for (const i of clusters) {
     let segment = carrier[i];
     let centre = [0, 1, 2].map((c) => arrays.leaf_offset[3 * i + c]);
     let turn = [0, 1, 2, 3].map((c) => arrays.leaf_orientation[4 * i + c]);
@@ -270,7 +286,7 @@ export function leafMesh(description, branches, rest, blades, areFolded) {
     // The inside of a crown is darker than its outside, its top lighter than its foot.
     const out = Math.hypot(...[0, 1, 2].map((c) => (at[c] - middle[c]) / half[c])) / 1.3;
     const open = Math.min(1, 0.25 + 0.75 * out) * (0.8 + 0.2 * ((at[2] - low[2]) / (2 * half[2])));
-    const size = arrays.leaf_size[i];
+    const size = larger * arrays.leaf_size[i];
     for (let blade = 0; blade < each; blade++) {
       const shade = open * (0.82 + 0.36 * random());
       addBlade(mesh, segment, centre, turn, size, needles, areFolded, random,
@@ -349,11 +365,11 @@ function addBlade(mesh, segment, centre, turn, size, needles, isFolded, random, 
 /**
  * The drawn segment that each segment moves with: itself, or what carries the branch left out.
  *
- * @param {Description} description
+ * @param {Kind} kind
  * @param {Int32Array} branches
  */
-function hungOn(description, branches) {
-  const { arrays, nSegments, nBranches } = description;
+function hungOn(kind, branches) {
+  const { arrays, nSegments, nBranches } = kind;
   const hung = Int32Array.from({ length: nSegments }, (_, i) => i);
   const isDrawn = new Uint8Array(nBranches);
   for (const branch of branches) isDrawn[branch] = 1;

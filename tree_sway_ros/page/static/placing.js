@@ -9,24 +9,18 @@ const STRETCH_TO = (Math.PI / 2) ** 2;
 const BLEND_FROM = (Math.PI / 6) ** 2;
 const BLEND_TO = (Math.PI / 4) ** 2;
 
-/** Numbers per pose: x y z [m] of the root-side node, 0, then the quaternion x y z w. */
+/** Numbers per pose: x y z [m] of the root-side node, the tree's scale, then the quaternion x y z w. */
 export const STRIDE = 8;
 
-/** Places the segments of a described scene. */
+const AT_ORIGIN = [0, 0, 0, 0, 1];
+
+/** Places the segments of a described scene, all of them, tree after tree. */
 export class Placer {
-  /**
-   * @param {import("./protocol.js").Description} description
-   * @param {Int32Array | null} [branches] those to place, parents before their children; all if null
-   */
-  constructor(description, branches = null) {
+  /** @param {import("./protocol.js").Description} description */
+  constructor(description) {
     this.description = description;
-    this.branches = branches ?? Int32Array.from({ length: description.nBranches }, (_, i) => i);
-    /** Key rotations [rad]. */
-    this.rotations = new Float32Array(description.nKeys);
     this.poses = new Float32Array(STRIDE * description.nSegments);
-    this._base = new Float32Array(4 * description.nBranches); // w x y z
-    this._half = new Float32Array(256); // half of each key rotation of a branch, stretched
-    this._rows = rowsOf(description, this.branches);
+    this._placers = description.kinds.map((kind) => new KindPlacer(kind));
   }
 
   /**
@@ -36,58 +30,138 @@ export class Placer {
    * @returns {Float32Array} the poses, the same array each time
    */
   place(coordinates) {
-    this._expand(coordinates);
-    for (const branch of this.branches) this._placeBranch(branch);
+    for (const { kind, place, firstSegment, firstCoordinate } of this.description.trees) {
+      const placer = this._placers[kind];
+      const count = placer.order.length;
+      placer.place(coordinates, firstCoordinate, place, count, this.poses, firstSegment);
+    }
     return this.poses;
   }
+}
 
-  /** @param {ArrayLike<number>} coordinates */
-  _expand(coordinates) {
-    const matrix = this.description.arrays.basis_matrix;
-    const { _rows: rows, rotations: out } = this;
-    for (let r = 0; r < rows.length; r += 4) {
-      let at = rows[r + 1];
-      let sum = 0;
-      for (let c = rows[r + 2]; c < rows[r + 3]; c++) sum += matrix[at++] * coordinates[c];
-      out[rows[r]] = sum;
+/** Places trees of one kind, or the first of their branches. */
+export class KindPlacer {
+  /**
+   * @param {import("./protocol.js").Kind} kind
+   * @param {Int32Array | null} [order] of its branches, parents before their children
+   */
+  constructor(kind, order = null) {
+    const { arrays, nBranches } = kind;
+    this.kind = kind;
+    this.order = order ?? Int32Array.from({ length: nBranches }, (_, i) => i);
+    /** Row of each segment when branches are placed in this order. */
+    this.slots = new Int32Array(kind.nSegments);
+    /** Rows of the first branches of the order together. */
+    this.reached = new Int32Array(nBranches + 1);
+    this.order.forEach((branch, i) => {
+      const [from, end] = [arrays.branch_first[branch], arrays.branch_first[branch + 1]];
+      for (let s = from; s < end; s++) this.slots[s] = this.reached[i] + s - from;
+      this.reached[i + 1] = this.reached[i] + end - from;
+    });
+    /** Key rotations [rad]. */
+    this._rotations = new Float32Array(kind.nKeys);
+    this._base = new Float32Array(4 * nBranches); // w x y z
+    this._half = new Float32Array(256); // half of each key rotation of a branch, stretched
+  }
+
+  /** Poses of the whole tree at rest, segment after segment as they are described. */
+  rest() {
+    const poses = new Float32Array(STRIDE * this.kind.nSegments);
+    const still = new Float32Array(this.kind.nCoordinates);
+    new KindPlacer(this.kind).place(still, 0, AT_ORIGIN, this.kind.nBranches, poses, 0);
+    return poses;
+  }
+
+  /**
+   * Place a tree.
+   *
+   * @param {ArrayLike<number>} coordinates of all trees
+   * @param {number} from its first
+   * @param {ArrayLike<number>} place as of a tree
+   * @param {number} count how many branches, in the order
+   * @param {Float32Array} poses written
+   * @param {number} to row of its first segment
+   */
+  place(coordinates, from, place, count, poses, to) {
+    for (let i = 0; i < count; i++) {
+      this._expand(this.order[i], coordinates, from);
+      this._placeBranch(this.order[i], place, poses, to);
     }
   }
 
-  /** @param {number} branch */
-  _placeBranch(branch) {
-    const { arrays } = this.description;
-    const { rotations: x, poses, _base: bases, _half: half } = this;
+  /**
+   * Key rotations of a branch.
+   *
+   * @param {number} branch
+   * @param {ArrayLike<number>} coordinates
+   * @param {number} from
+   */
+  _expand(branch, coordinates, from) {
+    const { arrays, nCoordinates } = this.kind;
+    const matrix = arrays.basis_matrix;
+    const first = arrays.branch_coordinate[branch];
+    if (first < 0) return;
+    const end = first + arrays.branch_keys[branch];
+    let at = first * nCoordinates;
+    for (let key = first; key < end; key++) {
+      let sum = 0;
+      for (let c = 0; c < nCoordinates; c++) sum += matrix[at++] * coordinates[from + c];
+      this._rotations[key] = sum;
+    }
+  }
+
+  /**
+   * @param {number} branch
+   * @param {ArrayLike<number>} place
+   * @param {Float32Array} poses
+   * @param {number} to
+   */
+  _placeBranch(branch, place, poses, to) {
+    const { arrays } = this.kind;
+    const { _rotations: x, _base: bases, _half: half, slots } = this;
     const parent = arrays.branch_parent[branch];
     const offset = arrays.branch_offset;
-    let px = offset[3 * branch];
-    let py = offset[3 * branch + 1];
-    let pz = offset[3 * branch + 2];
+    const scale = place[4];
+    let px = place[0];
+    let py = place[1];
+    let pz = place[2];
     let bw = 1;
     let bx = 0;
     let by = 0;
     let bz = 0;
-    if (parent >= 0) {
+    if (parent < 0) {
+      bw = Math.cos(place[3] / 2);
+      bz = Math.sin(place[3] / 2);
+    } else {
       const p = 4 * parent;
-      [bw, bx, by, bz] = [bases[p], bases[p + 1], bases[p + 2], bases[p + 3]];
+      bw = bases[p];
+      bx = bases[p + 1];
+      by = bases[p + 2];
+      bz = bases[p + 3];
       if (this._baseTurn(branch, parent)) {
         const { w, i, j, k } = turnOf;
         const qw = bw * w - bx * i - by * j - bz * k;
         const qx = bw * i + bx * w + by * k - bz * j;
         const qy = bw * j - bx * k + by * w + bz * i;
         bz = bw * k + bx * j - by * i + bz * w;
-        [bw, bx, by] = [qw, qx, qy];
+        bw = qw;
+        bx = qx;
+        by = qy;
       }
-      const under = STRIDE * arrays.branch_base_segment[branch];
+      const under = STRIDE * (to + slots[arrays.branch_base_segment[branch]]);
       const sx = poses[under + 4];
       const sy = poses[under + 5];
       const sz = poses[under + 6];
       const sw = poses[under + 7];
-      const tx = 2 * (sy * pz - sz * py);
-      const ty = 2 * (sz * px - sx * pz);
-      const tz = 2 * (sx * py - sy * px);
-      px += poses[under] + sw * tx + sy * tz - sz * ty;
-      py += poses[under + 1] + sw * ty + sz * tx - sx * tz;
-      pz += poses[under + 2] + sw * tz + sx * ty - sy * tx;
+      const ox = scale * offset[3 * branch];
+      const oy = scale * offset[3 * branch + 1];
+      const oz = scale * offset[3 * branch + 2];
+      const tx = 2 * (sy * oz - sz * oy);
+      const ty = 2 * (sz * ox - sx * oz);
+      const tz = 2 * (sx * oy - sy * ox);
+      px = poses[under] + ox + sw * tx + sy * tz - sz * ty;
+      py = poses[under + 1] + oy + sw * ty + sz * tx - sx * tz;
+      pz = poses[under + 2] + oz + sw * tz + sx * ty - sy * tx;
     }
     const own = 4 * branch;
     bases[own] = bw;
@@ -123,7 +197,9 @@ export class Placer {
     const chord = arrays.segment_chord;
     const rest = arrays.segment_rest;
     const end = arrays.branch_first[branch + 1];
-    for (let s = arrays.branch_first[branch]; s < end; s++) {
+    const begin = arrays.branch_first[branch];
+    let o = STRIDE * (to + slots[begin]);
+    for (let s = begin; s < end; s++, o += STRIDE) {
       let qw = bw;
       let qx = bx;
       let qy = by;
@@ -154,17 +230,17 @@ export class Placer {
       const rx = rest[r + 1];
       const ry = rest[r + 2];
       const rz = rest[r + 3];
-      const o = STRIDE * s;
       poses[o] = px;
       poses[o + 1] = py;
       poses[o + 2] = pz;
+      poses[o + 3] = scale;
       poses[o + 4] = qw * rx + qx * rw + qy * rz - qz * ry;
       poses[o + 5] = qw * ry - qx * rz + qy * rw + qz * rx;
       poses[o + 6] = qw * rz + qx * ry - qy * rx + qz * rw;
       poses[o + 7] = qw * rw - qx * rx - qy * ry - qz * rz;
-      const cx = chord[3 * s];
-      const cy = chord[3 * s + 1];
-      const cz = chord[3 * s + 2];
+      const cx = scale * chord[3 * s];
+      const cy = scale * chord[3 * s + 1];
+      const cz = scale * chord[3 * s + 2];
       const tx = 2 * (qy * cz - qz * cy);
       const ty = 2 * (qz * cx - qx * cz);
       const tz = 2 * (qx * cy - qy * cx);
@@ -181,8 +257,8 @@ export class Placer {
    * @param {number} parent
    */
   _baseTurn(branch, parent) {
-    const { arrays } = this.description;
-    const x = this.rotations;
+    const { arrays } = this.kind;
+    const x = this._rotations;
     const first = arrays.branch_coordinate[parent];
     if (first < 0) return false;
     const count = arrays.branch_keys[parent];
@@ -227,32 +303,4 @@ function halfTurn(hx, hy, hz) {
   turnOf.i = sinc * hx;
   turnOf.j = sinc * hy;
   turnOf.k = sinc * hz;
-}
-
-/**
- * The rows of the basis that some branches need: key rotation, where its row begins in the matrix,
- * first coordinate, one past the last.
- *
- * @param {import("./protocol.js").Description} description
- * @param {Int32Array} branches
- */
-function rowsOf(description, branches) {
-  const { arrays } = description;
-  const blocks = arrays.basis_block;
-  /** @type {number[]} */
-  const rows = [];
-  let block = 0;
-  for (const branch of branches) {
-    const first = arrays.branch_coordinate[branch];
-    if (first < 0) continue;
-    while (first >= blocks[block + 1]) block += 5;
-    while (first < blocks[block]) block -= 5;
-    const width = blocks[block + 3] - blocks[block + 2];
-    const count = arrays.branch_keys[branch];
-    for (let key = first; key < first + count; key++) {
-      const at = blocks[block + 4] + (key - blocks[block]) * width;
-      rows.push(key, at, blocks[block + 2], blocks[block + 3]);
-    }
-  }
-  return Int32Array.from(rows);
 }

@@ -5,7 +5,9 @@
  * stand for themselves. Reads what tree_sway_ros/page/protocol.py writes.
  */
 
-export const VERSION = 1;
+/** Of descriptions, and of frames. */
+export const VERSION = 2;
+export const FRAME_VERSION = 1;
 export const FULL_SCALE = 32767;
 /** Wind of one unit of its int16 [m/s]. */
 export const WIND_UNIT = 0.005;
@@ -20,29 +22,37 @@ const FRAME_SIZE = 28;
 /**
  * @typedef {Float32Array | Int32Array | Int16Array | Uint8Array} NumberArray
  *
- * @typedef {object} TreeEntry
- * @property {string} name
+ * @typedef {object} Kind what trees of one shape share
  * @property {string} species
  * @property {number} height [m]
- * @property {number} branches
- * @property {number} segments
- * @property {number} coordinates
  * @property {string} model
  * @property {number} basis_error what the basis leaves out [m]
+ * @property {string[]} branch_names
+ * @property {number} nSegments
+ * @property {number} nBranches
+ * @property {number} nCoordinates
+ * @property {number} nKeys key rotations
+ * @property {Record<string, NumberArray>} arrays
+ *
+ * @typedef {object} Tree
+ * @property {string} name
+ * @property {number} kind its number among the kinds
+ * @property {number} height [m]
+ * @property {number[]} place x, y, z [m], how far it is turned about the vertical [rad], its scale
+ * @property {number} firstSegment among those of all trees
+ * @property {number} firstCoordinate
  *
  * @typedef {object} Description
  * @property {string} name
  * @property {string} frame_id
  * @property {string} identity
  * @property {number} shortIdentity what frames carry of the identity
- * @property {TreeEntry[]} trees
- * @property {string[]} branchNames
+ * @property {Kind[]} kinds
+ * @property {Tree[]} trees
  * @property {{gain: number, largest_angle: number} | null} flutter law of the leaves
- * @property {number} nSegments
- * @property {number} nBranches
+ * @property {number} nSegments of all trees
  * @property {number} nCoordinates
- * @property {number} nKeys key rotations of all trees
- * @property {Record<string, NumberArray>} arrays
+ * @property {Float32Array} scale of each coordinate at full scale
  *
  * @typedef {object} Frame
  * @property {number} identity
@@ -76,8 +86,9 @@ export function decodeDescription(data) {
   const begin = 12 + view.getUint32(8, true);
   if (begin > data.byteLength) throw new ProtocolError("not a whole description");
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
-  /** @type {Record<string, NumberArray>} */
-  const arrays = {};
+  /** @type {Kind[]} */
+  const kinds = header.kinds.map((/** @type {Kind} */ kind) => ({ ...kind, arrays: {} }));
+  let places = new Float32Array(0);
   for (const [name, entry] of Object.entries(header.arrays)) {
     const kind = TYPES[/** @type {keyof typeof TYPES} */ (entry.type)];
     const count = entry.shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
@@ -85,25 +96,39 @@ export function decodeDescription(data) {
     if (!kind || from + count * kind.BYTES_PER_ELEMENT > data.byteLength) {
       throw new ProtocolError(`not a whole description: array ${name} is cut short`);
     }
-    arrays[name] = new kind(data, from, count);
+    const [number, own] = name.split("/");
+    if (own) kinds[Number(number)].arrays[own] = new kind(data, from, count);
+    else if (name === "tree_place") places = new Float32Array(data, from, count);
   }
-  const blocks = arrays.basis_block;
-  let nKeys = 0;
-  for (let i = 1; i < blocks.length; i += 5) nKeys = Math.max(nKeys, blocks[i]);
-  const nBranches = arrays.branch_parent.length;
+  for (const kind of kinds) {
+    kind.nBranches = kind.arrays.branch_parent.length;
+    kind.nSegments = kind.arrays.segment_length.length;
+    kind.nCoordinates = kind.arrays.basis_scale.length;
+    kind.nKeys = kind.arrays.basis_matrix.length / kind.nCoordinates;
+  }
+  let nSegments = 0;
+  let nCoordinates = 0;
+  const trees = header.trees.map((/** @type {Tree} */ told, /** @type {number} */ number) => {
+    const kind = kinds[told.kind];
+    const place = Array.from(places.subarray(5 * number, 5 * number + 5));
+    const first = { firstSegment: nSegments, firstCoordinate: nCoordinates };
+    nSegments += kind.nSegments;
+    nCoordinates += kind.nCoordinates;
+    return { ...told, ...first, place, height: kind.height * place[4] };
+  });
+  const scale = new Float32Array(nCoordinates);
+  for (const tree of trees) scale.set(kinds[tree.kind].arrays.basis_scale, tree.firstCoordinate);
   return {
     name: header.name,
     frame_id: header.frame_id,
     identity: header.identity,
     shortIdentity: parseInt(header.identity.slice(0, 8), 16),
-    trees: header.trees,
-    branchNames: header.branch_names,
+    kinds,
+    trees,
     flutter: header.flutter ?? null,
-    nSegments: arrays.segment_length.length,
-    nBranches,
-    nCoordinates: arrays.basis_scale.length,
-    nKeys,
-    arrays,
+    nSegments,
+    nCoordinates,
+    scale,
   };
 }
 
@@ -127,18 +152,17 @@ export function decodeFrame(data, description) {
   const view = new DataView(data);
   if (!isFrame(data)) throw new ProtocolError("not a frame");
   const count = view.getUint16(26, true);
-  if (view.getUint8(1) !== VERSION || data.byteLength !== FRAME_SIZE + 2 * count) {
+  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== FRAME_SIZE + 2 * count) {
     throw new ProtocolError(`a frame of ${data.byteLength} bytes for ${count} coordinates`);
   }
   const identity = view.getUint32(4, true);
   if (identity !== description.shortIdentity || count !== description.nCoordinates) {
     throw new ProtocolError("a frame of another description");
   }
-  const scale = description.arrays.basis_scale;
+  const { scale } = description;
+  const steps = new Int16Array(data, FRAME_SIZE, count);
   const coordinates = new Float32Array(count);
-  for (let i = 0; i < count; i++) {
-    coordinates[i] = (view.getInt16(FRAME_SIZE + 2 * i, true) / FULL_SCALE) * scale[i];
-  }
+  for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[i];
   return {
     identity,
     sequence: view.getUint32(8, true),

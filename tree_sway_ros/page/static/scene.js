@@ -3,29 +3,38 @@
 /** Draws a described tree from its poses: bark, leaves, pot, ground, shadow and the wind. */
 
 import { Camera } from "./camera.js";
+import { Detail, levelsOf } from "./detail.js";
 import {
   barkMesh,
   boxOf,
-  drawnBranches,
+  branchOrder,
+  highestOf,
   isPotted,
   leafMesh,
-  restPoses,
-  speciesOf,
   turnedMesh,
 } from "./mesh.js";
-import { Placer, STRIDE } from "./placing.js";
+import { KindPlacer, STRIDE } from "./placing.js";
 import * as shaders from "./shaders.js";
 
-/** A shadow is drawn anew every so many frames without a graphics unit. */
+/** A shadow is drawn anew every so many frames without a graphics unit, of a crowd less often. */
 const SHADOW_EVERY = 5;
+const CROWD = 50;
 /** Frames per second below which, without a graphics unit, fewer points are drawn. */
 const WANTED_FPS = 55;
 /** Points per point of the page, and share of the leaves, that are drawn at least. */
 const COARSEST = 0.7;
 const THINNEST = 0.3;
-/** Segments that are drawn at most without a graphics unit. */
-const MOST_SLOW = 6000;
+/** Segments of all trees that are drawn at most, and leaves of one; without a graphics unit less. */
+const MOST = { segments: 40000, leaves: 24000 };
+const MOST_SLOW = { segments: 12000, leaves: 4500 };
+/** Frames per second below which fewer segments are drawn, down to so many. */
+const LEAST_FPS = 20;
+const FEWEST_SEGMENTS = 3000;
+/** What of each tree is drawn is chosen anew every so many frames while the camera moves. */
+const CHOOSE_EVERY = 6;
 const POT_HEIGHT = 0.17;
+/** Vertices of the trees that are drawn in one go, at most. */
+const BATCH = 6000;
 
 /**
  * @typedef {object} Look
@@ -34,8 +43,20 @@ const POT_HEIGHT = 0.17;
  *
  * @typedef {object} Drawable
  * @property {WebGLVertexArrayObject} vao
- * @property {number} count
+ * @property {number} count of its indices
+ * @property {number} copies of a tree in it
  * @property {WebGLBuffer[]} buffers
+ *
+ * @typedef {object} DrawnLevel trees of a kind that are drawn on one level
+ * @property {Uint32Array} starts rows of their first segments, then of nothing
+ * @property {number} count of them
+ * @property {Drawable} bark
+ * @property {Drawable} leaf
+ *
+ * @typedef {object} DrawnKind
+ * @property {KindPlacer} placer
+ * @property {Float32Array} rest poses of its segments, as they are described
+ * @property {(DrawnLevel | null)[]} drawn per level; null before it is first used
  */
 
 /** @type {Record<string, Look>} */
@@ -44,7 +65,9 @@ export const LOOKS = {
   dark: { back: [0.075, 0.09, 0.105], ground: [0.17, 0.185, 0.19] },
 };
 
-/** @type {Record<string, {bark: number[], twig: number[], leaf: number[], fresh: number[]}>} */
+/** @typedef {{bark: number[], twig: number[], leaf: number[], fresh: number[]}} Wood */
+
+/** @type {Record<string, Wood>} */
 const WOODS = {
   usual: { bark: [0.42, 0.33, 0.26], twig: [0.36, 0.3, 0.2], leaf: [0.2, 0.4, 0.13], fresh: [0.45, 0.62, 0.2] },
   benjamina: { bark: [0.56, 0.49, 0.4], twig: [0.42, 0.4, 0.26], leaf: [0.12, 0.35, 0.12], fresh: [0.36, 0.58, 0.2] },
@@ -89,8 +112,15 @@ export class Scene {
     this.camera = new Camera();
     /** @type {Look} */
     this.look = LOOKS.light;
-    /** @type {Placer | null} */
-    this.placer = null;
+    /** @type {Detail | null} */
+    this.detail = null;
+    /** @type {DrawnKind[]} */
+    this._kinds = [];
+    /** Tree whose tip is told, and its highest segment. */
+    this._watched = 0;
+    this._highest = 0;
+    this._budget = 0;
+    this._chosenFor = new Float64Array(18);
     /** @type {import("./protocol.js").Description | null} */
     this.description = null;
     this.leavesShown = true;
@@ -107,13 +137,12 @@ export class Scene {
     };
     this._texture = gl.createTexture();
     this._rows = 0;
-    /** Segments that are drawn, and the slot of each. */
-    this._drawn = new Int32Array(0);
-    this._slots = new Uint32Array(0);
-    /** @type {Float32Array} */
+    /** Poses of the segments that are drawn, tree after tree. */
     this._texels = new Float32Array(0);
-    /** @type {Record<string, Drawable | null>} */
-    this._parts = { bark: null, leaf: null, pot: null, arrow: null, ground: null };
+    /** @type {Float32Array} */
+    this._coordinates = new Float32Array(0);
+    /** @type {Record<string, Drawable>} */
+    this._parts = {};
     this._parts.arrow = this._solid(arrowMesh());
     this._parts.pot = this._solid(potMesh());
     this._parts.ground = this._flat("ground", discMesh());
@@ -144,53 +173,53 @@ export class Scene {
    * @param {import("./protocol.js").Description} description
    */
   describe(description) {
-    const { gl } = this;
-    const rest = restPoses(description);
-    const branches = drawnBranches(description, this.isSlow ? MOST_SLOW : undefined);
-    this.placer = new Placer(description, branches);
-    this.placer.poses.set(rest);
+    this._free();
+    this.resize();
+    const { kinds, trees } = description;
+    const most = this.isSlow ? MOST_SLOW : MOST;
     this.description = description;
+    this._coordinates = new Float32Array(description.nCoordinates);
+    this._kinds = kinds.map((kind) => {
+      const rest = new KindPlacer(kind).rest();
+      return { placer: new KindPlacer(kind, branchOrder(kind, rest)), rest, drawn: [] };
+    });
+    const levels = this._kinds.map(({ placer, rest }) =>
+      levelsOf(placer, highestOf(rest), most.segments, most.leaves));
+    const boxes = this._kinds.map(({ rest }) => boxOf(rest));
+    const radii = boxes.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    this._watched = 0;
+    trees.forEach((tree, number) => {
+      const box = boxes[tree.kind];
+      const [x, y, z, yaw, scale] = tree.place;
+      const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
+      for (const u of [box.low[0], box.high[0]]) {
+        for (const v of [box.low[1], box.high[1]]) {
+          const corner = [x + c * u - s * v, y + s * u + c * v];
+          for (const i of [0, 1]) {
+            low[i] = Math.min(low[i], corner[i]);
+            high[i] = Math.max(high[i], corner[i]);
+          }
+        }
+      }
+      low[2] = Math.min(low[2], z + scale * box.low[2]);
+      const top = z + scale * box.high[2];
+      if (top > high[2]) this._watched = number;
+      high[2] = Math.max(high[2], top);
+    });
+    this.detail = new Detail(trees, levels, radii, this._watched);
+    this._highest = highestOf(this._kinds[trees[this._watched].kind].rest);
+    this._budget = most.segments;
+    this._chosenFor.fill(NaN);
     const isSame = this._name === description.name;
     this._name = description.name;
-    // Only what is drawn goes to the graphics unit, each segment in a slot of its own.
-    const { branch_first: first } = description.arrays;
-    const drawn = [];
-    this._slots = new Uint32Array(description.nSegments);
-    for (const branch of branches) {
-      for (let s = first[branch]; s < first[branch + 1]; s++) {
-        this._slots[s] = drawn.length;
-        drawn.push(s);
-      }
-    }
-    this._drawn = Int32Array.from(drawn);
-    this._rows = Math.ceil((2 * drawn.length) / shaders.TEXTURE_WIDTH);
-    this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * this._rows);
-    gl.bindTexture(gl.TEXTURE_2D, this._texture);
-    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-      gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
-    }
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, shaders.TEXTURE_WIDTH, this._rows, 0, gl.RGBA,
-      gl.FLOAT, null);
-    this._free("bark");
-    this._free("leaf");
-    const bark = barkMesh(description, branches, rest);
-    this._parts.bark = this._hung("bark", bark, [["ring", 4]]);
-    const leaves = leafMesh(description, branches, rest, this.isSlow ? 4500 : 24000,
-      !this.isSlow);
-    this._parts.leaf = this._hung("leaf", leaves, [
-      ["centre", 3],
-      ["orientation", 4],
-      ["place", 3],
-      ["facing", 3],
-      ["flutter", 3],
-    ]);
-    const { low, high } = boxOf(rest);
     const high2 = Math.max(high[2] - low[2], 0.05);
     const wide = Math.max(high[0] - low[0], high[1] - low[1], 0.4 * high2);
-    const root = rest.subarray(0, 3);
-    this._treeHeight = high2;
+    const root = trees[0].place;
+    this._treeHeight = Math.max(high2, 0.2 * wide);
     this._potSize = isPotted(description) ? POT_HEIGHT * high2 : 0;
-    this._root = Array.from(root);
+    this._root = root.slice(0, 3);
     this._groundHeight = (isPotted(description) ? root[2] : Math.min(low[2], root[2])) - this._potSize;
     this._middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
     this._extent = Math.max(wide, high2);
@@ -199,16 +228,110 @@ export class Scene {
       this.camera.frame([low[0], low[1], this._groundHeight], [high[0], high[1], high[2]]);
     }
     this._frame = 0;
+    this._chooseDetail(this.camera.update());
+    this._place();
+  }
+
+  /** Where the top of the tallest tree is now. */
+  tip() {
+    return this.position(this._highest);
   }
 
   /**
-   * Where a segment's root-side node is now.
+   * Where a segment's root-side node is now; of the tallest tree, if it is drawn.
    *
    * @param {number} segment
    */
   position(segment) {
-    const poses = this.placer?.poses;
-    return poses ? Array.from(poses.subarray(STRIDE * segment, STRIDE * segment + 3)) : [0, 0, 0];
+    const { detail, description } = this;
+    if (!detail || !description) return [0, 0, 0];
+    const { slots } = this._kinds[description.trees[this._watched].kind].placer;
+    const from = STRIDE * (detail.start[this._watched] + slots[segment]);
+    return Array.from(this._texels.subarray(from, from + 3));
+  }
+
+  /**
+   * Choose what of each tree is drawn, where the camera or the budget is another than before.
+   *
+   * @param {Float32Array} matrix
+   */
+  _chooseDetail(matrix) {
+    const { gl, detail, _chosenFor: before } = this;
+    const tall = this.canvas.clientHeight;
+    if (!detail) return;
+    if (before[16] === tall && before[17] === this._budget && matrix.every((m, i) => m === before[i])) {
+      return;
+    }
+    before.set(matrix);
+    [before[16], before[17]] = [tall, this._budget];
+    detail.choose(matrix, tall, this._budget);
+    for (const { drawn } of this._kinds) for (const level of drawn) if (level) level.count = 0;
+    for (let t = 0; t < detail.trees.length; t++) {
+      if (detail.level[t] < 0) continue;
+      const level = this._drawnLevel(detail.trees[t].kind, detail.level[t]);
+      level.starts[level.count++] = detail.start[t];
+    }
+    for (const { drawn } of this._kinds) {
+      for (const level of drawn) level?.starts.fill(shaders.NOTHING, level.count);
+    }
+    const rows = Math.ceil((2 * detail.segments) / shaders.TEXTURE_WIDTH);
+    if (rows <= this._rows) return;
+    this._rows = Math.ceil(1.25 * rows);
+    this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * this._rows);
+    gl.bindTexture(gl.TEXTURE_2D, this._texture);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    }
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, shaders.TEXTURE_WIDTH, this._rows, 0, gl.RGBA,
+      gl.FLOAT, null);
+  }
+
+  /**
+   * A level of a kind, made when it is first used.
+   *
+   * @param {number} kind
+   * @param {number} level
+   * @returns {DrawnLevel}
+   */
+  _drawnLevel(kind, level) {
+    const { gl } = this;
+    const { placer, rest, drawn } = this._kinds[kind];
+    const made = drawn[level];
+    if (made) return made;
+    const { levels, trees } = /** @type {Detail} */ (this.detail);
+    const told = levels[kind][level];
+    const branches = placer.order.slice(0, told.branches);
+    const n = trees.filter((tree) => tree.kind === kind).length;
+    const starts = new Uint32Array(n + shaders.MOST_COPIES);
+    const bark = barkMesh(placer.kind, branches, rest, told.pixels);
+    const most = levels[kind][levels[kind].length - 1].blades;
+    const leaves = leafMesh(placer.kind, branches, rest, told, most, !this.isSlow);
+    const fields = /** @type {[string, number][]} */ ([
+      ["centre", 3],
+      ["orientation", 4],
+      ["place", 3],
+      ["facing", 3],
+      ["flutter", 3],
+    ]);
+    return (drawn[level] = {
+      starts,
+      count: 0,
+      bark: this._hung("bark", bark, [["ring", 4]], placer.slots, n),
+      leaf: this._hung("leaf", leaves, fields, placer.slots, n),
+    });
+  }
+
+  /** Place what is drawn of each tree. */
+  _place() {
+    const { detail } = this;
+    if (!detail) return;
+    for (let t = 0; t < detail.trees.length; t++) {
+      const level = detail.level[t];
+      if (level < 0) continue;
+      const { kind, firstCoordinate, place } = detail.trees[t];
+      this._kinds[kind].placer.place(this._coordinates, firstCoordinate, place,
+        detail.levels[kind][level].branches, this._texels, detail.start[t]);
+    }
   }
 
   /** Fit the picture to the element. */
@@ -235,11 +358,14 @@ export class Scene {
     const { gl, look } = this;
     this.resize();
     const matrix = this.camera.update();
-    if (this.placer && coordinates) this.placer.place(coordinates);
-    if (this.placer) this._upload(this.placer.poses);
+    if (this._frame % CHOOSE_EVERY === 0) this._chooseDetail(matrix);
+    if (coordinates && coordinates.length === this._coordinates.length) this._coordinates = coordinates;
+    this._place();
+    this._upload();
     // The eye takes a shadow that is some frames old for one that is not.
-    const every = this.isSlow ? SHADOW_EVERY : 1;
-    if (this.placer && this._frame % every === 0) this._castShadow(matrix, time);
+    const isCrowd = (this.detail?.trees.length ?? 0) > CROWD;
+    const every = this.isSlow ? (isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
+    if (this.detail && this._frame % every === 0) this._castShadow(matrix, time);
     if (this.isSlow && !isPaused) this._keepPace();
     this._frame++;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -247,24 +373,20 @@ export class Scene {
     gl.clearColor(look.back[0], look.back[1], look.back[2], 1);
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    if (!this.placer) return;
+    if (!this.detail) return;
     this._drawTree(matrix, time, false);
     this._drawSolids(matrix, false);
     this._drawGround(matrix);
   }
 
-  /** @param {Float32Array} poses */
-  _upload(poses) {
+  _upload() {
     const { gl } = this;
-    const { _drawn: drawn, _texels: texels } = this;
-    for (let slot = 0; slot < drawn.length; slot++) {
-      const from = STRIDE * drawn[slot];
-      const to = STRIDE * slot;
-      for (let c = 0; c < STRIDE; c++) texels[to + c] = poses[from + c];
-    }
+    const segments = this.detail?.segments ?? 0;
+    if (!segments) return;
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this._texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, this._rows, gl.RGBA, gl.FLOAT,
+    const rows = Math.ceil((2 * segments) / shaders.TEXTURE_WIDTH);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, rows, gl.RGBA, gl.FLOAT,
       this._texels);
   }
 
@@ -323,7 +445,11 @@ export class Scene {
     const parts = [];
     if (this._fineness < 0.99) parts.push(`${Math.round(100 * this._fineness)} % of the points`);
     if (this._density < 0.99) parts.push(`${Math.round(100 * this._density)} % of the leaves`);
-    return parts.length ? `Drawn without a graphics unit: ${parts.join(", ")}` : "";
+    if (parts.length) parts.push("without a graphics unit");
+    if (this.detail && this.detail.share < 1) {
+      parts.push(`${this.detail.segments} of ${this.description?.nSegments} segments`);
+    }
+    return parts.length ? `Drawn: ${parts.join(", ")}` : "";
   }
 
   /** Draw fewer points and leaves while frames come too slowly, more again when there is time. */
@@ -339,6 +465,8 @@ export class Scene {
       // Points cost less than leaves, and are missed less.
       const thinner = factor < 1 && this._fineness > COARSEST ? 1 : factor;
       this._density = Math.min(1, Math.max(THINNEST, this._density * thinner));
+      const fewer = fps < LEAST_FPS && this._density <= THINNEST ? 0.8 : fps > 2 * LEAST_FPS ? 1.05 : 1;
+      this._budget = Math.min(MOST_SLOW.segments, Math.max(FEWEST_SEGMENTS, this._budget * fewer));
     }
     this._paceFrom = now;
     this._paced = 0;
@@ -352,26 +480,33 @@ export class Scene {
   _drawTree(matrix, time, isShadow) {
     const { gl } = this;
     const description = /** @type {import("./protocol.js").Description} */ (this.description);
-    const wood = WOODS[speciesOf(description)] ?? WOODS.usual;
-    const { bark, leaf } = this._parts;
-    if (bark) {
-      const used = this._programs.bark;
-      this._begin(used, matrix, isShadow);
-      gl.uniform3fv(used.uniforms.barkColor, wood.bark);
-      gl.uniform3fv(used.uniforms.twigColor, wood.twig);
-      drawPart(gl, bark);
-    }
-    if (leaf && this.leavesShown && leaf.count) {
-      const used = this._programs.leaf;
-      this._begin(used, matrix, isShadow);
-      gl.uniform3fv(used.uniforms.leafColor, wood.leaf);
-      gl.uniform3fv(used.uniforms.freshColor, wood.fresh);
-      gl.uniform1f(used.uniforms.time, time % 1000);
-      gl.uniform1f(used.uniforms.speed, Math.hypot(...this.wind));
-      const law = description.flutter ?? { gain: 0, largest_angle: 1 };
-      gl.uniform2f(used.uniforms.law, law.gain, law.largest_angle);
-      gl.uniform1f(used.uniforms.swell, 1 / Math.sqrt(this._density));
-      drawPart(gl, leaf, this._density);
+    const law = description.flutter ?? { gain: 0, largest_angle: 1 };
+    const { bark, leaf } = this._programs;
+    this._begin(bark, matrix, isShadow);
+    this._eachLevel((level, wood) => {
+      gl.uniform3fv(bark.uniforms.barkColor, wood.bark);
+      gl.uniform3fv(bark.uniforms.twigColor, wood.twig);
+      drawBatches(gl, level.bark, level, bark.uniforms.starts);
+    });
+    if (!this.leavesShown) return;
+    this._begin(leaf, matrix, isShadow);
+    gl.uniform1f(leaf.uniforms.time, time % 1000);
+    gl.uniform1f(leaf.uniforms.speed, Math.hypot(...this.wind));
+    gl.uniform2f(leaf.uniforms.law, law.gain, law.largest_angle);
+    gl.uniform1f(leaf.uniforms.swell, 1 / Math.sqrt(this._density));
+    this._eachLevel((level, wood) => {
+      if (!level.leaf.count) return;
+      gl.uniform3fv(leaf.uniforms.leafColor, wood.leaf);
+      gl.uniform3fv(leaf.uniforms.freshColor, wood.fresh);
+      drawBatches(gl, level.leaf, level, leaf.uniforms.starts, this._density);
+    });
+  }
+
+  /** @param {(level: DrawnLevel, wood: Wood) => void} draw */
+  _eachLevel(draw) {
+    for (const { placer, drawn } of this._kinds) {
+      const wood = WOODS[placer.kind.species] ?? WOODS.usual;
+      for (const level of drawn) if (level?.count) draw(level, wood);
     }
   }
 
@@ -450,32 +585,56 @@ export class Scene {
     return { target, texture };
   }
 
-  /** @param {string} part */
-  _free(part) {
-    const old = this._parts[part];
-    if (!old) return;
-    for (const buffer of old.buffers) this.gl.deleteBuffer(buffer);
-    this.gl.deleteVertexArray(old.vao);
-    this._parts[part] = null;
+  /** Forget the trees. */
+  _free() {
+    const { gl } = this;
+    for (const { drawn } of this._kinds) {
+      for (const level of drawn) {
+        if (!level) continue;
+        for (const { vao, buffers } of [level.bark, level.leaf]) {
+          for (const buffer of buffers) gl.deleteBuffer(buffer);
+          gl.deleteVertexArray(vao);
+        }
+      }
+    }
+    this._kinds = [];
   }
 
   /**
    * @param {"bark" | "leaf"} name
    * @param {{values: number[], segments: number[], indices: number[], width: number}} mesh
    * @param {[string, number][]} fields
+   * @param {Int32Array} slots of the segments in a tree
+   * @param {number} n how many trees may be drawn so
    * @returns {Drawable}
    */
-  _hung(name, mesh, fields) {
+  _hung(name, mesh, fields, slots, n) {
     const { gl } = this;
     const used = this._programs[name];
     const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
     gl.bindVertexArray(vao);
-    const segments = filled(gl, gl.ARRAY_BUFFER, Uint32Array.from(mesh.segments, (s) => this._slots[s]));
+    const { segments, values, indices } = mesh;
+    const room = Math.floor(BATCH / Math.max(segments.length, 1));
+    const copies = Math.max(1, Math.min(shaders.MOST_COPIES, n, room));
+    const rows = new Uint32Array(copies * segments.length);
+    const all = new Float32Array(copies * values.length);
+    const corners = new Uint32Array(copies * indices.length);
+    for (let copy = 0; copy < copies; copy++) {
+      all.set(values, copy * values.length);
+      const from = copy * segments.length;
+      for (let v = 0; v < segments.length; v++) rows[from + v] = slots[segments[v]] | (copy << 24);
+      // Leaf after leaf, so that any first part is as much of every tree; wood tree after tree.
+      const [each, apart] = name === "leaf" ? [copies, copy] : [1, copy * (indices.length / 3)];
+      for (let i = 0; i < indices.length; i++) {
+        corners[3 * (each * Math.floor(i / 3) + apart) + (i % 3)] = from + indices[i];
+      }
+    }
     const at = gl.getAttribLocation(used.program, "segment");
+    const buffer = filled(gl, gl.ARRAY_BUFFER, rows);
     gl.enableVertexAttribArray(at);
     gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
-    const buffers = [segments, ...this._fields(used, mesh.values, fields, mesh.indices)];
-    return { vao, count: mesh.indices.length, buffers };
+    const buffers = [buffer, ...this._fields(used, all, fields, corners)];
+    return { vao, count: corners.length, copies, buffers };
   }
 
   /**
@@ -488,7 +647,7 @@ export class Scene {
     gl.bindVertexArray(vao);
     const fields = /** @type {[string, number][]} */ ([["at", 3], ["facing", 3], ["tint", 3]]);
     const buffers = this._fields(this._programs.solid, mesh.values, fields, mesh.indices);
-    return { vao, count: mesh.indices.length, buffers };
+    return { vao, count: mesh.indices.length, copies: 1, buffers };
   }
 
   /**
@@ -501,14 +660,14 @@ export class Scene {
     const vao = /** @type {WebGLVertexArrayObject} */ (gl.createVertexArray());
     gl.bindVertexArray(vao);
     const buffers = this._fields(this._programs[name], mesh.values, [["corner", 2]], mesh.indices);
-    return { vao, count: mesh.indices.length, buffers };
+    return { vao, count: mesh.indices.length, copies: 1, buffers };
   }
 
   /**
    * @param {Program} used
-   * @param {number[]} values
+   * @param {ArrayLike<number>} values
    * @param {[string, number][]} fields
-   * @param {number[]} indices
+   * @param {ArrayLike<number>} indices
    */
   _fields(used, values, fields, indices) {
     const { gl } = this;
@@ -561,7 +720,9 @@ function program(gl, vertex, fragment) {
   const uniforms = {};
   for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
     const { name } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
-    uniforms[name] = /** @type {WebGLUniformLocation} */ (gl.getUniformLocation(made, name));
+    // Arrays are told as that of their first element.
+    const key = name.replace("[0]", "");
+    uniforms[key] = /** @type {WebGLUniformLocation} */ (gl.getUniformLocation(made, name));
   }
   return { program: made, uniforms };
 }
@@ -586,6 +747,22 @@ function filled(gl, kind, data) {
 function drawPart(gl, part, share = 1) {
   gl.bindVertexArray(part.vao);
   gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
+}
+
+/**
+ * Draw the trees of a level, a batch at a time.
+ *
+ * @param {WebGL2RenderingContext} gl
+ * @param {Drawable} part
+ * @param {DrawnLevel} level
+ * @param {WebGLUniformLocation} at of the rows of the trees
+ * @param {number} [share] of its triangles
+ */
+function drawBatches(gl, part, { starts, count }, at, share = 1) {
+  for (let from = 0; from < count; from += part.copies) {
+    gl.uniform4uiv(at, starts, from, 4 * Math.ceil(part.copies / 4));
+    drawPart(gl, part, share);
+  }
 }
 
 /** @param {number[]} v */

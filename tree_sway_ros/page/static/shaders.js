@@ -3,23 +3,36 @@
 /** Programs of the graphics unit. Poses lie in a texture, two texels per segment. */
 
 export const TEXTURE_WIDTH = 1024;
+/** Trees that are drawn in one go at most: many small ones cost little more than one. */
+export const MOST_COPIES = 32;
+/** Start of no tree. */
+export const NOTHING = 0xffffffff;
 
 const POSE = `#version 300 es
 precision highp float;
 precision highp int;
-uniform highp sampler2D poses;
 uniform mat4 camera;
 uniform float ground;
 uniform vec3 light;
 uniform vec3 eye;
 uniform vec4 shadowArea; // middle x, y, one over half its size, 1 when the shadow is drawn
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
-vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
 vec4 seen(vec3 p) {
   if (shadowArea.w < 0.5) return camera * vec4(p, 1.0);
   vec2 flat_ = p.xy - light.xy / light.z * (p.z - ground);
   return vec4((flat_ - shadowArea.xy) * shadowArea.z, 0.0, 1.0);
 }
+`;
+
+/** What hangs on a segment: its pose, and the scale of its tree. */
+const HUNG = `${POSE}
+uniform highp sampler2D poses;
+uniform uvec4 starts[${MOST_COPIES / 4}]; // rows of the first segments of the trees of a batch
+in uint segment; // of its tree, and in the upper byte which tree of the batch
+uint start() { return starts[segment >> 26][(segment >> 24) & 3u]; }
+uint rowOf() { return 2u * (start() + (segment & 0xffffffu)); }
+vec4 seenIfAny(vec3 p) { return start() == ${NOTHING}u ? vec4(2.0, 2.0, 2.0, 1.0) : seen(p); }
+vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
 `;
 
 /** What is lit; the shadow is its outline. */
@@ -31,30 +44,31 @@ uniform float isShadow;
 out vec4 color;
 `;
 
-export const BARK_VERTEX = `${POSE}
-in uint segment;
+export const BARK_VERTEX = `${HUNG}
 in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, 0, thickness - 2
 out vec3 normal;
 out float thickness;
 void main() {
-  vec3 p = texel(2u * segment).xyz;
-  vec4 q = texel(2u * segment + 1u);
+  uint row = rowOf();
+  vec4 root = texel(row);
+  vec4 q = texel(row + 1u);
+  vec3 p = root.xyz;
   vec3 axis = turned(q, vec3(1.0, 0.0, 0.0));
-  p += ring.x * axis;
+  p += root.w * ring.x * axis;
   thickness = ring.w;
   if (ring.w < -0.5) {
     // What is too thin to be seen round faces whoever looks, the sun for the shadow.
     vec3 back = normalize(shadowArea.w < 0.5 ? eye - p : light);
     vec3 across = normalize(cross(back, axis) + vec3(0.0, 0.0, 1e-6));
-    p += ring.y * across;
+    p += root.w * ring.y * across;
     normal = back + sign(ring.y) * across;
     thickness += 2.0;
   } else {
     vec3 across = turned(q, vec3(0.0, ring.yz));
-    p += across;
+    p += root.w * across;
     normal = across;
   }
-  gl_Position = seen(p);
+  gl_Position = seenIfAny(p);
 }`;
 
 export const BARK_FRAGMENT = `${LIT}
@@ -70,8 +84,7 @@ void main() {
   color = vec4(base * (0.34 + 0.28 * sky + 0.62 * lit), 1.0);
 }`;
 
-export const LEAF_VERTEX = `${POSE}
-in uint segment;
+export const LEAF_VERTEX = `${HUNG}
 in vec3 centre;
 in vec4 orientation; // w x y z
 in vec3 place;
@@ -84,8 +97,9 @@ uniform float swell; // where fewer leaves are drawn, larger ones
 out vec3 normal;
 out float shade;
 void main() {
-  vec3 at = texel(2u * segment).xyz;
-  vec4 q = texel(2u * segment + 1u);
+  uint row = rowOf();
+  vec4 root = texel(row);
+  vec4 q = texel(row + 1u);
   float a = law.y * tanh(law.x * speed * speed / (flutter.x * law.y));
   a *= sin(6.2831853 * flutter.x * time + flutter.y);
   float c = cos(a);
@@ -93,10 +107,10 @@ void main() {
   vec3 local = vec3(place.x, c * place.y - s * place.z, s * place.y + c * place.z);
   vec3 face = vec3(facing.x, c * facing.y - s * facing.z, s * facing.y + c * facing.z);
   vec4 own = orientation.yzwx;
-  vec3 p = at + turned(q, centre + turned(own, swell * local));
+  vec3 p = root.xyz + root.w * turned(q, centre + turned(own, swell * local));
   normal = turned(q, turned(own, face));
   shade = flutter.z;
-  gl_Position = seen(p);
+  gl_Position = seenIfAny(p);
 }`;
 
 export const LEAF_FRAGMENT = `${LIT}

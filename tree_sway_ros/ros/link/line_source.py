@@ -8,7 +8,7 @@ import asyncio
 import importlib
 import threading
 from collections.abc import AsyncIterator, Callable
-from contextlib import aclosing
+from contextlib import aclosing, suppress
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError
@@ -64,6 +64,7 @@ class LineSource:
         self._loop = asyncio.new_event_loop()
         self._task: asyncio.Task[None] | None = None
         self._is_ending = False
+        self._ending = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="instrument", daemon=True)
         self.is_up = False
         self.links = 0
@@ -82,6 +83,7 @@ class LineSource:
             self._thread.join(timeout=5.0)
 
     def _cancel(self) -> None:
+        self._ending.set()
         if self._task is not None:
             self._task.cancel()
 
@@ -112,7 +114,8 @@ class LineSource:
             except Exception as error:  # an instrument may fail in any way, and is tried again
                 self._lose(f"{type(error).__name__}: {error}")
             pause = self._first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
-            await asyncio.sleep(pause)
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._ending.wait(), pause)
 
     def _gain(self) -> None:
         self.is_up, self.failure = True, ""

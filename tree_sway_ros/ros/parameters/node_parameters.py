@@ -43,6 +43,17 @@ _FRAME = Parameter(
     "frame_id", "map", "The frame of everything that this node publishes.", source="REP-105"
 )
 
+_OUTPUT = (
+    Parameter(
+        "output_type",
+        WIND_TYPE_NAMES[0],
+        "The node publishes messages of this type.",
+        choices=WIND_TYPE_NAMES,
+    ),
+    _convention("Writes"),
+    _FRAME,
+)
+
 _LIFECYCLE = Parameter(
     "lifecycle",
     False,
@@ -60,14 +71,7 @@ ANEMOMETER: Table = (
         100.0,
         source="sensors seen: 1-80 Hz",
     ),
-    Parameter(
-        "output_type",
-        WIND_TYPE_NAMES[0],
-        "The node publishes messages of this type.",
-        choices=WIND_TYPE_NAMES,
-    ),
-    _convention("Writes"),
-    _FRAME,
+    *_OUTPUT,
     Parameter("mean_speed", 6.0, "The mean wind speed.", "m/s", 0.0, 40.0, live=True),
     Parameter(
         "bearing_to",
@@ -483,14 +487,7 @@ PLAYER: Table = (
         "as it was sent: `tree_state` and `tree_description`.",
         choices=("wind", "state"),
     ),
-    Parameter(
-        "output_type",
-        WIND_TYPE_NAMES[0],
-        "The node publishes messages of this type.",
-        choices=WIND_TYPE_NAMES,
-    ),
-    _convention("Writes"),
-    _FRAME,
+    *_OUTPUT,
     Parameter(
         "speed", 1.0, "The record is played so many times as fast as it was made.", "", 0.01, 1000.0
     ),
@@ -571,14 +568,7 @@ SENSOR: Table = (
     ),
     Parameter("need_checksum", False, "Sentences without a checksum are refused.", live=True),
     Parameter("silence", 10.0, "A link without a byte for so long is made anew.", "s", 0.1, 3600.0),
-    Parameter(
-        "output_type",
-        WIND_TYPE_NAMES[0],
-        "The node publishes messages of this type.",
-        choices=WIND_TYPE_NAMES,
-    ),
-    _convention("Writes"),
-    _FRAME,
+    *_OUTPUT,
 )
 
 NODE_PARAMETERS: dict[str, Table] = {

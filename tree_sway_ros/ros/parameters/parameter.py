@@ -12,7 +12,7 @@ the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -143,25 +143,6 @@ _KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: 
 _KINDS[tuple] = "a list of numbers"
 
 Table = tuple[Parameter, ...]
-
-
-def checked_values(
-    table: Table, values: Mapping[str, Value], *, where: str = ""
-) -> dict[str, Value]:
-    """
-    Check values by name, such as those of a YAML file; defaults are not filled in.
-
-    Raises
-    ------
-    ParameterError
-        A name the table does not have (with the nearest that it has), or a value it refuses.
-
-    """
-    by_name = {parameter.name: parameter for parameter in table}
-    unknown = unknown_names(table, values)
-    if unknown:
-        raise unknown_parameter(table, unknown[0], where=where)
-    return {name: by_name[name].checked(value) for name, value in values.items() if name in by_name}
 
 
 def unknown_names(table: Table, names: Iterable[str]) -> list[str]:

@@ -68,7 +68,8 @@ class Ending:
         self._over.set()
         for number, before in zip(_SIGNALS, self._before, strict=True):
             # What was told to end stays deaf: a second Ctrl-C amid the last lines is no error.
-            signal.signal(number, signal.SIG_IGN if self.is_asked else before)  # type: ignore[arg-type]
+            after = signal.SIG_IGN if self.is_asked else before
+            signal.signal(number, after)  # type: ignore[arg-type]
         faulthandler.cancel_dump_traceback_later()
         if self._pipe is not None:
             signal.set_wakeup_fd(-1)

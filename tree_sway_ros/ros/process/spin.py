@@ -10,6 +10,7 @@ something about it. ROS itself may be missing, so nothing here imports it at the
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import sys
@@ -41,6 +42,7 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
         The exit code.
 
     """
+    gc.disable()  # what a start loads stays
     try:
         rclpy = require_rclpy()
         _spin(rclpy, module, node_class, args)
@@ -117,6 +119,9 @@ def create(make: Any, **options: Any) -> Any:
             ) from None
         if kind != "RCLError":
             raise
+        if "security" in text:
+            cure = "use the rclpy of a ROS machine, or unset ROS_SECURITY_ENABLE"
+            raise TransportError(text, cure=cure) from error
         domain = os.environ.get("ROS_DOMAIN_ID", "0")
         raise TransportError(
             f"cannot join domain {domain}: {text}",
@@ -132,6 +137,8 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
         init(rclpy, args, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
         try:
             node = create(getattr(importlib.import_module(module), node_class))
+            gc.freeze()
+            gc.enable()
             ending.look()
             executor = SingleThreadedExecutor()
             executor.add_node(node)

@@ -54,14 +54,14 @@ def bench_tree(
     cuts = np.linspace(0.0, 1.0, segments_a_branch + 1)
     # Base, direction, order and the segment it sits on, of the branches that are still to be built.
     waiting = [(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0, -1)]
-    for number, (base, direction, order, seat) in enumerate(waiting):
+    for number, (base, direction, order, carrying) in enumerate(waiting):
         nodes = base + np.outer(cuts, _LENGTH[order] * direction)
         thick = np.interp(cuts, [0.0, 1.0], _DIAMETER[order])
         first = len(parent)
         start += list(nodes[:-1])
         end += list(nodes[1:])
         diameter += list(np.stack([thick[:-1], thick[1:]], axis=1))
-        parent += [seat, *range(first, first + segments_a_branch - 1)]
+        parent += [carrying, *range(first, first + segments_a_branch - 1)]
         branch += [number] * segments_a_branch
         if order == len(children):
             continue

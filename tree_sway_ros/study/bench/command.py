@@ -15,7 +15,7 @@ from typing import Any
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.stands.stand_file import StandFile
 from tree_sway_ros.files.trees.source import open_scene, open_tree
-from tree_sway_ros.study.bench.bench_tree import bench_tree
+from tree_sway_ros.study.bench.bench_tree import SEGMENTS_A_BRANCH, bench_tree
 from tree_sway_ros.study.bench.cut import cut_table
 from tree_sway_ros.study.bench.engines import race_engines
 from tree_sway_ros.study.bench.forest import forest_table
@@ -52,7 +52,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "stand",
     )
     parser.add_argument(
-        "--size", type=int, metavar="N", help="trees of stand and shards, poses of stream"
+        "--size",
+        type=int,
+        metavar="N",
+        help="trees of stand and shards, poses of stream, about so many segments of engines",
     )
     parser.add_argument(
         "--seconds", type=float, metavar="S", help="how long stream, latency and engines run"
@@ -146,6 +149,9 @@ def _latency(arguments: argparse.Namespace) -> list[Measured]:
 
 def _engines(arguments: argparse.Namespace) -> list[Measured]:
     tree = open_tree(arguments.tree).tree if arguments.tree else None
+    if tree is None and arguments.size is not None:
+        each = max(1, round((arguments.size / (12 * SEGMENTS_A_BRANCH)) ** 0.5))
+        tree = bench_tree(children=(12, each, each))
     return race_engines(tree, **_given(seconds=arguments.seconds))
 
 

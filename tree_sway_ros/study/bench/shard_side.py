@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A host's own process of `shards`: hears both shards, and sends the one wind if told so."""
+"""A host's own process of `shards`: hears all shards, and sends the one wind if told so."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from typing import Any
 _WIND_RATE = 20.0
 
 
-def main(sends_wind: bool) -> None:
-    """Say once that both shards are heard; at a line of input tell when each frame arrived."""
+def main(sends_wind: bool, n_shards: int) -> None:
+    """Say once that all shards are heard; at a line of input tell when each frame arrived."""
     import rclpy
     from geometry_msgs.msg import PoseArray, Vector3Stamped
     from rclpy.executors import SingleThreadedExecutor
@@ -24,12 +24,12 @@ def main(sends_wind: bool) -> None:
 
     rclpy.init()
     node = rclpy.create_node("bench_side")
-    arrivals: list[list[float]] = [[], []]
+    arrivals: list[list[float]] = [[] for _ in range(n_shards)]
 
     def hear(shard: int, _data: bytes) -> None:
         arrivals[shard].append(time.monotonic())
 
-    for shard in (0, 1):
+    for shard in range(n_shards):
         node.create_subscription(
             PoseArray, f"/shard{shard}/segment_poses", partial(hear, shard), QoSProfile(depth=5),
             raw=True,
@@ -60,4 +60,4 @@ def _blow(publisher: Any) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] == "1")
+    main(sys.argv[1] == "1", int(sys.argv[2]))

@@ -11,13 +11,14 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import select
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,10 +27,11 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import TransportError
 from tree_sway_ros.study.bench.measured import Measured
+from tree_sway_ros.study.bench.stream import isolated
 from tree_sway_ros.tools.progress import waiting
 
 _HOSTS = ("treesway0", "treesway1")
-_START, _RUN_IN, _AFTER = 120.0, 2.0, 4.0
+_START, _RUN_IN, _AFTER, _BACK = 120.0, 4.0, 4.0, 16.0
 _SOLVER = "from tree_sway_ros.nodes.executables import solver; raise SystemExit(solver())"
 _SIDE = [sys.executable, "-m", "tree_sway_ros.study.bench.shard_side"]
 
@@ -48,7 +50,7 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
     Returns
     -------
     list of Measured
-        Times in [s].
+        What shards take and send, and times in [s].
 
     Raises
     ------
@@ -64,37 +66,89 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
         stand = Path(folder, "stand.csv")
         rows = [f"{5.0 * i},0,{('pine', 'oak')[i % 2]},{8.0 + 0.1 * i:.1f}" for i in range(n_trees)]
         stand.write_text("\n".join(["x,y,species,height", *rows]) + "\n", encoding="utf-8")
+        with waiting("the whole stand on one host"), contextlib.ExitStack() as alone:
+            whole, side = _start(alone, stand, 1)
+            one = _Load(whole, side)
+            heard_alone = _end(side)
         with waiting("two hosts with a shard each"):
-            shards = [children.enter_context(_shard(k, stand)) for k in (0, 1)]
-            sides = [
-                children.enter_context(_child(k, [*_SIDE, str(1 - k)], stdin=-1, stdout=-1))
-                for k in (0, 1)
-            ]
-            for k, side in enumerate(sides):
-                _wait_until_ready(k, side, shards)
-            time.sleep(_RUN_IN)
+            shards, sides = _start(children, stand, 2)
+            both = _Load(shards, sides)
             cut_at = time.monotonic()
             _cable("down")
-            time.sleep(cut)
+            _let_run(sides, cut)
             joined_at = time.monotonic()
             _cable("up")
-            time.sleep(_AFTER)
+            _let_run(sides, _AFTER)
             killed_at = time.monotonic()
             shards[1].kill()
             shards[1].wait()
-            children.enter_context(_shard(1, stand))
-            time.sleep(2.0 * _AFTER)
-            heard = [json.loads(side.communicate(b"\n", timeout=30.0)[0]) for side in sides]
+            _let_run(sides, 0.1)  # what was on its way has come
+            gone_at = time.monotonic()
+            children.enter_context(_shard(1, 2, stand))
+            _let_run(sides, _BACK)
+            heard = _end(sides)
     gaps = [_longest_gap(np.array(heard[k][k]), cut_at, joined_at) for k in (0, 1)]
     rejoined = [_first_after(heard[k][1 - k], joined_at) for k in (0, 1)]
     lost = [sum(cut_at + 0.5 < at < joined_at for at in heard[k][1 - k]) for k in (0, 1)]
-    back = _first_after(heard[1][1], killed_at)
+    back = _first_after(heard[1][1], gone_at) + gone_at - killed_at
+    own = [heard[k][k] for k in (0, 1)]
     return [
+        *one.told("one shard", [heard_alone[0][0]]),
+        *both.told("each of two shards", own),
         Measured("frames of the other host while cut", float(sum(lost)), "-"),
         Measured("longest gap of the own shard while cut", max(gaps), "s"),
         Measured("whole again after the cut", max(rejoined), "s"),
         Measured("killed shard back", back, "s"),
     ]
+
+
+class _Load:
+    """What solvers take, and send, while they are let run."""
+
+    def __init__(self, shards: list[Any], sides: list[Any]) -> None:
+        _let_run(sides, 1.0)  # what the start took is over
+        self._begin, cpu = time.monotonic(), sum(map(_cpu_time, shards))
+        _let_run(sides, _RUN_IN)
+        self._end = time.monotonic()
+        seconds = (self._end - self._begin) * len(shards)
+        self._share = (sum(map(_cpu_time, shards)) - cpu) / seconds
+
+    def told(self, whose: str, arrivals: list[list[float]]) -> list[Measured]:
+        """Return means over the shards: CPU time per time, and frames heard on their own host."""
+        frames = [sum(self._begin < at < self._end for at in each) for each in arrivals]
+        rate = float(np.mean(frames)) / (self._end - self._begin)
+        return [
+            Measured(f"CPU of {whose}", self._share, "-"),
+            Measured(f"frames of {whose}", rate, "Hz"),
+        ]
+
+
+def _cpu_time(process: Any) -> float:
+    """CPU time that a process has taken in [s]."""
+    told = Path(f"/proc/{process.pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
+    return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _start(
+    children: contextlib.ExitStack, stand: Path, n_shards: int
+) -> tuple[list[Any], list[Any]]:
+    """Start shards, each on its host with one that listens, until all are heard."""
+    hosts = range(n_shards)
+    shards = [children.enter_context(_shard(k, n_shards, stand)) for k in hosts]
+    sides = [
+        children.enter_context(
+            _child(k, [*_SIDE, str(int(k == 0)), str(n_shards)], stdin=-1, stdout=-1)
+        )
+        for k in hosts
+    ]
+    for k, side in enumerate(sides):
+        _wait_until_ready(k, side, shards)
+    return shards, sides
+
+
+def _end(sides: list[Any]) -> list[Any]:
+    """Return when which host heard which shard."""
+    return [json.loads(side.communicate(b"\n", timeout=30.0)[0]) for side in sides]
 
 
 def _ip(*words: str) -> None:
@@ -138,7 +192,11 @@ def _cable(state: str) -> None:
 @contextlib.contextmanager
 def _child(host: int, command: list[str], **pipes: Any) -> Iterator[subprocess.Popen[bytes]]:
     """Run a process on a host, to be ended with the run."""
-    environment = {**os.environ, "ROS_DOMAIN_ID": "77", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+    environment = {
+        **isolated(0),
+        "ROS_DOMAIN_ID": "77",
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+    }
     child = subprocess.Popen(
         ["ip", "netns", "exec", _HOSTS[host], *command],
         env=environment, stderr=subprocess.DEVNULL, **pipes,
@@ -154,8 +212,8 @@ def _child(host: int, command: list[str], **pipes: Any) -> Iterator[subprocess.P
         child.wait()
 
 
-def _shard(number: int, stand: Path) -> contextlib.AbstractContextManager[Any]:
-    told = {"tree": stand, "shard": number, "shards": 2}
+def _shard(number: int, shards: int, stand: Path) -> contextlib.AbstractContextManager[Any]:
+    told = {"tree": stand, "shard": number, "shards": shards}
     values = [word for name, value in told.items() for word in ("-p", f"{name}:={value}")]
     places = ["-r", f"__ns:=/shard{number}", "-r", "wind/filtered:=/wind/filtered"]
     return _child(number, [sys.executable, "-c", _SOLVER, "--ros-args", *places, *values])
@@ -174,8 +232,17 @@ def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any
                 + (f"; shards that ended: {ended}" if ended else ""),
                 cure="see that multicast is not cut off, and run a shard by itself",
             )
-        time.sleep(0.05)
+        select.select([side.stdout], [], [], 0.05)
     os.set_blocking(side.stdout.fileno(), True)
+
+
+def _let_run(sides: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:
+    """Let the sides listen for so long [s]; one that ends before is an error."""
+    deadline = time.monotonic() + seconds
+    for host, side in enumerate(sides):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            side.wait(max(0.0, deadline - time.monotonic()))
+            raise TransportError(f"host {host} stopped listening", cure="run the bench again")
 
 
 def _longest_gap(at: Floats, begin: float, end: float) -> float:

@@ -80,6 +80,8 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
     for tree, spent in zip(trees, (1e6 * least).tolist(), strict=True):
         for what, value in zip(("kernel of a step", "step", "place"), spent, strict=True):
             rows.append(Measured(f"{what}, {tree.n_branches} branches", value, "us"))
+        each = 1e3 * spent[2] / tree.n_segments
+        rows.append(Measured(f"place one of {tree.n_segments} segments", each, "ns"))
     for tree, spent_once in zip(trees, set_up, strict=True):
         rows.append(Measured(f"set-up, CPU, {tree.n_branches} branches", spent_once, "s"))
     rows += errors(simulators)

@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -85,12 +87,13 @@ def time_stream(n_poses: int = 10_000, rate: float = 60.0, seconds: float = 10.0
             waiting("streaming"),
             subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as child,
         ):
-            _wait_for(publisher)
+            _wait_for(publisher, child)
+            pause = threading.Event()
             sent, begun, cpu = 0, time.monotonic(), time.process_time()
             while time.monotonic() < begun + seconds:
                 publisher.publish(template.to_bytes(time.time_ns()))
                 sent += 1
-                time.sleep(max(0.0, begun + sent / rate - time.monotonic()))
+                pause.wait(max(0.0, begun + sent / rate - time.monotonic()))
             cpu = time.process_time() - cpu
             heard = json.loads(child.communicate(timeout=seconds + _PATIENCE)[0] or "{}")
     finally:
@@ -98,12 +101,13 @@ def time_stream(n_poses: int = 10_000, rate: float = 60.0, seconds: float = 10.0
     return _figures(heard, sent, seconds, cpu, f"{n_poses} poses at {rate:g} Hz")
 
 
-def _wait_for(publisher: Any) -> None:
+def _wait_for(publisher: Any, child: subprocess.Popen[str]) -> None:
+    assert child.stdout is not None
     deadline = time.monotonic() + _PATIENCE
     while publisher.get_subscription_count() == 0:
-        if time.monotonic() > deadline:
+        if time.monotonic() > deadline or child.poll() is not None:
             raise TransportError("no listener in 30 s", cure="see that localhost is not cut off")
-        time.sleep(0.02)
+        select.select([child.stdout], [], [], 0.02)
 
 
 def _figures(

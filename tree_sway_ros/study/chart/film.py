@@ -46,7 +46,7 @@ def chart_film(out_dir: str | Path) -> Path:
 
 
 def film_figures() -> dict[str, Any]:
-    """Figures of what the film shows: segments, height and the farthest way of its tip in [m]."""
+    """Figures of what the film shows: segments, height, largest displacement of its tip in [m]."""
     opened = open_tree(TREE)
     tips = _swayed(opened)[2]
     east, _, up = tips[np.argmax(np.linalg.norm(tips, axis=1))].tolist()

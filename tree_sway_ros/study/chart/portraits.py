@@ -118,7 +118,8 @@ def drawing_digest(sources: Iterable[Path] | None = None) -> str:
         for node in ast.walk(tree):
             body = getattr(node, "body", None)
             if isinstance(body, list):
-                node.body = [each for each in body if not _is_text(each)]  # type: ignore[attr-defined]
+                kept = [each for each in body if not _is_text(each)]
+                node.body = kept  # type: ignore[attr-defined]
         found.update(ast.dump(tree).encode())
     return found.hexdigest()[:32]
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 ``tree-sway docs``: the tables of topics, parameters and species, taken from the code and put into
-the pages.
+the pages; the drawing of the rooms, and the examples as notebooks.
 
 A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
 them is replaced.
@@ -15,6 +15,7 @@ import argparse
 import csv
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from tree_sway_ros.core.tree.species import species_keys, species_named
@@ -24,6 +25,7 @@ from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Table, Value
 from tree_sway_ros.ros.process.topics import TOPICS
+from tree_sway_ros.study.pages.notebooks import notebook
 from tree_sway_ros.study.pages.rooms import rooms_drawing
 from tree_sway_ros.tools import cli
 
@@ -33,8 +35,17 @@ PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
 FIGURES = "doc/pictures/fidelity.csv"
 """What ``tree-sway chart fidelity`` measured."""
 
-DRAWINGS: dict[str, Callable[[], str]] = {"doc/pictures/rooms.svg": rooms_drawing}
-"""Drawings made from the source."""
+EXAMPLES = ("critical_wind_speed", "response_spectra", "sheltered_and_open")
+"""Scripts that are notebooks as well."""
+
+DRAWINGS: dict[str, Callable[[], str]] = {
+    "doc/pictures/rooms.svg": rooms_drawing,
+    **{
+        f"examples/{name}.ipynb": partial(notebook, Path("examples", f"{name}.py"))
+        for name in EXAMPLES
+    },
+}
+"""Files made whole: a drawing of the source, and the notebooks of the examples."""
 
 _TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
 

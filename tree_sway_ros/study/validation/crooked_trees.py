@@ -104,7 +104,7 @@ class _Shoot(NamedTuple):
     length: float
     diameter: float
     order: int
-    seat: int
+    carrying: int
 
 
 def _drawn(habit: _Habit, rng: np.random.Generator, name: str) -> Tree:
@@ -121,7 +121,7 @@ def _drawn(habit: _Habit, rng: np.random.Generator, name: str) -> Tree:
         first = len(rows)
         rows += np.hstack([nodes[:-1], nodes[1:], widths[:-1, None], widths[1:, None]]).tolist()
         branch += [number] * (len(nodes) - 1)
-        parents += [shoot.seat, *range(first, len(rows) - 1)]
+        parents += [shoot.carrying, *range(first, len(rows) - 1)]
         if shoot.order < len(habit.children):
             least, most = habit.children[shoot.order]
             for _ in range(rng.integers(least, most + 1)):

@@ -159,15 +159,15 @@ class Judge:
 
     def _speed_for(self, sway: float, tip: int, rest: Floats) -> tuple[float, float]:
         """Wind speed in [m/s] that holds the truth's tip about so far from rest, and how far."""
-        speed, way = 5.0, 0.0
+        speed, reached = 5.0, 0.0
         for _ in range(12):
-            way = self._true_way(speed, tip, rest)
-            if abs(way / sway - 1.0) < 0.03:
+            reached = self._true_displacement(speed, tip, rest)
+            if abs(reached / sway - 1.0) < 0.03:
                 break
-            speed *= float(np.clip((sway / max(way, 1e-6)) ** 0.55, 0.4, 2.5))
-        return speed, way
+            speed *= float(np.clip((sway / max(reached, 1e-6)) ** 0.55, 0.4, 2.5))
+        return speed, reached
 
-    def _true_way(self, speed: float, tip: int, rest: Floats) -> float:
+    def _true_displacement(self, speed: float, tip: int, rest: Floats) -> float:
         # From where it stood before: only the rest counts, so big steps will do.
         for _ in range(round(_SETTLE / FRAME)):
             self.truth.step(speed * _ALONG, FRAME)

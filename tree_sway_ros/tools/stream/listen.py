@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 
 from tree_sway_ros.ros.process.ending import LONGEST, Ending
-from tree_sway_ros.ros.process.spin import init, require_rclpy
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.text import summary
 from tree_sway_ros.tools.stream.watch import checked_seconds, watch
@@ -35,18 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Listen until the time is over or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
-    rclpy = require_rclpy()
-    context = rclpy.context.Context()
-    init(rclpy, [], context=context, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
-    try:
-        with Ending() as ending:
-            monitor = StreamMonitor(context, None, arguments.namespace)
-            try:
-                ending.limit = LONGEST
-                watch(monitor, seconds, lambda: True)
-                print(summary(monitor.totals, arguments.rate), flush=True)
-            finally:
-                monitor.close()
-    finally:
-        context.try_shutdown()
+    with Ending() as ending, StreamMonitor(None, None, arguments.namespace) as monitor:
+        ending.limit = LONGEST
+        watch(monitor, seconds, lambda: True)
+        print(summary(monitor.totals, arguments.rate), flush=True)
     return 0

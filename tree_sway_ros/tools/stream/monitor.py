@@ -17,7 +17,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TransportError
-from tree_sway_ros.ros.process.spin import create
+from tree_sway_ros.ros.process.listener import Listener
 from tree_sway_ros.ros.process.topics import (
     SEGMENT_POSES,
     WIND,
@@ -31,7 +31,6 @@ from tree_sway_ros.view.projection import ends_of_poses
 WINDOW = 2.0
 """For so long messages are kept one by one [s]."""
 _POSE = 7 * 8
-_LOOK = 0.2  # [s]: so soon a Ctrl-C is seen while nothing comes
 _LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
 
 
@@ -91,14 +90,14 @@ def rate_of(times: Sequence[float]) -> float:
     return (len(times) - 1) / (times[-1] - times[0])
 
 
-class StreamMonitor:
+class StreamMonitor(Listener):
     """
     A node that receives poses and wind.
 
     Parameters
     ----------
     context
-        ROS context to live in.
+        ROS context to live in; one of its own if None.
     tree
         The tree that sways, for its rest shape; without it poses are counted and its tip is not
         followed.
@@ -108,31 +107,16 @@ class StreamMonitor:
     """
 
     def __init__(self, context: Any, tree: Tree | None, namespace: str = "") -> None:
-        import rclpy
-        from rclpy.executors import SingleThreadedExecutor
-
+        super().__init__("monitor", namespace, context)
         self.record, self.totals = StreamRecord(), StreamTotals()
         self._tree = tree
         self._tip = 0 if tree is None else int(np.argmax(tree.end[:, 2]))
-        self._node = create(
-            lambda **options: rclpy.create_node("monitor", **options),
-            context=context,
-            namespace=namespace,
-        )
         for topic, callback, raw in (
             (SEGMENT_POSES, self._receive_poses, True),
             (WIND_FILTERED, self._receive_wind, False),
         ):
             qos = qos_profile(topic)
-            self._node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
-        self._executor = SingleThreadedExecutor(context=context)
-        self._executor.add_node(self._node)
-
-    def wait(self, seconds: float) -> None:
-        """Receive for a while."""
-        end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0.0:
-            self._executor.spin_once(timeout_sec=min(left, _LOOK))
+            self.node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
 
     def expect_silence(self) -> None:
         """
@@ -144,18 +128,13 @@ class StreamMonitor:
             If somebody publishes there already.
 
         """
-        self.wait(_LOOK_AROUND)
+        self.spin(_LOOK_AROUND)
         for topic in (WIND, SEGMENT_POSES):
-            if self._node.count_publishers(topic.name):
+            if self.node.count_publishers(topic.name):
                 raise TransportError(
                     f"another program publishes '{topic.name}' in this ROS domain",
                     cure="end it, or set ROS_DOMAIN_ID to another number up to 101",
                 )
-
-    def close(self) -> None:
-        """Leave the graph."""
-        self._executor.shutdown()
-        self._node.destroy_node()
 
     def count_anew(self) -> None:
         """Forget what came until now; the totals begin here."""

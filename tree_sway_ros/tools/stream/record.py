@@ -16,7 +16,7 @@ from typing import Any
 
 from tree_sway_ros.files.recording.bag_writer import FORMATS, BagWriter
 from tree_sway_ros.ros.process.ending import Ending
-from tree_sway_ros.ros.process.spin import create, init, require_rclpy
+from tree_sway_ros.ros.process.listener import Listener
 from tree_sway_ros.ros.process.topics import (
     DIAGNOSTICS,
     FORCE_PLANE,
@@ -56,34 +56,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Record until the time is over or Ctrl-C."""
     seconds = checked_seconds(arguments.seconds)
-    rclpy = require_rclpy()
-    context = rclpy.context.Context()
-    init(rclpy, [], context=context, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
-    try:
-        with BagWriter(Path(arguments.output), arguments.format) as bag, Ending() as ending:
-            topics = _USUAL + (_MORE if arguments.poses else ())
-            recorder = Recorder(context, bag, topics, arguments.namespace)
-            try:
-                ending.look()
-                while not ending.is_asked and recorder.recorded < seconds:
-                    recorder.spin(_LOOK)
-            finally:
-                recorder.close()
-        told = ", ".join(f"{count} of {name}" for name, count in bag.counts.items())
-        print(f"{arguments.output}: {told or 'nothing was sent'}")
-    finally:
-        context.try_shutdown()
+    topics = _USUAL + (_MORE if arguments.poses else ())
+    with (
+        BagWriter(Path(arguments.output), arguments.format) as bag,
+        Ending() as ending,
+        Recorder(None, bag, topics, arguments.namespace) as recorder,
+    ):
+        ending.look()
+        while not ending.is_asked and recorder.recorded < seconds:
+            recorder.spin(_LOOK)
+    told = ", ".join(f"{count} of {name}" for name, count in bag.counts.items())
+    print(f"{arguments.output}: {told or 'nothing was sent'}")
     return 0
 
 
-class Recorder:
+class Recorder(Listener):
     """
     Writes what a tree's nodes send into a bag, message by message as bytes.
 
     Parameters
     ----------
     context
-        Of rclpy.
+        Of rclpy; one of its own if None.
     bag
         To write to.
     topics
@@ -96,17 +90,10 @@ class Recorder:
     def __init__(
         self, context: Any, bag: BagWriter, topics: tuple[Topic, ...], namespace: str = ""
     ) -> None:
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.node import Node
-
+        super().__init__("tree_sway_record", namespace, context)
         self._bag = bag
-        self._node: Any = create(
-            lambda **given: Node("tree_sway_record", **given), context=context, namespace=namespace
-        )
-        self._executor = SingleThreadedExecutor(context=context)
-        self._executor.add_node(self._node)
         self._began: float | None = None
-        self._wanted = {self._node.resolve_topic_name(topic.name): topic for topic in topics}
+        self._wanted = {self.node.resolve_topic_name(topic.name): topic for topic in topics}
 
     @property
     def recorded(self) -> float:
@@ -115,17 +102,10 @@ class Recorder:
 
     def spin(self, seconds: float) -> None:
         """Record for a time [s]; topics that are new are joined first."""
-        for name, kinds in self._node.get_topic_names_and_types() if self._wanted else ():
+        for name, kinds in self.node.get_topic_names_and_types() if self._wanted else ():
             if name in self._wanted:
                 self._join(name, self._wanted.pop(name), kinds[0])
-        end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0.0:
-            self._executor.spin_once(timeout_sec=left)
-
-    def close(self) -> None:
-        """Leave the graph."""
-        self._executor.shutdown(timeout_sec=1.0)
-        self._node.destroy_node()
+        super().spin(seconds)
 
     def _join(self, name: str, topic: Topic, kind: str) -> None:
         self._bag.add(name, kind, reliable=topic.reliable, latched=topic.latched, depth=topic.depth)
@@ -137,4 +117,4 @@ class Recorder:
 
         of_wind = topic is WIND
         message = wind_class(kind.replace("/msg/", "/")) if of_wind else message_class(topic)
-        self._node.create_subscription(message, name, write, qos_profile(topic), raw=True)
+        self.node.create_subscription(message, name, write, qos_profile(topic), raw=True)

@@ -64,30 +64,31 @@ def run(arguments: argparse.Namespace) -> int:
     }
     seen: list[Health] = []
     failed = 0
-    with Ending() as ending, only_demo(), Composition({}) as nodes:
-        monitor = StreamMonitor(nodes.context, tree)
-        try:
-            monitor.expect_silence()
-            nodes.add("anemometer", anemometer)
-            nodes.add("wind", {})
-            nodes.add("solver", {"tree": arguments.tree})
-            ending.look()
-            ending.limit = LONGEST
-            monitor.wait(1.0)
-            monitor.count_anew()
-            begin = time.monotonic()
-            period = min(60.0, max(0.5, seconds / _LINES))
-            while (since := time.monotonic() - begin) < seconds and not ending.is_asked:
-                nodes.check()
-                seen.append(health(since))
-                print(_line(seen[-1], monitor.record.pose_rate), flush=True)
-                monitor.wait(min(period, seconds - since))
-            failed = sum(node.guard.count for node in nodes.nodes)
-            print(summary(monitor.totals, 60.0), flush=True)
-            if not monitor.totals.arrivals.count:
-                raise TransportError("no poses came")
-        finally:
-            monitor.close()
+    with (
+        Ending() as ending,
+        only_demo(),
+        Composition({}) as nodes,
+        StreamMonitor(nodes.context, tree) as monitor,
+    ):
+        monitor.expect_silence()
+        nodes.add("anemometer", anemometer)
+        nodes.add("wind", {})
+        nodes.add("solver", {"tree": arguments.tree})
+        ending.look()
+        ending.limit = LONGEST
+        monitor.spin(1.0)
+        monitor.count_anew()
+        begin = time.monotonic()
+        period = min(60.0, max(0.5, seconds / _LINES))
+        while (since := time.monotonic() - begin) < seconds and not ending.is_asked:
+            nodes.check()
+            seen.append(health(since))
+            print(_line(seen[-1], monitor.record.pose_rate), flush=True)
+            monitor.spin(min(period, seconds - since))
+        failed = sum(node.guard.count for node in nodes.nodes)
+        print(summary(monitor.totals, 60.0), flush=True)
+        if not monitor.totals.arrivals.count:
+            raise TransportError("no poses came")
     slope = growth(seen)
     told = f"{slope:+.2f} MB/h" if np.isfinite(slope) else "too short to tell"
     print(f"memory   {told} after the first fifth; {failed} callbacks failed")

@@ -59,20 +59,20 @@ def watch(
     """
     deadline = time.monotonic() + patience
     while not monitor.record.arrival and check():
-        monitor.wait(0.1)
+        monitor.spin(0.1)
         if time.monotonic() > deadline:
             raise TransportError(
                 f"no poses within {patience:g} s",
                 cure="is a solver running in this ROS_DOMAIN_ID? without multicast, "
                 "set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS",
             )
-    monitor.wait(_SETTLING)
+    monitor.spin(_SETTLING)
     monitor.count_anew()
     begin = time.time()
     is_live = sys.stdout.isatty()
     try:
         while check() and (left := begin + seconds - time.time()) > 0.0:
-            monitor.wait(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
+            monitor.spin(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
             now = time.time()
             monitor.record.forget(now - WINDOW)
             line = status_line(monitor.record, now - begin)

@@ -98,14 +98,8 @@ def von_karman_spectrum(
 
     Parameters
     ----------
-    frequency
-        Frequencies in [Hz], (n,).
-    mean_speed
-        Mean wind speed in [m/s].
-    deviation
-        Standard deviation of the component in [m/s].
-    scale
-        Its integral scale in [m].
+    frequency, mean_speed, deviation, scale
+        As of `kaimal_spectrum`.
     across
         False for u, true for v and w.
 

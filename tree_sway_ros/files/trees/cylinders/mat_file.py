@@ -19,11 +19,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.io import loadmat
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError, MissingDependencyError
-from tree_sway_ros.files.text_file import MAX_BYTES, read_bytes
+from tree_sway_ros.files.text_file import MAX_BYTES, read_bytes, reason_of
 
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
@@ -68,6 +67,8 @@ def read_mat(path: Path) -> Variables:
     try:
         if is_hdf5:
             return _hdf5_variables(path)
+        from scipy.io import loadmat  # it takes long to load, and only these files need it
+
         content = loadmat(io.BytesIO(_unpacked(read_bytes(path))), chars_as_strings=False)
         return {name: _plain(value, 0) for name, value in content.items() if name[:2] != "__"}
     except (FormatError, MissingDependencyError) as error:
@@ -77,8 +78,7 @@ def read_mat(path: Path) -> Variables:
         raise FormatError(what, where=str(path), cure="save it anew") from None
     except Exception as error:
         raise FormatError(
-            f"not a MATLAB file that can be read: {type(error).__name__}: "
-            f"{' '.join(str(error).split())}"[:200],
+            f"not a MATLAB file that can be read: {reason_of(error)}",
             where=str(path),
             cure="save it anew",
         ) from error

@@ -18,10 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
+from tree_sway_ros.files.file_format import has_columns
 from tree_sway_ros.files.table_file import parse_table
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders, cylinder_axes
-from tree_sway_ros.files.trees.tree_format import TreeFormat, has_columns
+from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 
 def _read_archi(path: Path) -> tuple[Cylinders, ...]:

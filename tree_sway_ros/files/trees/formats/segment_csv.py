@@ -14,11 +14,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from tree_sway_ros.core.tree.species import species_named
+from tree_sway_ros.files.file_format import has_columns
 from tree_sway_ros.files.table_file import parse_table
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.trees.assembly import SegmentTable
 from tree_sway_ros.files.trees.imported_tree import TreeFile
-from tree_sway_ros.files.trees.tree_format import TreeFormat, has_columns
+from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 
 def _read(path: Path, species: str = "broadleaf") -> TreeFile:

@@ -12,12 +12,12 @@ its own radius.
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 
 from tree_sway_ros.errors import FormatError, ParameterError, TreeError
+from tree_sway_ros.files.file_format import contains
 from tree_sway_ros.files.table_file import TextTable, filled_lines, split_row
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
@@ -25,7 +25,6 @@ from tree_sway_ros.files.trees.cylinders.skeleton import Skeleton
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _FIELDS = ("x", "y", "z", "radius", "parent_id")
-_HEADER = re.compile(r"^(?!#).*\bx,y,z,radius\b", re.MULTILINE)
 
 
 def _read(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
@@ -88,4 +87,4 @@ def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
     return Skeleton(values[:, :3], 2.0 * values[:, 3], np.maximum(parent, -1), labels)
 
 
-FORMAT = TreeFormat("treefile", (), lambda head: _HEADER.search(head) is not None, _read)
+FORMAT = TreeFormat("treefile", (), contains(r"^(?!#).*\bx,y,z,radius\b"), _read)

@@ -4,13 +4,10 @@
 
 from __future__ import annotations
 
-import re
-
+from tree_sway_ros.files.file_format import contains
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 from tree_sway_ros.files.trees.yaml.tree_yaml import read_yaml_tree
+from tree_sway_ros.files.yaml_document import YAML_SUFFIXES
 
-_KEY = re.compile(r"^\{?\s*(tree_sway|branches|segments)\s*:", re.MULTILINE)
-
-FORMAT = TreeFormat(
-    "yaml", (".yaml", ".yml", ".json"), lambda head: _KEY.search(head) is not None, read_yaml_tree
-)
+_KEY = contains(r"^\{?\s*(tree_sway|branches|segments)\s*:")
+FORMAT = TreeFormat("yaml", YAML_SUFFIXES, _KEY, read_yaml_tree)

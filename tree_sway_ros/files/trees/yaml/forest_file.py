@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -24,6 +24,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.plausibility import doubts
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
 
@@ -162,3 +163,23 @@ def forest_of_files(files: Sequence[TreeFile], name: str) -> ForestFile:
         trees.append(PlacedTree(each.tree.name, each.tree, x, y, z, species=each.species))
     notes = [f"{each.tree.name}: {note}" for each in files for note in each.notes]
     return ForestFile(name, tuple(trees), files[0].source, tuple(notes))
+
+
+def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None:
+    """Raise a `FormatError` for the first tree with a slash in its name, or that of another."""
+    first: dict[str, int] = {}
+    for number, name in enumerate(names):
+        if "/" in name:
+            raise FormatError(
+                f"a slash in the name '{name}'",
+                where=where(number),
+                cure="leave it out: it stands between tree and branch in the names of segments",
+            )
+        if name in first:
+            line = where(first[name]).rsplit(":", 1)[1]
+            raise FormatError(
+                f"two trees called '{name}', the first in line {line}",
+                where=where(number),
+                cure="give each a name of its own",
+            )
+        first[name] = number

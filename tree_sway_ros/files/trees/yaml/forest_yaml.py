@@ -16,7 +16,6 @@ Keys, kinds and ranges are those of ``forest_schema.json`` beside this file::
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -24,24 +23,24 @@ from typing import Any
 
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.tree.species import Species
-from tree_sway_ros.errors import FormatError, TreeSwayError
-from tree_sway_ros.files.text_file import path_of, read_head, read_text
+from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
-from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
+from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, refuse_same_names
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.files.yaml_document import YamlDocument, packaged_schema, read_yaml
+from tree_sway_ros.files.yaml_document import (
+    begins_with_key,
+    packaged_schema,
+    read_yaml,
+)
 
 OpenTree = Callable[[str, int], TreeFile]
 OpenSpecies = Callable[[str], Species]
-_SUFFIXES = (".yaml", ".yml", ".json")
-_TREES = re.compile(r"""^\{?\s*["']?trees["']?\s*:""", re.MULTILINE)
 
 
 def is_forest(path: Path) -> bool:
     """Whether a file looks like a forest: YAML with ``trees`` at its outermost."""
-    if path.suffix.lower() not in _SUFFIXES or not path.is_file():
-        return False
-    return _TREES.search(read_head(path).decode("utf-8", errors="replace")) is not None
+    return begins_with_key(path, "trees")
 
 
 def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) -> ForestFile:
@@ -90,7 +89,8 @@ def parse_forest(
     """Read a forest from YAML text; see `read_forest`."""
     document = read_yaml(text, source, packaged_schema("forest_schema.json"))
     values = document.values
-    _refuse_same_names(document)
+    names = [entry["name"] for entry in values["trees"]]
+    refuse_same_names(names, lambda number: document.where("trees", number))
     trees, notes = [], []
     for number, entry in enumerate(values["trees"]):
         where = document.where("trees", number)
@@ -125,23 +125,3 @@ def _standing(
         name, tree_file.tree, species=tree_file.species, leaf_on=entry.get("leaf_on"), **place
     )
     return standing, tree_file.notes
-
-
-def _refuse_same_names(document: YamlDocument) -> None:
-    first: dict[str, int] = {}
-    for number, entry in enumerate(document.values["trees"]):
-        name, where = entry["name"], document.where("trees", number)
-        if "/" in name:
-            raise FormatError(
-                f"a slash in the name '{name}'",
-                where=where,
-                cure="leave it out: it stands between tree and branch in the names of segments",
-            )
-        if name in first:
-            line = document.where("trees", first[name]).rsplit(":", 1)[1]
-            raise FormatError(
-                f"two trees called '{name}', the first in line {line}",
-                where=where,
-                cure="give each a name of its own",
-            )
-        first[name] = number

@@ -21,9 +21,7 @@ from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import SpeciesError
 from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.yaml.tree_yaml import species_of
-from tree_sway_ros.files.yaml_document import Schema, read_yaml, tree_schema
-
-_SUFFIXES = (".yaml", ".yml", ".json")
+from tree_sway_ros.files.yaml_document import YAML_SUFFIXES, Schema, read_yaml, tree_schema
 
 
 def open_species(key_or_path: str | Path) -> Species:
@@ -45,7 +43,7 @@ def open_species(key_or_path: str | Path) -> Species:
     """
     text = str(key_or_path)
     path = path_of(text)
-    if text in species_keys() or path.suffix.lower() not in _SUFFIXES:
+    if text in species_keys() or path.suffix.lower() not in YAML_SUFFIXES:
         return species_named(text)
     if not path.exists():
         raise SpeciesError(

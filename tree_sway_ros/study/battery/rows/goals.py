@@ -110,7 +110,7 @@ def run(full: bool = False) -> list[Row]:
         rows.append(
             holds(
                 "100,000 two-axis branches, float32, one core",
-                "<= 1 ms a frame",
+                "<= 1 ms per frame",
                 f"{spent:.2f} ms",
                 spent <= 1.0,
             )

@@ -1,6 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from tree_sway_ros.core.wind.simulated import gust_shapes as gusts
+from tree_sway_ros.core.wind.simulated.gust_event import gust
 from tree_sway_ros.errors import ParameterError
 
 TIME = np.linspace(-5.0, 30.0, 7001)
@@ -17,8 +18,8 @@ amplitudes = st.floats(-30.0, 30.0)
 durations = st.floats(0.1, 60.0)
 starts = st.floats(-10.0, 20.0)
 
-PASSING = [gusts.one_minus_cos, gusts.extreme_operating_gust]
-LASTING = [gusts.step, gusts.direction_change, gusts.turn]
+PASSING = [partial(gust, kind) for kind in ("one_minus_cos", "extreme_operating_gust")]
+LASTING = [partial(gust, kind) for kind in ("step", "direction_change", "turn")]
 
 
 @pytest.mark.parametrize("shape", PASSING)
@@ -65,15 +66,15 @@ def test_a_scalar_time_gives_a_scalar(shape):
 
 
 def test_one_minus_cos_peaks_halfway_and_has_half_its_peak_for_a_mean():
-    value = gusts.one_minus_cos(np.array([0.0, 1.0, 2.0, 3.0, 4.0]), 8.0, 4.0)
+    value = gust("one_minus_cos", np.array([0.0, 1.0, 2.0, 3.0, 4.0]), 8.0, 4.0)
     np.testing.assert_allclose(value, (0.0, 4.0, 8.0, 4.0, 0.0), atol=1e-14)
     inside = (TIME >= 0.0) & (TIME <= 4.0)
-    assert gusts.one_minus_cos(TIME[inside], 8.0, 4.0).mean() == pytest.approx(4.0, rel=2e-3)
+    assert gust("one_minus_cos", TIME[inside], 8.0, 4.0).mean() == pytest.approx(4.0, rel=2e-3)
 
 
 def test_extreme_operating_gust_dips_peaks_and_dips():
     time = np.linspace(0.0, 10.5, 10501)
-    value = gusts.extreme_operating_gust(time, 10.0)
+    value = gust("extreme_operating_gust", time, 10.0, 10.5)
     assert value.max() == pytest.approx(7.4)
     assert time[value.argmax()] == pytest.approx(5.25)
     np.testing.assert_allclose(value, value[::-1], atol=1e-12)
@@ -85,17 +86,17 @@ def test_extreme_operating_gust_dips_peaks_and_dips():
 
 
 def test_step_is_sharp_or_a_ramp():
-    np.testing.assert_array_equal(gusts.step([-0.1, 0.0, 0.1], 5.0), (0.0, 5.0, 5.0))
-    np.testing.assert_allclose(gusts.step([0.0, 0.5, 1.0, 2.0], 5.0, 1.0), (0.0, 2.5, 5.0, 5.0))
+    np.testing.assert_array_equal(gust("step", [-0.1, 0.0, 0.1], 5.0, 0.0), (0.0, 5.0, 5.0))
+    np.testing.assert_allclose(gust("step", [0.0, 0.5, 1.0, 2.0], 5.0, 1.0), (0.0, 2.5, 5.0, 5.0))
 
 
 def test_direction_change_starts_and_ends_level_and_a_turn_is_steady():
     time = np.linspace(0.0, 6.0, 601)
-    rate = np.diff(gusts.direction_change(time, 1.0)) / 0.01
+    rate = np.diff(gust("direction_change", time, 1.0, 6.0)) / 0.01
     assert rate[0] < 0.01
     assert rate[-1] < 0.01
     assert rate.max() == pytest.approx(0.5 * math.pi / 6.0, rel=1e-3)
-    np.testing.assert_allclose(np.diff(gusts.turn(time, 1.0, 6.0)), 0.01 / 6.0)
+    np.testing.assert_allclose(np.diff(gust("turn", time, 1.0, 6.0)), 0.01 / 6.0)
 
 
 @pytest.mark.parametrize("shape", PASSING + LASTING)
@@ -109,7 +110,7 @@ def test_bad_parameters_are_refused(shape, bad):
         shape(TIME, 1.0, 5.0, bad)
 
 
-@pytest.mark.parametrize("shape", [*PASSING, gusts.direction_change, gusts.turn])
+@pytest.mark.parametrize("shape", [*PASSING, *LASTING[1:]])
 @pytest.mark.parametrize("duration", [0.0, -1.0])
 def test_only_a_step_may_take_no_time(shape, duration):
     with pytest.raises(ParameterError, match="duration"):

@@ -1,0 +1,29 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How files of this package name their licence, for `ament_copyright`, which knows long headers alone.
+
+It finds this by the entry point ``ament_copyright.license`` of setup.py, and nobody else needs it.
+
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class LicenceHeader(NamedTuple):
+    """A licence as `ament_copyright` asks for it: texts that stand in files, and its SPDX name."""
+
+    name: str
+    spdx: str
+    file_headers: tuple[str, ...]
+    license_files: tuple[str, ...] = ()
+    contributing_files: tuple[str, ...] = ()
+
+
+APACHE_BY_SPDX = LicenceHeader(
+    "Apache License, Version 2.0, by its SPDX name",
+    "Apache-2.0",
+    ("{copyright}\nSPDX-License-Identifier: Apache-2.0",),
+)
