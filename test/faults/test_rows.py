@@ -27,6 +27,7 @@ ROWS = {
     "spikes, steps, frozen sensor": [
         (HERE, "test_what_is_no_wind_is_refused_and_counted_by_cause"),
         (HERE, "test_frozen_sensor_is_a_warning_and_the_stream_goes_on"),
+        ("faults/test_half_hour.py", "test_every_spike_is_refused_and_hardly_a_true_sample"),
         ("nodes/test_wind.py", "test_a_spike_is_refused_and_a_true_step_passes"),
     ],
     "stamp zero, future, duplicate, out of order": [
@@ -48,7 +49,9 @@ ROWS = {
         ("nodes/test_solver.py", "test_a_late_joiner_gets_the_structure_and_the_next_pose")
     ],
     "slow subscriber or page": [
-        ("nodes/test_solver.py", "test_a_subscriber_that_takes_nothing_slows_nobody")
+        ("nodes/test_solver.py", "test_a_subscriber_that_takes_nothing_slows_nobody"),
+        ("page/test_server.py", "test_a_slow_viewer_sees_new_frames_and_holds_up_nobody"),
+        ("page/test_long_line.py", "test_a_slow_reader_sees_what_is_new"),
     ],
     "solver slower than the period": [
         (
@@ -67,6 +70,8 @@ ROWS = {
             "test_killed_and_started_again_it_sways_as_if_nothing_had_been",
         ),
         ("nodes/test_player.py", "test_a_replay_is_the_same_from_the_first_frame_at_any_speed"),
+        ("faults/test_kill.py", "test_whoever_is_killed_the_stream_is_whole_again"),
+        ("launch/test_replay.py", "test_three_launches_give_the_same_poses"),
     ],
     "parameter out of range": [
         ("nodes/test_solver.py", "test_a_change_out_of_range_is_refused_with_the_reason"),
@@ -74,11 +79,13 @@ ROWS = {
             "nodes/test_anemometer.py",
             "test_a_live_change_that_overlaps_gusts_is_refused_with_an_answer",
         ),
+        ("core/simulator/test_live_tuning.py", "test_no_pose_jumps"),
     ],
     "hostile input on the page's socket": [
         ("page/test_server.py", "test_what_is_no_request_is_closed"),
         ("page/test_server.py", "test_bad_frames_are_closed"),
         ("page/test_server.py", "test_slow_headers_are_closed"),
+        ("page/test_server.py", "test_hostile_input_costs_no_memory_and_a_viewer_no_frame"),
     ],
 }
 

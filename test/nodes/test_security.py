@@ -1,7 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The policy for SROS2 names what the nodes say and hear."""
+"""What comes from outside is never run, and the policy for SROS2 names what nodes say and hear."""
 
+import ast
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,7 +11,48 @@ import pytest
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process.topics import TOPICS
 
-POLICY = ElementTree.parse(Path(__file__).parents[2] / "config" / "sros2_policy.xml").getroot()
+ROOT = Path(__file__).parents[2]
+POLICY = ElementTree.parse(ROOT / "config" / "sros2_policy.xml").getroot()
+RUN = {"eval", "exec", "compile", "__import__"}
+UNSAFE = {"load", "load_all", "full_load", "unsafe_load", "Loader", "FullLoader", "UnsafeLoader"}
+
+
+def runs_what_it_reads(source):
+    """Names by which a module might run what it reads."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            names = [getattr(node, "module", None) or "", *(each.name for each in node.names)]
+            yield from {"pickle", "marshal", "shelve", "dill"} & set(names)
+        elif isinstance(node, ast.Name) and node.id in RUN:
+            yield node.id
+        elif isinstance(node, ast.Attribute) and getattr(node.value, "id", "") == "yaml":
+            yield from {node.attr} & UNSAFE
+        elif isinstance(node, ast.keyword) and node.arg == "allow_pickle":
+            yield "allow_pickle"
+
+
+def test_no_file_and_no_message_is_run():
+    """Compiled kernels alone are pickled, in the user's own cache."""
+    found = {
+        path.name: set(runs_what_it_reads(path.read_text(encoding="utf-8")))
+        for path in (ROOT / "tree_sway_ros").rglob("*.py")
+    }
+    assert {name: names for name, names in found.items() if names} == {
+        "kernel_cache.py": {"pickle"}
+    }
+
+
+@pytest.mark.parametrize(
+    "text", ["import pickle", "eval('1')", "yaml.load(f, Loader)", "np.load(f, allow_pickle=True)"]
+)
+def test_the_check_sees_what_it_looks_for(text):
+    assert list(runs_what_it_reads(text))
+
+
+@pytest.mark.parametrize("name", ["tree", "file", "species", "certificate", "private_key"])
+def test_nobody_in_the_graph_names_a_file(name):
+    for table in NODE_PARAMETERS.values():
+        assert not any(each.live for each in table if each.name == name)
 
 
 def test_every_node_has_an_enclave():

@@ -5,10 +5,12 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import json
 import socket
 import threading
 import time
+import tracemalloc
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -277,6 +279,41 @@ def test_what_is_no_request_is_closed(
 def test_bad_frames_are_closed(server: PageServer, frame: bytes) -> None:
     assert is_closed_by_the_server(server.port, UPGRADE, frame)
     until(lambda: server.n_clients == 0)
+
+
+def test_hostile_input_costs_no_memory_and_a_viewer_no_frame(
+    server: PageServer, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("CRITICAL", "aiohttp.server")  # or what is logged is kept
+    attacks = [(HOSTILE[0],), (HOSTILE[2],), *((UPGRADE, frame) for frame in BAD_FRAMES)]
+
+    def attack() -> None:
+        for parts in attacks:
+            assert is_closed_by_the_server(server.port, *parts)
+
+    async def script(viewer: Viewer) -> None:
+        await viewer.binary()
+        number, kept = 0, []
+        for _ in range(3):
+            attacked = asyncio.get_running_loop().run_in_executor(None, attack)
+            before = number
+            while not attacked.done():
+                server.publish(f"F{number}".encode())
+                await viewer.say(credit=1)
+                assert await viewer.binary() == f"F{number}".encode()
+                number += 1
+            await attacked
+            assert number > before
+            until(lambda: server.n_clients == 1)
+            gc.collect()
+            kept.append(tracemalloc.get_traced_memory()[0])
+        assert kept[-1] - kept[1] < 100_000, kept
+
+    tracemalloc.start()
+    try:
+        run(server, script)
+    finally:
+        tracemalloc.stop()
 
 
 def test_slow_headers_are_closed(server: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:

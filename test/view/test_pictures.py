@@ -18,7 +18,6 @@ from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterE
 from tree_sway_ros.view.animation import animate_poses
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
-from tree_sway_ros.view.projection import rest_poses
 
 pytest.importorskip("matplotlib")
 Image = pytest.importorskip("PIL.Image")
@@ -33,7 +32,7 @@ def leaning(tree: Tree, angle: float) -> np.ndarray:
     turn = np.array(
         [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
     )
-    return rest_poses(tree.start @ turn.T, tree.end @ turn.T)
+    return replace(tree, start=tree.start @ turn.T, end=tree.end @ turn.T).rest_poses
 
 
 def pixels(path: Path) -> np.ndarray:
@@ -83,7 +82,7 @@ def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
     joint = joined(trees)
     leaves = leaf_clusters(trees[1], np.random.default_rng(0), count=30)
     leaves = replace(leaves, segment=leaves.segment + trees[0].n_segments)
-    poses = rest_poses(joint.start, joint.end)
+    poses = joint.rest_poses
     path = picture_in_wind(trees, poses, [6.0, 0.0, 0.0], tmp_path / "row.png", leaves=leaves)
     picture = pixels(path)
     assert picture.shape[0] > 0.7 * picture.shape[1]  # at rest above, in wind below

@@ -9,14 +9,16 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
-from tree_sway_ros.view.projection import Camera, ends_of_poses, rest_poses
+from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.rest_frame import ends_of_poses
+from tree_sway_ros.view.projection import Camera
 
 POINTS = arrays(np.float64, (5, 3), elements=st.floats(-10, 10))
 
 
 def test_rest_poses_give_the_tree_back() -> None:
     tree = builtin_tree("goldcrest")
-    poses = rest_poses(tree.start, tree.end)
+    poses = tree.rest_poses
     np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=1e-12)
     start, end = ends_of_poses(poses, tree.length)
     np.testing.assert_array_equal(start, tree.start)
@@ -26,7 +28,8 @@ def test_rest_poses_give_the_tree_back() -> None:
 @pytest.mark.parametrize("axis", [*np.eye(3), *-np.eye(3)])
 def test_rest_poses_of_segments_along_every_axis(axis: np.ndarray) -> None:
     start = np.ones((1, 3))
-    end = ends_of_poses(rest_poses(start, start + 2.0 * axis), [2.0])[1]
+    tree = tree_from_segments(start, start + 2.0 * axis, [0.1])
+    end = ends_of_poses(tree.rest_poses, tree.length)[1]
     np.testing.assert_allclose(end, start + 2.0 * axis, atol=1e-12)
 
 

@@ -30,7 +30,10 @@ from tree_sway_ros.page.protocol import (
     decode_frame,
 )
 
-_CREDIT, _GRANT_EVERY = 24, 4
+_MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
+_ON_THE_WAY = 200_000
+"""What may be on its way in [bytes], so that a slow line holds little that is old."""
+
 _SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
 _PING_EVERY, _SILENCE = 2.0, 6.0
 
@@ -102,7 +105,7 @@ class StreamClient:
         self._task: asyncio.Task[None] | None = None
         self._thread = threading.Thread(target=self._run, name="stream", daemon=True)
         self._socket: aiohttp.ClientWebSocketResponse | None = None
-        self._ungranted = 0
+        self._awaited, self._credit = 0, _MOST_CREDIT
 
     def __enter__(self) -> StreamClient:
         self._thread.start()
@@ -185,7 +188,7 @@ class StreamClient:
                 self.state = "connecting"
                 try:
                     async with session.ws_connect(self.url, max_msg_size=0) as socket:
-                        self._socket, self._ungranted = socket, 0
+                        self._socket, self._awaited = socket, 0
                         wait, self.state = _SHORTEST_WAIT, "open"
                         await self._follow(socket)
                         self.problem = f"the server closed the line ({socket.close_code})"
@@ -200,7 +203,7 @@ class StreamClient:
 
     async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
         """Take what comes until the line ends, or is silent for too long."""
-        self._say({"rate": self._rate, "credit": _CREDIT, "ping": time.monotonic()})
+        self._say({"rate": self._rate, "ping": time.monotonic()})
         pinged = time.monotonic()
         while True:
             message = await asyncio.wait_for(socket.receive(), _SILENCE)
@@ -213,6 +216,13 @@ class StreamClient:
             if time.monotonic() - pinged > _PING_EVERY:
                 pinged = time.monotonic()
                 self._say({"ping": pinged})
+
+    def _ask(self) -> None:
+        """Ask for as many frames as may be on their way."""
+        more = self._credit - self._awaited
+        if more >= _GRANT_EVERY:
+            self._awaited += more
+            self._say({"credit": more})
 
     def _say(self, message: Mapping[str, object]) -> None:
         if self._socket is not None and not self._socket.closed:
@@ -233,11 +243,12 @@ class StreamClient:
                 with self._more:
                     self._placer = placer
                     self.playout.clear()
+                fitting = _ON_THE_WAY // placer.description.frame_size
+                self._credit = max(_LEAST_CREDIT, min(_MOST_CREDIT, fitting))
+                self._ask()
                 return
-            self._ungranted += 1
-            if self._ungranted >= _GRANT_EVERY:
-                self._say({"credit": self._ungranted})
-                self._ungranted = 0
+            self._awaited -= 1
+            self._ask()
             frame = decode_frame(data)
         except TreeSwayError as error:
             self.problem = str(error)

@@ -132,6 +132,11 @@ class Description:
         """What frames carry of the identity."""
         return int(self.identity[:8], 16)
 
+    @property
+    def frame_size(self) -> int:
+        """Size of a frame in [bytes]."""
+        return _FRAME.size + 2 * len(self.scale)
+
     def of_kind(self, number: int) -> dict[str, Array]:
         """Arrays of a kind by name."""
         begin = f"{number}/"

@@ -16,8 +16,8 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 from tree_sway_ros.core.simulator.assembly import Bank
+from tree_sway_ros.core.tree.rest_frame import ends_of_poses
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.view.projection import ends_of_poses
 
 _SMALL_ANGLE = 1e-4
 

@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import air_speed, flutter_angle, leaf_poses
 from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.rest_frame import ends_of_poses
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway_ros.files.whole_file import whole_file
-from tree_sway_ros.view.projection import Camera, ends_of_poses
+from tree_sway_ros.view.projection import Camera
 from tree_sway_ros.view.raster import Raster
 from tree_sway_ros.view.tree_drawing import Frame, frame_around
 

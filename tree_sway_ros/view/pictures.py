@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.flutter import flutter_angle, leaf_poses
 from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.rest_frame import ends_of_poses
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.plotting import new_figure, save_figure
-from tree_sway_ros.view.projection import Camera, ends_of_poses, rest_poses
+from tree_sway_ros.view.projection import Camera
 from tree_sway_ros.view.tree_drawing import (
     Frame,
     draw_ghost,
@@ -80,7 +81,7 @@ def picture_in_wind(
     moved = ends_of_poses(block, np.concatenate([each.length for each in trees]))
     frame = frame_around(np.vstack([start, end, *moved]), camera, headroom=0.1)
     figure, rest, windy = _two_axes(frame)
-    _draw(rest, trees, rest_poses(start, end), camera, frame, leaves)
+    _draw(rest, trees, np.vstack([each.rest_poses for each in trees]), camera, frame, leaves)
     for each in trees:
         draw_ghost(windy, each, camera)
     angle = 0.0 if leaves is None else flutter_angle(leaves, float(np.linalg.norm(blowing)), 0.0)

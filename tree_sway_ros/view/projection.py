@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-From segments and poses to a picture plane.
+From points to a picture plane.
 
 A camera without perspective looks level or from above; what it sees to the right and up are two
 coordinates, what is away from it is the third.
@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.tree.rest_frame import quaternions_from_x
 
 
 @dataclass(frozen=True)
@@ -54,38 +53,3 @@ class Camera:
         """How far back points (..., 3) stand in [m], whatever their height."""
         level = np.array([np.cos(self.azimuth), np.sin(self.azimuth), 0.0])
         return np.asarray(np.asarray(points, dtype=np.float64) @ level)
-
-
-def ends_of_poses(poses: ArrayLike, length: ArrayLike) -> tuple[Floats, Floats]:
-    """
-    Nodes of segments from a pose block.
-
-    Parameters
-    ----------
-    poses
-        x y z and the quaternion's x y z w of each segment, (n, 7): its root-side node, and the
-        rotation that turns x along it.
-    length
-        Length of each segment in [m], (n,).
-
-    Returns
-    -------
-    start, end
-        Root-side and tip-side nodes in [m], (n, 3) each.
-
-    """
-    block = np.asarray(poses, dtype=np.float64)
-    start = block[:, :3]
-    x, y, z, w = block[:, 3:].T
-    along = np.stack(
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1
-    )
-    return start, start + np.asarray(length, dtype=np.float64)[:, None] * along
-
-
-def rest_poses(start: ArrayLike, end: ArrayLike) -> Floats:
-    """Pose block (n, 7) of segments at rest: x along each by the shortest turn."""
-    base = np.asarray(start, dtype=np.float64)
-    along = np.asarray(end, dtype=np.float64) - base
-    along = along / np.linalg.norm(along, axis=1)[:, None]
-    return np.hstack([base, quaternions_from_x(along)[:, [1, 2, 3, 0]]])

@@ -11,7 +11,7 @@ from tree_sway_ros.core.leaves.foliage import leaf_clusters
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.files.export.tree_mesh import SIDES, leaf_mesh, rest_poses, wood_mesh
+from tree_sway_ros.files.export.tree_mesh import SIDES, leaf_mesh, wood_mesh
 from tree_sway_ros.files.trees.tree_file import read_tree
 
 DATA = Path(__file__).parents[1] / "data"
@@ -27,20 +27,20 @@ def test_rest_poses_are_the_solvers(name):
     """Not only the direction of each segment: its roll too, or a driven mesh is twisted."""
     tree = builtin_tree(name, 0)
     simulator = make_simulator(tree, species_named(tree.species), model="modes")
-    np.testing.assert_allclose(rest_poses(tree), simulator.place(), atol=1e-12)
+    np.testing.assert_allclose(tree.rest_poses, simulator.place(), atol=1e-12)
 
 
 def test_upright_and_slanted_segments_alike():
     ends = [[0, 0, 1], [0, 0, -1], [-1, 0, 0], [1, 0, 0], [0, 1, 0]]
     tree = tree_from_segments([[0, 0, 0]] * 5, ends, [0.1] * 5, parent=[-1, 0, 0, 0, 0])
-    poses = rest_poses(tree)
+    poses = tree.rest_poses
     tips = Rotation.from_quat(poses[:, 3:]).apply([1.0, 0.0, 0.0])
     np.testing.assert_allclose(tips, tree.end - tree.start, atol=1e-12)
 
 
 def test_cones_are_closed_and_face_outward(tree):
     mesh = wood_mesh(tree)
-    places = np.unique(np.round(mesh.placed(rest_poses(tree)), 9), axis=0, return_inverse=True)[1]
+    places = np.unique(np.round(mesh.placed(tree.rest_poses), 9), axis=0, return_inverse=True)[1]
     triangles = places.ravel()[mesh.triangles]
     edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     assert {tuple(edge) for edge in edges} == {tuple(edge[::-1]) for edge in edges}

@@ -1,5 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import inspect
 import math
 from pathlib import Path
 
@@ -8,6 +9,10 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.wind.averaging import WindAverage
+from tree_sway_ros.core.wind.convention import WindConvention
+from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS, SOLVER
 from tree_sway_ros.ros.parameters.parameter import (
@@ -81,6 +86,31 @@ def test_a_choice_that_is_not_there_names_the_nearest():
     parameter = Parameter("source", "player", "Source.", choices=("player", "live"))
     with pytest.raises(ParameterError, match="did you mean 'player'"):
         parameter.checked("playr")
+
+
+def test_a_type_is_named_as_ros_names_it_with_msg_or_without():
+    output = next(p for p in NODE_PARAMETERS["wind"] if p.name == "input_type")
+    for name in ("geometry_msgs/msg/TwistStamped", "geometry_msgs/TwistStamped"):
+        assert output.checked(name) == "geometry_msgs/TwistStamped"
+
+
+@pytest.mark.parametrize("word", ["True", "true", "1", 1, True])
+def test_yes_is_yes_however_it_is_written(word):
+    assert Parameter("on", False, "On.").checked(word) is True
+
+
+@pytest.mark.parametrize(
+    ("node", "make"),
+    [("wind", WindConvention), ("wind", WindGate), ("solver", WindAverage), ("solver", Settings)],
+)
+def test_the_core_takes_both_ends_of_each_range(node, make):
+    taken = set(inspect.signature(make).parameters) - {"damping_ratio", "root_stiffness"}
+    bounded = [p for p in NODE_PARAMETERS[node] if p.name in taken and p.minimum is not None]
+    assert bounded
+    for parameter in bounded:
+        if isinstance(parameter.default, float):
+            for end in (parameter.minimum, parameter.maximum):
+                make(**{parameter.name: end})
 
 
 def test_an_unknown_name_is_named_with_the_nearest():

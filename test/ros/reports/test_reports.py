@@ -74,18 +74,28 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.status(TIMEOUT, gate).level == OK
 
 
-def test_a_slow_sensor_is_late_by_its_own_periods(clock):
+@pytest.mark.parametrize("burst", [1, 3])
+def test_a_slow_sensor_is_late_by_its_own_periods(clock, burst):
+    """Also where it is a logger that sends some samples at once."""
     report, gate, timeout = WindReport(), WindGate(), 0.5
-    for _ in range(5):
-        for burst in (0.001, 0.001, 0.998):  # as a logger that sends three at once
-            clock.now += burst
-            report.add(True)
+    for number in range(30):
+        clock.now += 0.999 if number % burst == 0 else 0.001
+        report.add(True)
     clock.now += 0.99
     assert report.status(timeout, gate).level == OK
     clock.now += 2.1
     assert report.status(timeout, gate).level == WARN
     clock.now += 3.0 * STALE_AFTER
     assert report.status(timeout, gate).level == STALE
+
+
+def test_dropouts_make_no_slow_sensor(clock):
+    report, gate = WindReport(), WindGate()
+    for number in range(100):
+        clock.now += 10.0 if number in (0, 90, 95) else 0.01
+        report.add(True)
+    clock.now += 1.1 * TIMEOUT
+    assert report.status(TIMEOUT, gate).level == WARN
 
 
 def test_refused_samples_are_no_wind(clock):

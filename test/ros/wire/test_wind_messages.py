@@ -36,6 +36,14 @@ def test_what_is_written_is_read_again(type_name, stamp, u, v, w):
     assert read == expected
 
 
+@pytest.mark.parametrize(("first", "is_there"), [(0.0, True), (0.04, True), (-1.0, False)])
+def test_a_covariance_of_minus_one_is_no_reading(first, is_there):
+    kind = wind_class("geometry_msgs/TwistWithCovarianceStamped")
+    message = wind_to_message(kind, WindSample(1, "map", 4.0, 0.0, 0.0))
+    message.twist.covariance[0] = first
+    assert np.isfinite(wind_from_message(message)[2:]).all() == is_there
+
+
 def test_whole_numbers_are_no_trap():
     sample = WindSample(1, "map", 1, 2, 3)
     message = wind_to_message(wind_class("geometry_msgs/Vector3"), sample)

@@ -9,9 +9,10 @@ import pytest
 
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import MissingDependencyError
-from tree_sway_ros.study.compare.mujoco_tree import mujoco_module, take_warnings
+from tree_sway_ros.study.compare.mujoco_tree import MujocoTree, mujoco_module, take_warnings
 from tree_sway_ros.study.compare.with_mujoco import compare_with_mujoco
 from tree_sway_ros.study.example_trees import forked_tree
+from tree_sway_ros.study.frame.frame import frame_model
 
 WOOD = Species("example", "example", 8.0e9, 900.0)
 
@@ -34,6 +35,20 @@ def test_both_run_on_one_tree_and_agree():
     assert found.error < 0.05
     assert found.speed_up > 1.0
     assert "tip error over tip motion: coupled" in str(found)
+
+
+def test_with_weight_and_twist_it_sways_as_the_frame_and_stands_in_a_calm():
+    pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    tree = forked_tree(0.65, 0.6, generations=3)
+    model = MujocoTree(tree, WOOD, 0.05, match_beam=False, gravity=9.81)
+    frame = frame_model(tree, WOOD.modulus, WOOD.density, 9.81, shear_ratio=WOOD.shear_ratio)
+    assert model.frequencies[:6] == pytest.approx(frame.frequencies(6), rel=0.02)
+    light = frame_model(tree, WOOD.modulus, WOOD.density, 0.0, shear_ratio=500.0)
+    assert light.frequencies(1)[0] > 1.04 * model.frequencies[0]
+    for _ in range(64):
+        model.step(np.zeros(3), 1.0 / 3840.0)
+    rest = tree.end[tree.branch_first[1:] - 1]
+    assert model.tips() == pytest.approx(rest, abs=1e-6)
 
 
 def test_its_warnings_are_told_and_leave_no_log_behind(tmp_path, monkeypatch, capsys):

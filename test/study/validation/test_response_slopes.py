@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Slopes above the first frequency: of a known spectrum, of one oscillator, and as a table."""
+"""Slopes above the first frequency: of a known spectrum, of one oscillator, of a grown tree."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.wind.crown_wind import USUAL_COHERENCE
-from tree_sway_ros.study.chart.slopes import chart_slopes
-from tree_sway_ros.study.validation.response_slopes import slope_above
+from tree_sway_ros.study.validation.response_slopes import response_slopes, slope_above
 
 RATE = 30.0
 
@@ -34,11 +33,15 @@ def test_one_oscillator_alone_is_steeper_than_any_tree():
     assert -7.5 < slope_above(signal, 0.6, RATE) < -6.2
 
 
-def test_the_table_has_both_winds(tmp_path):
-    found = chart_slopes(tmp_path, species=["pine"], seconds=60.0)
-    assert set(found) == {
-        ("pine", leaf, c) for leaf in (False, True) for c in (1.0, USUAL_COHERENCE)
-    }
-    assert all(-12.0 < each.along < 1.0 for each in found.values())
-    text = (tmp_path / "slopes.md").read_text(encoding="utf-8")
-    assert text.count("| pine |") == 2
+def test_the_tip_of_a_broadleaf_falls_more_steeply_than_the_strain_of_its_stem():
+    slopes = response_slopes("walnut", coherence=1.0, in_leaf=False, seconds=120.0)
+    assert 0.7 < slopes.first < 1.2
+    assert np.mean(slopes.tip) < np.mean(slopes.strain) - 2.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("in_leaf", [False, True])
+@pytest.mark.parametrize("species", ["spruce", "pine", "birch", "walnut"])
+def test_the_strain_falls_as_on_real_trees_with_gusts_limb_by_limb(species, in_leaf):
+    slopes = response_slopes(species, coherence=USUAL_COHERENCE, in_leaf=in_leaf)
+    assert all(-6.2 <= each <= -2.0 for each in slopes.strain)

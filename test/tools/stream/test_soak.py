@@ -19,10 +19,13 @@ ROOT = Path(__file__).resolve().parents[3]
 
 def test_growth_is_the_slope_after_the_warm_up() -> None:
     steady = [Health(float(k), 100.0 + (k < 10) * 50.0, 9, 9) for k in range(60)]
-    assert growth(steady) == pytest.approx(0.0, abs=1e-6)
+    assert growth(steady) == pytest.approx((0.0, 0.0), abs=1e-6)
     leaking = [Health(36.0 * k, 100.0 + 0.02 * k, 9, 9) for k in range(101)]
-    assert growth(leaking) == pytest.approx(2.0)
-    assert math.isnan(growth([]))
+    assert growth(leaking) == pytest.approx((2.0, 0.0))
+    shaking = [Health(36.0 * k, 100.0 + 0.5 * (-1) ** k, 9, 9) for k in range(101)]
+    slope, error = growth(shaking)
+    assert abs(slope) < 2.0 * error < 0.5
+    assert math.isnan(growth([])[0])
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
@@ -39,7 +42,7 @@ def test_a_process_looks_at_itself() -> None:
 def test_the_chain_goes_through_all_faults(ros_environment: dict[str, str]) -> None:
     command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "soak", "--hours", "0.003"]
     ended = subprocess.run(
-        [*command, "--every", "0.5", "--slope", "1e9"],
+        [*command, "--every", "0.5", "--speed", "2", "--slope", "1e9"],
         env=ros_environment,
         capture_output=True,
         text=True,
@@ -48,4 +51,5 @@ def test_the_chain_goes_through_all_faults(ros_environment: dict[str, str]) -> N
     )
     assert ended.returncode == 0, ended.stderr
     assert re.search(r"^poses +\d+ at", ended.stdout, re.MULTILINE)
-    assert "0 callbacks failed" in ended.stdout
+    assert "(wanted 120)" in ended.stdout
+    assert "failed   0 callbacks; 0 restarts" in ended.stdout

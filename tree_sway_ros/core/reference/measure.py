@@ -11,16 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.tree.rest_frame import ends_of_poses
 from tree_sway_ros.core.tree.tree import Tree
 
 
 def tips_of_poses(tree: Tree, poses: Floats, branches: Ints | slice = slice(None)) -> Floats:
     """Tips of some branches, or of all, in [m], (k, 3), from a pose block (n, 7)."""
     last = tree.branch_first[1:][branches] - 1
-    x, y, z, w = poses[last, 3:].T
-    along = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
-    tips: Floats = poses[last, :3] + tree.length[last, None] * along
-    return tips
+    return ends_of_poses(poses[last], tree.length[last])[1]
 
 
 def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:

@@ -62,14 +62,14 @@ class CrownGusts:
     def _plainly(self, loads: Any) -> Callable[[Floats], None]:
         return lambda apart: into_lanes(apart[self._delays.of_branch], loads["gust"])
 
-    def felt(self, wind: Floats, dt: float) -> tuple[float, float, float]:
+    def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
         Hand the wind of a step to the limbs.
 
         Parameters
         ----------
-        wind
-            Mean over the step at the anemometer in [m/s], (3,).
+        x, y, z
+            Mean of the wind over the step at the anemometer in [m/s].
         dt
             Length of the step in [s].
 
@@ -80,7 +80,6 @@ class CrownGusts:
             model knows even winds alone.
 
         """
-        x, y, z = wind.tolist()
         apart = self.wind.push(x, y, z, dt)
         if self._hand_out is not None:
             self._hand_out(apart)

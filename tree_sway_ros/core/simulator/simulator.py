@@ -242,7 +242,7 @@ class SwaySimulator(OneTree, KeepsState):
         wx, wy, wz = self._wind.tolist()
         load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
         if self._gusts is not None:
-            wx, wy, wz = self._gusts.felt(self._wind, dt)
+            wx, wy, wz = self._gusts.felt(wx, wy, wz, dt)
         for _ in range(self._pieces):
             status |= self._count(self._advance(wx, wy, wz, load))
         return status

@@ -10,6 +10,7 @@ Every pose, file and picture that speaks of the frame of a segment means this on
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 
@@ -38,3 +39,30 @@ def quaternions_from_x(direction: Floats) -> Floats:
     q[(x < 0.0) & (across < 1e-30)] = [0.0, 0.0, 0.0, 1.0]
     q /= np.linalg.norm(q, axis=1)[:, None]
     return q
+
+
+def ends_of_poses(poses: ArrayLike, length: ArrayLike) -> tuple[Floats, Floats]:
+    """
+    Nodes of segments from a pose block.
+
+    Parameters
+    ----------
+    poses
+        x y z and the quaternion's x y z w of each segment, (n, 7): its root-side node, and the
+        rotation that turns x along it.
+    length
+        Length of each segment in [m], (n,).
+
+    Returns
+    -------
+    start, end
+        Root-side and tip-side nodes in [m], (n, 3) each.
+
+    """
+    block = np.asarray(poses, dtype=np.float64)
+    start = block[:, :3]
+    x, y, z, w = block[:, 3:].T
+    along = np.stack(
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1
+    )
+    return start, start + np.asarray(length, dtype=np.float64)[:, None] * along

@@ -125,6 +125,11 @@ class Tree:
         """Length of each branch along its segments in [m], (b,)."""
         return _read_only(np.add.reduceat(self.length, self.branch_first[:-1]))
 
+    @property
+    def rest_poses(self) -> Floats:
+        """Poses at rest, bit for bit as the solver's: x y z, quaternion x y z w, (n, 7)."""
+        return np.hstack([self.start, self.rest_frame[:, [1, 2, 3, 0]]])
+
     @cached_property
     def volume(self) -> Floats:
         """Volume of each segment, a conical frustum, in [m^3], (n,)."""

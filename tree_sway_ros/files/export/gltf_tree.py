@@ -33,7 +33,7 @@ from tree_sway_ros.files.export.gltf_document import (
     ELEMENT_ARRAY_BUFFER,
     GltfDocument,
 )
-from tree_sway_ros.files.export.tree_mesh import TreeMesh, leaf_mesh, rest_poses, wood_mesh
+from tree_sway_ros.files.export.tree_mesh import TreeMesh, leaf_mesh, wood_mesh
 
 _GENERATOR = "tree_sway_ros"
 _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
@@ -80,7 +80,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
             where=tree.name,
             cure="convert its trees one by one",
         )
-    document, poses = GltfDocument(_GENERATOR), rest_poses(tree)
+    document, poses = GltfDocument(_GENERATOR), tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))
     root = document.add("nodes", name=tree.name, rotation=_Y_UP, children=joints)
     for name, pose in zip(tree.segment_names, poses.tolist(), strict=True):
@@ -125,7 +125,7 @@ def morphing_tree(
     """
     tree, basis = simulator.tree, state_basis(simulator)
     unit = basis.scale / MARGIN
-    document, rest = GltfDocument(_GENERATOR), rest_poses(tree)
+    document, rest = GltfDocument(_GENERATOR), tree.rest_poses
     steps = [_swung(simulator, basis, k, unit[k]) for k in range(basis.n_coordinates)]
     names = tuple(f"sway {k + 1}" for k in range(basis.n_coordinates))
     primitives = []

@@ -18,7 +18,7 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.export.gltf_document import GltfDocument
 from tree_sway_ros.files.export.gltf_tree import skinned_tree
-from tree_sway_ros.files.export.tree_mesh import SIDES, rest_poses, wood_mesh
+from tree_sway_ros.files.export.tree_mesh import SIDES, wood_mesh
 from tree_sway_ros.files.export.yaml_writing import yaml_of_tree
 from tree_sway_ros.files.whole_file import whole_file, write_text_whole
 
@@ -80,7 +80,7 @@ def obj_of_tree(tree: Tree) -> str:
     mesh, name = wood_mesh(tree), " ".join(tree.name.split())
     # The two rings of the side; those of the ends, which differ in their normals, are the same.
     size = 4 * SIDES
-    points = mesh.placed(rest_poses(tree)).reshape(tree.n_segments, size, 3)[:, : 2 * SIDES]
+    points = mesh.placed(tree.rest_poses).reshape(tree.n_segments, size, 3)[:, : 2 * SIDES]
     triangles = mesh.triangles[: size - 4] % (2 * SIDES)
     lines, first = [f"# {name}: z up, metres"], 1
     for segment, rings in zip(tree.segment_names, points.tolist(), strict=True):

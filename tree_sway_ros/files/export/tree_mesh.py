@@ -53,15 +53,6 @@ class TreeMesh:
         return poses[self.segment, :3] + rotation.apply(self.points)
 
 
-def rest_poses(tree: Tree) -> Floats:
-    """
-    Poses of the segments at rest, bit for bit as the solver's: x y z, quaternion x y z w, (n, 7).
-
-    """
-    quaternions = tree.rest_frame
-    return np.hstack([tree.start, quaternions[:, [1, 2, 3, 0]]])
-
-
 def wood_mesh(tree: Tree) -> TreeMesh:
     """
     Return a closed cone for each segment, round in its normals, with flat ends.

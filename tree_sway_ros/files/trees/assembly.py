@@ -4,12 +4,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, TreeError
 
@@ -25,6 +28,32 @@ def nearest_axis(start: Floats, end: Floats, point: Floats) -> tuple[int, float]
     distance = np.linalg.norm(start + along[:, None] * axis - point, axis=1)
     best = int(np.argmin(distance))
     return best, float(distance[best])
+
+
+def checked_order(parent: ArrayLike, labels: Sequence[str]) -> list[int]:
+    """
+    Order in which parents come before what they carry.
+
+    Raises
+    ------
+    TreeError
+        A parent that does not exist, or a cycle.
+
+    """
+    above, n = np.asarray(parent, dtype=np.int64), len(labels)
+    for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
+        raise TreeError(
+            "orphan: its parent does not exist", where=labels[index], cure="name one that does"
+        )
+    order = parents_first(above.tolist())
+    if len(order) < n:
+        lost = int(np.setdiff1d(np.arange(n), order)[0])
+        raise TreeError(
+            "cyclic: following its parents never reaches a root",
+            where=labels[lost],
+            cure="break the cycle; one without a parent carries all others",
+        )
+    return order
 
 
 @dataclass(slots=True)

@@ -4,9 +4,13 @@
  * The line to the server: opens it, asks for frames by credit, opens it again when it is lost.
  */
 
-import { decodeDescription, decodeFrame, isFrame, ProtocolError } from "./protocol.js";
+import { decodeDescription, decodeFrame, frameSize, isFrame, ProtocolError } from "./protocol.js";
 
-const CREDIT = 24;
+/** Frames that may be on their way at most, and at least where they are large. */
+const MOST_CREDIT = 24;
+const LEAST_CREDIT = 8;
+/** What may be on its way [bytes], so that a slow line holds little that is old. */
+const ON_THE_WAY = 200000;
 const GRANT_EVERY = 4;
 const SHORTEST_WAIT = 500;
 const LONGEST_WAIT = 10000;
@@ -41,7 +45,9 @@ export class Connection {
     /** @type {WebSocket | null} */
     this._socket = null;
     this._wait = SHORTEST_WAIT;
-    this._ungranted = 0;
+    /** Frames that were asked for and have not come. */
+    this._awaited = 0;
+    this._credit = MOST_CREDIT;
     this._heard = 0;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._retry = undefined;
@@ -59,8 +65,8 @@ export class Connection {
     this.listeners.onState("connecting", 0);
     socket.onopen = () => {
       this._wait = SHORTEST_WAIT;
-      this._ungranted = 0;
-      this.send({ rate: this.rate, credit: CREDIT, ping: performance.now() });
+      this._awaited = 0;
+      this.send({ rate: this.rate, ping: performance.now() });
       this.listeners.onState("open", 0);
     };
     socket.onmessage = (event) => {
@@ -105,6 +111,14 @@ export class Connection {
     this.send({ ping: performance.now() });
   }
 
+  /** Ask for as many frames as may be on their way. */
+  _ask() {
+    const more = this._credit - this._awaited;
+    if (more < GRANT_EVERY) return;
+    this._awaited += more;
+    this.send({ credit: more });
+  }
+
   /** @param {string | ArrayBuffer} data */
   _take(data) {
     const arrival = Date.now();
@@ -118,14 +132,14 @@ export class Connection {
     try {
       if (!isFrame(data)) {
         this.description = decodeDescription(data);
+        const fitting = Math.floor(ON_THE_WAY / frameSize(this.description));
+        this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
+        this._ask();
         this.listeners.onDescription(this.description);
         return;
       }
-      this._ungranted += 1;
-      if (this._ungranted >= GRANT_EVERY) {
-        this.send({ credit: this._ungranted });
-        this._ungranted = 0;
-      }
+      this._awaited -= 1;
+      this._ask();
       if (this.description) {
         const frame = decodeFrame(data, this.description);
         this.listeners.onFrame(frame, arrival, data.byteLength);

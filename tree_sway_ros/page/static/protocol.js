@@ -142,6 +142,15 @@ export function isFrame(data) {
 }
 
 /**
+ * Size of a frame [bytes].
+ *
+ * @param {Description} description
+ */
+export function frameSize(description) {
+  return FRAME_SIZE + 2 * description.nCoordinates;
+}
+
+/**
  * Read a frame.
  *
  * @param {ArrayBuffer} data

@@ -160,6 +160,7 @@ export class Scene {
     this._density = 1;
     this._paceFrom = 0;
     this._paced = 0;
+    this._pacedAt = 0;
     this._groundHeight = 0;
     this._middle = [0, 0];
     this._extent = 1;
@@ -455,19 +456,19 @@ export class Scene {
   /** Draw fewer points and leaves while frames come too slowly, more again when there is time. */
   _keepPace() {
     const now = performance.now();
+    // A page that was hidden was not slow.
+    if (now - this._pacedAt > 1500) [this._paceFrom, this._paced] = [now, -1];
+    this._pacedAt = now;
     this._paced++;
-    if (now - this._paceFrom > 3000) [this._paceFrom, this._paced] = [now, 0];
-    if (now - this._paceFrom < 700) return;
+    if (now - this._paceFrom < 700 || this._paced < 3) return;
     const fps = (1000 * this._paced) / (now - this._paceFrom);
-    if (this._paceFrom && this._paced > 2) {
-      const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.02;
-      this._fineness = Math.min(1, Math.max(COARSEST, this._fineness * factor));
-      // Points cost less than leaves, and are missed less.
-      const thinner = factor < 1 && this._fineness > COARSEST ? 1 : factor;
-      this._density = Math.min(1, Math.max(THINNEST, this._density * thinner));
-      const fewer = fps < LEAST_FPS && this._density <= THINNEST ? 0.8 : fps > 2 * LEAST_FPS ? 1.05 : 1;
-      this._budget = Math.min(MOST_SLOW.segments, Math.max(FEWEST_SEGMENTS, this._budget * fewer));
-    }
+    const factor = fps < WANTED_FPS ? Math.max(0.75, Math.sqrt(fps / 60)) : 1.02;
+    this._fineness = Math.min(1, Math.max(COARSEST, this._fineness * factor));
+    // Points cost less than leaves, and are missed less.
+    const thinner = factor < 1 && this._fineness > COARSEST ? 1 : factor;
+    this._density = Math.min(1, Math.max(THINNEST, this._density * thinner));
+    const fewer = fps < LEAST_FPS && this._density <= THINNEST ? 0.8 : fps > 2 * LEAST_FPS ? 1.05 : 1;
+    this._budget = Math.min(MOST_SLOW.segments, Math.max(FEWEST_SEGMENTS, this._budget * fewer));
     this._paceFrom = now;
     this._paced = 0;
   }

@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from tree_sway_ros.core.wind.gate import WindGate
-from tree_sway_ros.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
 
 _WINDOW = 5.0
-_BURST = 0.02
-"""Samples that come closer to each other than this [s] say nothing of a slow sensor's period."""
+_PERIODS = 3.0
+_SHORTER = 0.8
+"""Share of the gaps between samples that are shorter than the period: some come in bursts."""
 STALE_AFTER = 5.0
 """In time-outs: a wind that was lost for so long is stale, the trees are at rest again."""
 
@@ -30,16 +30,15 @@ class WindReport:
     def __init__(self) -> None:
         self._arrivals: deque[float] = deque(maxlen=1000)
         self._latest: float | None = None
-        self._timing = SensorTiming(0.0)
+        self._gaps: deque[float] = deque(maxlen=20)
 
     def add(self, is_accepted: bool) -> None:
         """Count a sample."""
         now = time.monotonic()
         self._arrivals.append(now)
         if is_accepted:
-            gap = 0.0 if self._latest is None else now - self._latest
-            if gap > _BURST:
-                self._timing.note_interval(gap)
+            if self._latest is not None:
+                self._gaps.append(now - self._latest)
             self._latest = now
 
     @property
@@ -56,6 +55,12 @@ class WindReport:
             return 0.0
         return (len(recent) - 1) / max(1e-9, recent[-1] - recent[0])
 
+    @property
+    def _period(self) -> float:
+        """Of the sensor in [s]; 0 before the second sample. A few dropouts do not change it."""
+        gaps = sorted(self._gaps)
+        return gaps[int(_SHORTER * len(gaps))] if gaps else 0.0
+
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
         Report.
@@ -71,7 +76,7 @@ class WindReport:
             Message types on the topic that the node is not set to read.
 
         """
-        age, timeout = self.age, max(timeout, self._timing.longest_hold)
+        age, timeout = self.age, max(timeout, _PERIODS * self._period)
         values: dict[str, object] = {
             "rate [Hz]": self.rate,
             "age [s]": "never" if age is None else age,

@@ -10,6 +10,7 @@ sign, frame) is for `core.wind_convention` to know.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -85,8 +86,16 @@ def wind_class(type_name: str) -> Any:
 
 
 def wind_from_message(message: Any) -> WindSample:
-    """Read a wind message of any of the four types."""
+    """
+    Read a wind message of any of the four types.
+
+    A covariance that begins with -1 says that there is no reading, as REP-145 has it of an IMU:
+    then the vector is not a number, for the gate to refuse and count.
+
+    """
     vector = _VECTORS[type(message)](message)
+    if type(message) is TwistWithCovarianceStamped and message.twist.covariance[0] == -1.0:
+        vector = Vector3(x=math.nan, y=math.nan, z=math.nan)
     header = getattr(message, "header", None)
     if header is None:
         return WindSample(0, "", vector.x, vector.y, vector.z)

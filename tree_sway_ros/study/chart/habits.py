@@ -14,7 +14,7 @@ from tree_sway_ros.core.leaves.foliage import leaf_clusters
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
-from tree_sway_ros.view.projection import Camera, rest_poses
+from tree_sway_ros.view.projection import Camera
 from tree_sway_ros.view.tree_drawing import Frame, draw_tree
 
 SPECIES = (
@@ -46,7 +46,7 @@ def chart_habits(out_dir: str | Path) -> list[Path]:
     for i, key in enumerate(bar(list(SPECIES), "habits")):
         tree = grow(key, HEIGHT, rng=np.random.default_rng(1))
         clusters = leaf_clusters(tree, np.random.default_rng(0), count=_CLUSTERS)
-        leaves = leaf_poses(clusters, rest_poses(tree.start, tree.end)), clusters.size
+        leaves = leaf_poses(clusters, tree.rest_poses), clusters.size
         row, column = 2 * (i // half), i % half
         for below, worn in enumerate((None, leaves)):
             draw_tree(axes[row + below, column], tree, tree.start, tree.end, camera, _FRAME, worn)

@@ -3,11 +3,12 @@
 """
 The tree in MuJoCo: the same bodies, springs and drag in an engine that nobody here wrote.
 
-The bodies are those of the articulated reference: each segment bends at one place, on two hinges of
-stiffness ``1 / integral(ds / EI)`` across it. Joints so far apart are a little stiff (1 to 2 % at
-six segments per branch), so all springs are scaled by one factor, the one that gives the beam's
-static sway of the stem's tip in a steady wind; the first frequency then is within 0.5 % of the
-beam's (`agreement` measures both). Needs ``pip install mujoco``.
+The bodies are those of the articulated reference: each piece of a segment bends at one place, on
+two hinges of stiffness ``1 / integral(ds / EI)`` across it, and twists on a third along it. Joints
+so far apart are a little stiff (1 to 2 % at six segments per branch), so all springs are scaled by
+one factor, the one that gives the beam's static sway of the stem's tip in a steady wind; the first
+frequency then is within 0.5 % of the beam's (`agreement` measures both). Needs ``pip install
+mujoco``.
 
 """
 
@@ -17,18 +18,22 @@ import math
 from typing import Any
 
 import numpy as np
+from scipy import linalg
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway_ros.core.reference.articulated_bodies import Bodies, articulated_bodies
+from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import MissingDependencyError
 from tree_sway_ros.study.frame.frame import frame_model
 
 _WARNINGS: list[str] = []
-_NO_TWIST = 500.0
-"""Shear modulus over Young's by which the beam does not twist either: the hinges do not."""
+NO_TWIST = 500.0
+"""Shear modulus over Young's from which on wood counts as not twisting at all."""
+
+_TINY = 1e-6
 
 
 def mujoco_module() -> Any:
@@ -75,6 +80,10 @@ class MujocoTree:
     match_beam
         Whether the springs are scaled to the beam's static sway; if not, they are the articulated
         reference's.
+    gravity
+        In [m/s^2]; constant moments on the joints hold the rest shape against it.
+    pieces
+        Rigid pieces per segment.
 
     """
 
@@ -86,11 +95,18 @@ class MujocoTree:
         *,
         even: bool = True,
         match_beam: bool = True,
+        gravity: float = 0.0,
+        pieces: int = 1,
     ) -> None:
         mujoco = mujoco_module()
+        tree = refined(tree, pieces)
         self.tree, self.species = tree, species
-        self.bodies = articulated_bodies(tree, species.modulus, species.density, 0.0, 1.0)
-        self.model = mujoco.MjModel.from_xml_string(_mjcf(self.bodies))
+        self.bodies = articulated_bodies(
+            tree, species.modulus, species.density, 0.0, 2.0 * species.shear_ratio
+        )
+        is_twisting = species.shear_ratio < NO_TWIST
+        self.model = mujoco.MjModel.from_xml_string(_mjcf(self.bodies, is_twisting))
+        self.model.opt.gravity[:] = 0.0, 0.0, -gravity
         self.data = mujoco.MjData(self.model)
         # The engine numbers its bodies as they nest; here they stand as segments do, the ground
         # first.
@@ -98,16 +114,18 @@ class MujocoTree:
         self._body = np.array([self.model.body(name).id for name in names])
         self._step, self._forward = mujoco.mj_step, mujoco.mj_forward
         self._forward(self.model, self.data)
+        self._holding = np.array(self.data.qfrc_bias)
         self._stem_tip = int(tree.branch_first[1]) - 1
         self._beam = frame_model(
-            tree, species.modulus, species.density, subdivisions=4, shear_ratio=_NO_TWIST
+            tree, species.modulus, species.density, subdivisions=4, shear_ratio=species.shear_ratio
         )
         self._momentum, self._gain = np.zeros((0, self.model.nv)), np.zeros(0)
         self._mass, self._stiffness = self._matrices(mujoco)
         self._expected = self._beam_sway()
         self._stiffness *= self._sway() / self._expected if match_beam else 1.0
         self.model.jnt_stiffness[:] = self._stiffness
-        self._momentum, self._gain = self._set_damping(damping_ratio, 40 if even else 1)
+        weight = self._stiffness_of_weight() if gravity else 0.0
+        self._momentum, self._gain = self._set_damping(damping_ratio, 40 if even else 1, weight)
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -159,7 +177,7 @@ class MujocoTree:
         wrench[0] = 0.0
         data.xfrc_applied[self._body] = wrench
         rate = self._gain * (self._momentum @ data.qvel)
-        data.qfrc_applied[:] = -self._momentum.T @ rate
+        data.qfrc_applied[:] = self._holding - self._momentum.T @ rate
 
     def tips(self) -> Floats:
         """Tip of each branch in [m], (b, 3)."""
@@ -176,7 +194,12 @@ class MujocoTree:
 
         """
         lowest = float(self._beam.frequencies(1)[0])
-        return float(self._circular[0]) / (2.0 * math.pi) / lowest, self._sway() / self._expected
+        return float(self.frequencies[0]) / lowest, self._sway() / self._expected
+
+    @property
+    def frequencies(self) -> Floats:
+        """Natural frequencies of its slowest modes at rest in [Hz], lowest first."""
+        return self._circular / (2.0 * math.pi)
 
     def _beam_sway(self) -> float:
         """Sway of the stem's tip by the beam model, for a unit of wind pressure along x."""
@@ -232,16 +255,33 @@ class MujocoTree:
             mujoco.mj_mulM(self.model, self.data, row, unit)
         return mass, np.array(self.model.jnt_stiffness)
 
-    def _set_damping(self, ratio: float, count: int) -> tuple[Floats, Floats]:
+    def _stiffness_of_weight(self) -> Floats:
+        """How the moments of the weight about the joints change with their angles, (nv, nv)."""
+        out = np.empty((self.model.nv, self.model.nv))
+        for joint in range(self.model.nv):
+            self.data.qpos[:] = 0.0
+            self.data.qpos[joint] = _TINY
+            self._forward(self.model, self.data)
+            out[joint] = (self.data.qfrc_bias - self._holding) / _TINY
+        self.reset()
+        return 0.5 * (out + out.T)
+
+    def _set_damping(
+        self, ratio: float, count: int, weight: Floats | float
+    ) -> tuple[Floats, Floats]:
         """
         Dampers by which the last of these modes has the ratio; the rest for those below as modal
         forces.
 
         """
         root = np.sqrt(self._stiffness)
-        inverse_square, vectors = np.linalg.eigh(self._mass / np.outer(root, root))
-        self._circular: Floats = 1.0 / np.sqrt(inverse_square[::-1][:count])
-        modes = vectors[:, ::-1][:, :count] / root[:, None] * self._circular
+        by_springs = np.outer(root, root)
+        inverse_square, vectors = linalg.eigh(
+            self._mass / by_springs, np.eye(len(root)) + weight / by_springs,
+            subset_by_index=(max(len(root) - count, 0), len(root) - 1),
+        )  # fmt: skip
+        self._circular: Floats = 1.0 / np.sqrt(inverse_square[::-1])
+        modes = vectors[:, ::-1] / root[:, None] * self._circular
         by_stiffness = 2.0 * ratio / self._circular[-1]
         self.model.dof_damping[:] = by_stiffness * self._stiffness
         gain = 2.0 * ratio * self._circular - by_stiffness * self._circular**2
@@ -252,7 +292,7 @@ def _push(wrench: Floats, body: Any, place: Floats, force: Floats, centre: Float
     np.add.at(wrench, body, np.hstack([force, np.cross(place - centre[body], force)]))
 
 
-def _mjcf(bodies: Bodies) -> str:
+def _mjcf(bodies: Bodies, is_twisting: bool) -> str:
     """Write the model: a body a segment, with its frame at its joint and its axes the world's."""
     children: list[list[int]] = [[] for _ in range(len(bodies.mass) + 1)]
     for i, carrier in enumerate(bodies.carrier):
@@ -267,7 +307,7 @@ def _mjcf(bodies: Bodies) -> str:
         if is_done:
             lines.append("</body>")
             continue
-        lines.append(_body(bodies, i))
+        lines.append(_body(bodies, i, is_twisting))
         stack.append((i, True))
         stack += [(k, False) for k in reversed(children[i + 1])]
     lines.append("</worldbody></mujoco>")
@@ -282,10 +322,13 @@ def hinge_axes(along: Floats) -> tuple[Floats, Floats]:
     return first, np.cross(along, first)
 
 
-def _body(bodies: Bodies, i: int) -> str:
+def _body(bodies: Bodies, i: int, is_twisting: bool) -> str:
+    springs = [(axis, bodies.bend[i]) for axis in hinge_axes(bodies.axis[i])]
+    if is_twisting:
+        springs.append((bodies.axis[i], bodies.twist[i]))
     hinges = "".join(
-        f'<joint type="hinge" axis="{_text(axis)}" stiffness="{bodies.bend[i]:.17g}"/>'
-        for axis in hinge_axes(bodies.axis[i])
+        f'<joint type="hinge" axis="{_text(axis)}" stiffness="{stiffness:.17g}"/>'
+        for axis, stiffness in springs
     )
     J = bodies.inertia[i]
     inertia = _text(J[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])

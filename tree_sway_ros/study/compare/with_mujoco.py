@@ -24,7 +24,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
+from tree_sway_ros.study.compare.mujoco_tree import NO_TWIST, MujocoTree
 from tree_sway_ros.study.record_climate import climate_of_samples
 from tree_sway_ros.study.tip_error import Swaying, record_tips, tip_error
 from tree_sway_ros.tools.progress import bar, waiting
@@ -211,4 +211,4 @@ def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float
 
 def without_twist(species: Species) -> Species:
     """Return wood that does not twist, as the engines' hinges do not."""
-    return replace(species, shear_ratio=500.0)
+    return replace(species, shear_ratio=NO_TWIST)

@@ -27,6 +27,7 @@ from tree_sway_ros.ros.parameters.parameter import Table, Value
 from tree_sway_ros.ros.process.topics import TOPICS
 from tree_sway_ros.study.pages.notebooks import notebook
 from tree_sway_ros.study.pages.rooms import rooms_drawing
+from tree_sway_ros.study.validation.report import sections_of
 from tree_sway_ros.tools import cli
 
 PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
@@ -34,6 +35,9 @@ PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
 
 FIGURES = "doc/pictures/fidelity.csv"
 """What ``tree-sway chart fidelity`` measured."""
+
+VALIDATION = "doc/validation.md"
+"""What ``tree-sway chart validation`` measured."""
 
 EXAMPLES = ("critical_wind_speed", "response_spectra", "sheltered_and_open")
 """Scripts that are notebooks as well."""
@@ -126,6 +130,7 @@ def markdown_tables() -> dict[str, str]:
         "tree_formats": formats_table(),
         "fidelity": fidelity_table(),
         "fidelity_range": fidelity_range(),
+        "crooked": crooked_table(),
     }
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters_table(table)
@@ -216,6 +221,13 @@ def fidelity_range() -> str:
         f"{trees} trees of 40 branches, in {rows[0]['wind'] if rows else 'no wind'}; from "
         f"{min(costs):.0f} to {max(costs):.0f} us of CPU time per frame, solving and placing.\n"
     )
+
+
+def crooked_table() -> str:
+    """Tip errors on straight and on crooked trees, the last table of the validation's section."""
+    path = Path(VALIDATION)
+    page = path.read_text(encoding="utf-8") if path.is_file() else ""
+    return sections_of(page).get("models", "").rpartition("\n\n")[2]
 
 
 def species_table() -> str:

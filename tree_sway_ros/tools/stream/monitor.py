@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.tree.rest_frame import ends_of_poses
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TransportError
 from tree_sway_ros.ros.process.listener import Listener
@@ -26,7 +27,6 @@ from tree_sway_ros.ros.process.topics import (
     qos_profile,
 )
 from tree_sway_ros.tools.stream.totals import StreamTotals
-from tree_sway_ros.view.projection import ends_of_poses
 
 WINDOW = 2.0
 """For so long messages are kept one by one [s]."""

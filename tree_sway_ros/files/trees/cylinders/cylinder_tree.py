@@ -20,14 +20,10 @@ import numpy as np
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, ParameterError, TreeError
-from tree_sway_ros.files.trees.assembly import MAX_COORDINATE, SegmentTable
+from tree_sway_ros.files.trees.assembly import MAX_COORDINATE, SegmentTable, checked_order
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.diameter_fit import corrected_twigs, fitted_taper
-from tree_sway_ros.files.trees.cylinders.joining import (
-    branch_keys,
-    checked_order,
-    join_loose_branches,
-)
+from tree_sway_ros.files.trees.cylinders.joining import branch_keys, join_loose_branches
 from tree_sway_ros.files.trees.cylinders.merging import merge_tiny
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 

@@ -9,9 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway_ros.core.arrays import Ints
-from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import TreeError
-from tree_sway_ros.files.trees.assembly import nearest_axis
+from tree_sway_ros.files.trees.assembly import checked_order, nearest_axis
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
 _MAX_LOOSE = 1000
@@ -25,32 +24,6 @@ class JoinedBranches(NamedTuple):
     parent: Ints
     loose: int
     distance: float
-
-
-def checked_order(parent: Ints, labels: list[str]) -> list[int]:
-    """
-    Order in which parents come before what they carry.
-
-    Raises
-    ------
-    TreeError
-        A parent that does not exist, or a cycle.
-
-    """
-    n = len(parent)
-    for index in np.flatnonzero((parent < -1) | (parent >= n))[:1]:
-        raise TreeError(
-            "orphan: its parent does not exist", where=labels[index], cure="name a cylinder"
-        )
-    order = parents_first(parent.tolist())
-    if len(order) < n:
-        lost = int(np.setdiff1d(np.arange(n), order)[0])
-        raise TreeError(
-            "cyclic: following its parents never reaches a root",
-            where=labels[lost],
-            cure="break the cycle; at least one cylinder has no parent",
-        )
-    return order
 
 
 def join_loose_branches(cylinders: Cylinders) -> JoinedBranches | None:

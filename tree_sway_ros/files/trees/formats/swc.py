@@ -17,8 +17,8 @@ import numpy as np
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.table_file import filled_lines, parse_columns
 from tree_sway_ros.files.text_file import finite, read_lines
+from tree_sway_ros.files.trees.assembly import checked_order
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.cylinders.joining import checked_order
 from tree_sway_ros.files.trees.cylinders.skeleton import Skeleton
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 

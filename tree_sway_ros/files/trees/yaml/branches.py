@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.tree.parents_first import parents_first
 from tree_sway_ros.errors import FormatError, TreeError, nearest
-from tree_sway_ros.files.trees.assembly import SegmentTable, nearest_axis
+from tree_sway_ros.files.trees.assembly import SegmentTable, checked_order, nearest_axis
 from tree_sway_ros.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]
@@ -53,7 +52,7 @@ def branch_segments(document: YamlDocument) -> SegmentTable:
     parents = _parents(branches, index, where)
     table = SegmentTable(branch_names=[branch["name"] for branch in branches])
     placed: dict[int, _Placed] = {}
-    for number in _checked_order(parents, where):
+    for number in checked_order(parents, where):
         branch, its_parent = branches[number], placed.get(parents[number])
         start, end, diameter = _own_points(branch, where[number])
         sits_on, origin = -1, np.zeros(3)
@@ -107,18 +106,6 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
             cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
         )
     return parents
-
-
-def _checked_order(parents: list[int], where: list[str]) -> list[int]:
-    order = parents_first(parents)
-    if len(order) < len(parents):
-        lost = min(set(range(len(parents))) - set(order))
-        raise TreeError(
-            "cyclic: following its parents never reaches a stem",
-            where=where[lost],
-            cure="break the cycle; exactly one branch has no parent",
-        )
-    return order
 
 
 def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
