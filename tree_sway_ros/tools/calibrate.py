@@ -10,7 +10,8 @@ from pathlib import Path
 
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.identification.calibration import Calibration, calibrate
-from tree_sway_ros.core.identification.measured_sway import KINDS, SwayEstimate, estimate_sway
+from tree_sway_ros.core.identification.measured_sway import KINDS, estimate_sway
+from tree_sway_ros.core.identification.sway_estimate import SwayEstimate
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.plausibility import doubt_of_sway

@@ -92,7 +92,7 @@ class _Relay:
     def __init__(
         self, arguments: argparse.Namespace, line: Line, stack: contextlib.ExitStack
     ) -> None:
-        self._arguments, self._line, self._stack = arguments, line, stack
+        self._arguments, self._line = arguments, line
         self._seconds = float("inf") if arguments.seconds is None else arguments.seconds
         self._first = self._last = 0
         self._ros: _RosWind | None = None

@@ -11,7 +11,8 @@ import pytest
 
 from tree_sway_ros.core.fidelity.ladder import TABLE_FLOOR, TABLE_MARGIN
 from tree_sway_ros.core.growth.builtin import builtin_tree
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.core.motion.drag import pressure
+from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.bench.sizes import against, gusts_and_turns
@@ -144,3 +145,27 @@ def test_a_step_works_on_as_much_whatever_the_size():
         bank = SwaySimulator(tree, model="wind_basis").bank.oscillators
         sizes.add((bank.record.nbytes, bank.pace.nbytes, bank.instance.nbytes))
     assert len(sizes) == 1
+
+
+def test_a_step_in_one_call_is_that_of_its_parts(fork):
+    sim, parts = (SwaySimulator(fork(), model="wind_basis") for _ in range(2))
+    bank = parts.bank.oscillators
+    for wind in gusty(4.0)[:240]:
+        assert sim.step(wind, DT) == 0
+        bank.set_step(DT)
+        bank.advance(*wind, pressure(float(np.linalg.norm(wind)), *parts.drag_law))
+    assert np.abs(sim.rotations()).max() > 1e-3
+    assert sim.rotations() == pytest.approx(bank.rotations(), rel=1e-9, abs=1e-12)
+    assert sim.place() == pytest.approx(sim.place_rotations(sim.rotations()), abs=1e-12)
+
+
+@pytest.mark.parametrize("bad", [(np.nan, 0.0, 0.0), (0.0, -np.inf, 0.0), (1e3, 0.0, 0.0)])
+def test_a_step_in_one_call_keeps_the_wind_that_was(fork, bad):
+    sim, other = (SwaySimulator(fork(), model="wind_basis") for _ in range(2))
+    good = (3.0, -1.0, 0.2)
+    assert sim.step(good, DT) == other.step(good, DT) == 0
+    assert sim.step(bad, DT) == WIND_REFUSED
+    assert other.step(good, DT) == 0
+    assert sim.counts.refused == 1
+    assert sim.wind.tolist() == list(good)
+    assert (sim.rotations() == other.rotations()).all()

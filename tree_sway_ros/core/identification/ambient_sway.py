@@ -17,11 +17,13 @@ acceleration was measured. Standard errors are those of Fisher's information (Br
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from scipy import linalg, optimize, signal
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.identification.sway_estimate import SwayEstimate
 from tree_sway_ros.errors import FormatError
 
 _BAND = (0.6, 1.6)
@@ -37,28 +39,18 @@ parameters.
 
 
 @dataclass(frozen=True)
-class AmbientSway:
+class AmbientSway(SwayEstimate):
     """
     One resonance.
 
     Parameters
     ----------
-    frequency, damping_ratio
-        Natural frequency, undamped, in [Hz] and share of critical damping in [-].
-    frequency_error, damping_error
-        Standard errors of both.
-    cycles
-        How many cycles the record covers.
     gain
         Log-likelihood that the resonance adds to a smooth spectrum.
 
     """
 
-    frequency: float
-    damping_ratio: float
-    frequency_error: float
-    damping_error: float
-    cycles: float
+    kind: ClassVar[str] = "ambient"
     gain: float
 
 

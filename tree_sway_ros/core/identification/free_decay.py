@@ -16,12 +16,14 @@ Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, linalg, signal
 
 from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.identification.sway_estimate import SwayEstimate
 from tree_sway_ros.errors import FormatError
 
 _SAMPLES_PER_CYCLE = 16
@@ -33,36 +35,27 @@ _LATER_STARTS = (0.5, 1.0, 1.5)
 
 
 @dataclass(frozen=True)
-class FreeDecay:
+class FreeDecay(SwayEstimate):
     """
     One decaying mode.
 
     Parameters
     ----------
-    frequency, damping_ratio
-        Natural frequency, undamped, in [Hz] and share of critical damping in [-].
-    frequency_error, damping_error
-        Standard errors of both.
-    start, cycles
-        Time from the record's beginning to where the fit starts in [s], and how many cycles it
-        covers.
+    start
+        Time from the record's beginning to where the fit starts in [s].
     explained
         Share of all motion's energy, within the fit, that decaying modes explain in [-].
     quiet
         Largest amplitude around the frequency before and after the decay, over the largest of all,
         in [-].
     speed
-        Largest amplitude around the frequency times that frequency, in the unit of the motion a
+        Largest amplitude around the frequency times that frequency, in the unit of the motion per
         second.
 
     """
 
-    frequency: float
-    damping_ratio: float
-    frequency_error: float
-    damping_error: float
+    kind: ClassVar[str] = "release"
     start: float
-    cycles: float
     explained: float
     quiet: float
     speed: float
@@ -134,8 +127,8 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
         -fit.pole.real / circular,
         float(np.hypot(fit.error, spread[0]) / (2.0 * np.pi)),
         float(np.hypot(fit.error / circular, spread[1])),
-        first * dt,
         cycles,
+        first * dt,
         fit.explained * min(float(share), 1.0),
         quiet,
         float(envelope[peak]) * rough,

@@ -11,8 +11,6 @@ answer.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import signal
@@ -21,6 +19,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.identification.ambient_sway import AmbientSway, ambient_sway
 from tree_sway_ros.core.identification.free_decay import FreeDecay, free_decay
 from tree_sway_ros.core.identification.spectral_peaks import Band, Spectrum
+from tree_sway_ros.core.identification.sway_estimate import SwayEstimate
 from tree_sway_ros.errors import FormatError, ParameterError
 
 KINDS = ("release", "ambient")
@@ -32,34 +31,6 @@ _UNSURE = (0.03, 0.25)
 _LEAST_CLEAR = 4.0
 _EXPLAINED, _QUIET = 0.6, 0.5
 _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
-
-
-@dataclass(frozen=True)
-class SwayEstimate:
-    """
-    What a record says of the slowest sway.
-
-    Parameters
-    ----------
-    frequency
-        Natural frequency, undamped, in [Hz].
-    damping_ratio
-        Share of critical damping in [-], that of the air included.
-    frequency_error, damping_error
-        Their standard errors.
-    kind
-        ``release`` or ``ambient``.
-    cycles
-        How many cycles the answer rests on.
-
-    """
-
-    frequency: float
-    damping_ratio: float
-    frequency_error: float
-    damping_error: float
-    kind: str
-    cycles: float
 
 
 def estimate_sway(
@@ -103,7 +74,7 @@ def estimate_sway(
         )
     even, dt, gap = _even(*_checked(time, motion))
     if kind == "ambient":
-        return _estimate(_ambient(even, dt, gap, band), "ambient")
+        return _ambient(even, dt, gap, band)
     refusal = FormatError("the motion does not die away from one swing")
     try:
         decay = _release(even, dt, gap, band)
@@ -114,25 +85,14 @@ def estimate_sway(
     else:
         if kind == "release" or _is_release(decay):
             _refuse_lost(decay)
-            return _estimate(decay, "release")
+            return decay
     try:
-        return _estimate(_ambient(even, dt, gap, band), "ambient")
+        return _ambient(even, dt, gap, band)
     except FormatError as error:
         raise FormatError(
             f"neither a release ({refusal.what}) nor ambient ({error.what})",
             cure=refusal.cure or error.cure,
         ) from None
-
-
-def _estimate(found: FreeDecay | AmbientSway, kind: str) -> SwayEstimate:
-    return SwayEstimate(
-        found.frequency,
-        found.damping_ratio,
-        found.frequency_error,
-        found.damping_error,
-        kind,
-        found.cycles,
-    )
 
 
 def _is_release(decay: FreeDecay) -> bool:
@@ -239,7 +199,7 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     strongest = int(np.argmax(level[strong]))
     if strongest in refusals:
         raise refusals[strongest]
-    # Beside the sway, a step of the rest has slow parts that die away too; they move little a
+    # Beside the sway, a step of the rest has slow parts that die away too; they move little per
     # second.
     fastest = max(found, key=lambda decay: decay.speed)
     fast = [one for one in found if one.speed > _FAST * fastest.speed]

@@ -35,7 +35,7 @@ Mean speed in [m/s] below which no gusts are taken to travel: delays then die do
 """
 
 LARGEST_STRETCH = 0.5
-"""Most that the delay of a tree changes in a second, in [s/s]."""
+"""Most that the delay of a tree changes per second, in [s/s]."""
 
 
 class GustHistory:

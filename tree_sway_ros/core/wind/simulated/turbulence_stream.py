@@ -31,7 +31,7 @@ class TurbulenceStream:
     turbulence
         What to draw.
     rate
-        Ticks a second in [Hz], up to 1000.
+        Ticks per second in [Hz], up to 1000.
     seed
         Seed of the phases, 0 to 2^63.
 
