@@ -124,7 +124,8 @@ class ArticulatedTree:
         if rayleigh is None:
             damping = self._even_damping(damping_ratio, damped_modes)
         else:
-            damping = *map(float, rayleigh), np.zeros(0), np.zeros(0), none, none
+            by_mass, by_stiffness = float(rayleigh[0]), float(rayleigh[1])
+            damping = by_mass, by_stiffness, np.zeros(0), np.zeros(0), none, none
         self.laws = Laws(
             gravity,
             *damping,
@@ -151,8 +152,7 @@ class ArticulatedTree:
         self.bodies.rest_torque[:] *= weight
         self._gravity *= weight
         damping = self._even_damping(damping_ratio, self._damped_modes)
-        told = dict(zip(Laws._fields[1:7], damping, strict=True))
-        self.laws = self.laws._replace(gravity=self._gravity, **told)
+        self.laws = Laws(self._gravity, *damping, *self.laws[7:])
 
     def reset(self) -> None:
         """Go back to rest."""
