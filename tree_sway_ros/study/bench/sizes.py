@@ -97,9 +97,14 @@ def errors(simulators: Sequence[SwaySimulator]) -> list[Measured]:
         tree = simulator.tree
         other = SwaySimulator(tree, simulator.species, simulator.settings, model="modes")
         for speed in _SPEEDS:
-            error = against(simulator, other, gusts_and_turns(speed))
-            what = f"error in {speed:g} m/s, {tree.name}, {tree.n_branches} branches"
-            rows.append(Measured(what, error, "-"))
+            bank, winds = simulator.bank.oscillators, gusts_and_turns(speed)
+            assert isinstance(bank, WindBasisBank)
+            before = bank.n_outside
+            error = against(simulator, other, winds)
+            where = f"in {speed:g} m/s, {tree.name}, {tree.n_branches} branches"
+            rows.append(Measured(f"error {where}", error, "-"))
+            share = (bank.n_outside - before) / len(winds)
+            rows.append(Measured(f"steps outside of the table {where}", share, "-"))
     return rows
 
 
