@@ -11,7 +11,13 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.motion.fill_records import load_records
-from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
+from tree_sway_ros.core.motion.tree_passes import (
+    bent_loads,
+    generalised_loads,
+    outward_pass,
+    wind_forces,
+)
+from tree_sway_ros.core.rotation import turned
 from tree_sway_ros.core.simulator.assembly import CalibratedTree, build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
@@ -166,3 +172,50 @@ def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
         assert error < 0.01
         # Nearer than the true force would be, were it to act at one place in all winds.
         assert error < np.linalg.norm(centred - true) / np.linalg.norm(true)
+
+
+class _Bent:
+    """A tree bent by its key rotations, its loads on rods that turn with what they hang on."""
+
+    def __init__(self, tree, x, force):
+        """Give every branch a force (b, 3) in its own frame as it is turned."""
+        loaded = Loaded(tree)
+        outward_pass(loaded.branches, loaded.work, x, 0.0 * x)
+        self.branches, self.work, self.loads = loaded.branches, loaded.work, loaded.loads
+        n = len(force)
+        base = loaded.work["rotation"]
+        turn = np.einsum("bc,bck->bk", x.reshape(-1, 2), loaded.branches["turn"][:, :2])
+        into = self.loads[0]
+        into["base"][:, :n], into["turned"][:, :n] = base.T, (base + turn).T
+        into["own_force"][:, :n] = force.T
+        into["turned_force"][:, :n] = np.array(
+            [_turned(t, f) for t, f in zip(turn, force, strict=True)]
+        ).T
+        self.moment = np.zeros(len(x))
+        bent_loads(self.branches, self.work, self.loads, self.moment)
+
+
+def _turned(rotation, vector):
+    return np.array(turned.py_func(*rotation, *vector))
+
+
+def test_loads_at_rest_are_those_of_rest_geometry(fork):
+    force = np.random.default_rng(2).normal(size=(4, 3))
+    still = Loaded(fork())
+    expected, _ = still.handed(force)
+    assert _Bent(fork(), np.zeros(still.n), force).moment == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_stem_feels_the_moment_of_a_limb_where_it_now_stands(sketch):
+    """Its base has gone to one side, and its own load further, as it is turned."""
+    drawn = sketch()
+    drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.02, 8)
+    drawn.add(0, 8, (0, 0, 1), 0.5, 0.01, 0.01, 2)
+    x = np.array([0.2, 0.0, 0.0, 0.0])
+    tree, down = drawn.tree(), np.array([0.0, 0.0, -1.0])
+    turned_by = x[0] * Loaded(tree).branches["twist"][1, 0, 3:]
+    bent = _Bent(tree, x, np.array([np.zeros(3), _turned(-turned_by, down)]))
+    wrench = bent.work["wrench"][0]
+    assert wrench[:3] == pytest.approx(down, abs=1e-12)
+    aside = 0.2 + 0.25 * np.sin(2.0 * np.arctan(0.5 * np.linalg.norm(turned_by)))
+    assert np.linalg.norm(wrench[3:]) == pytest.approx(aside, rel=1e-3)

@@ -177,6 +177,15 @@ def test_long_steps_in_storms_stay_finite():
         assert np.linalg.norm(tips_of(model), axis=1).max() < 15.0
 
 
+def test_damped_modes_do_not_shake_a_straight_stem_that_bends_far():
+    stem = tapered_stem(6.0, np.full(25, 0.06))
+    model = ArticulatedTree(stem, E, RHO, 0.05, gravity=9.81, twist_ratio=1.0 / 7.0)
+    for _ in range(900):
+        model.step([28.0, 0.0, 0.0], DT)
+    assert np.abs(model.state.rate).max() < 1e-3
+    assert model.node_positions[-1, 0] == pytest.approx(1.18, rel=0.02)
+
+
 def test_weight_and_steady_drag_give_the_frames_static_sway():
     stem = tapered_stem(4.0, np.linspace(0.06, 0.03, 9))
     model = ArticulatedTree(stem, E, RHO, 0.5, 1.1, air_density=1.2, subdivisions=2)

@@ -15,7 +15,9 @@ E, RHO = 8.0e9, 900.0
 
 
 def laws(exponent=0.0):
-    return Laws(0.0, 0.0, 0.0, np.zeros(0), np.zeros((0, 1, 3)), 0.6, exponent, 4.0, 20.0)
+    none = np.zeros((0, 1, 3))
+    no_modes = np.zeros(0), np.zeros(0), none, none
+    return Laws(0.0, 0.0, 0.0, *no_modes, 0.6, exponent, 4.0, 20.0)
 
 
 def stability(z):

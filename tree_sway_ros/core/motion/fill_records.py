@@ -203,8 +203,18 @@ def branch_records(
             offset = tree.start[here.start] - tree.start[base]
             records["offset"][branch] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
         _fill_load(model, speed_profile[here], records[branch])
+    _fill_arms(tree, records)
     _fill_axial_levers(records)
     return records
+
+
+def _fill_arms(tree: Tree, records: Any) -> None:
+    """Fill where bases are at rest."""
+    base = tree.start[tree.branch_first[:-1]] - tree.start[0]
+    arm = base - base[np.maximum(tree.branch_parent, 0)]
+    square = np.square(arm).sum(axis=1)
+    records["base"], records["arm"] = base, arm
+    records["per_arm"] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
 
 
 def _fill_shapes(model: BranchModel, record: Any) -> None:
@@ -251,10 +261,13 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     mean = np.zeros_like(record["push"])
     mean[:n] = own.sum(axis=1)
     record["push"][:n] = mean[:n] @ into_push
-    slopes = np.stack([one.slope for one in model.fields])
-    record["turn"][:n] = share.ravel() @ slopes.reshape(n, -1, 3)
     along_it = (fields[:2] * beam.tangent[:, None, :]).sum(axis=-1)
     moved = (np.square(fields[:2]).sum(axis=-1) - np.square(along_it)).sum(axis=0)
+    # What moves most does most work, and it is turned most.
+    work = share * np.sqrt(np.maximum(moved, 0.0))
+    work /= work.sum() if work.sum() > 0.0 else 1.0
+    slopes = np.stack([one.slope for one in model.fields])
+    record["turn"][:n] = work.ravel() @ slopes.reshape(n, -1, 3)
     if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
         _fit_load(model, share, record)
     _fill_flow(record, mean, float((share * moved).sum()), float((share * _cubes(moved)).sum()))
@@ -524,6 +537,8 @@ def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
         rows = records.dtype[name].shape[0]
         records[name][block, ..., lane] = branches[name][:, :rows]
     records["along"][block, :, lane] = branches["lever"][:, None] * branches["frame"][:, 0]
+    at_base = cross(branches["base"][:, None], np.eye(3)).swapaxes(1, 2)
+    records["couple"][block, ..., lane] = branches["couple"] - at_base
     records["is_solved"][block, lane] = branches["source"] == np.arange(len(branches))
     np.maximum.at(records["n_rows"], block, branches["n_coordinates"])
     return records

@@ -27,11 +27,11 @@ from tree_sway_ros.core.branch.beam import cross_matrix
 from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, WORK
-from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pass, wind_forces
+from tree_sway_ros.core.motion.tree_passes import bent_loads, outward_pass, wind_forces
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
 from tree_sway_ros.core.oscillators.rule_names import DEFAULT
 from tree_sway_ros.core.oscillators.step_rules import fill_steps
-from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, true_force
+from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX
 from tree_sway_ros.core.reduction.matrices import Reduction
 from tree_sway_ros.core.reduction.modes import Modes
 
@@ -85,7 +85,6 @@ class ModalBank:
         self._loads = load_records(branches)
         self.modal = np.zeros((6, m))
         self.state = np.zeros((4, n))
-        self._pull = np.zeros(len(branches))
         self.whole, self.half = np.zeros((2, m, 8))
 
     @property
@@ -130,7 +129,7 @@ class ModalBank:
     def _compiled(self) -> Callable[..., int]:
         arrays = (
             self.branches, self.work, self._loads, self.modal, self.state, self._shapes, self.held,
-            self.flexibility, self.limit, self.whole, self.half, self._pull,
+            self.flexibility, self.limit, self.whole, self.half,
         )  # fmt: skip
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
@@ -250,7 +249,7 @@ def _to_middle(
 
 @fused
 def wind_moments(
-    branches: Any, work: Any, loads: Any, x: Floats, v: Floats, moment: Floats, pull: Floats,
+    branches: Any, work: Any, loads: Any, x: Floats, v: Floats, moment: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """
@@ -262,8 +261,8 @@ def wind_moments(
         Records of `BRANCH` and `WORK`, (b,), and of `load_fields`.
     x, v
         Key rotations in [rad] and their rates in [rad/s], (N,).
-    moment, pull
-        As of `generalised_loads`, written; the moments are true at any deflection.
+    moment
+        As of `bent_loads`, written.
     wx, wy, wz, per_speed_squared
         As of `wind_forces`.
 
@@ -274,22 +273,19 @@ def wind_moments(
         for c in range(branches[b].n_coordinates):
             here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
     wind_forces(branches, work, loads, True, wx, wy, wz, per_speed_squared)
-    generalised_loads(branches, work, loads, True, moment, pull)
-    for b in range(len(branches)):
-        i = branches[b].coordinate
-        moment[i], moment[i + 1] = true_force(x[i], x[i + 1], pull[b], moment[i], moment[i + 1])
+    bent_loads(branches, work, loads, moment)
 
 
 @fused
 def _advance(
     branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats,
-    held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats, pull: Floats,
+    held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     _to_middle(modal, state, shapes, half, flexibility)
     eta, rate, rest, force = modal[0], modal[1], modal[2], modal[3]
     moment, x, v = state[0], state[1], state[2]
-    wind_moments(branches, work, loads, x, v, moment, pull, wx, wy, wz, per_speed_squared)
+    wind_moments(branches, work, loads, x, v, moment, wx, wy, wz, per_speed_squared)
     over, total = 0, 0.0
     for i in range(len(moment)):
         if not abs(moment[i]) <= limit[i]:

@@ -109,12 +109,9 @@ class NumpyModalBank(ModalBank):
         wind = np.array([wx, wy, wz]) + of_lanes(self._loads["gust"], n)
         compliance = of_lanes(self._loads["compliance"], n)
         on_branches = passes.wind_forces(base, x, v, wind, per_speed_squared, compliance, slip)
-        pull = passes.generalised_loads(base[:, 6:], on_branches, True, moment)
+        passes.bent_loads(base, x, on_branches, moment)
         self.work["force"] = on_branches
         into_lanes(slip, self._loads["slip"])
-        first = self.branches["coordinate"][:, None] + np.arange(2)
-        load, none = np.hstack([pull[:, None], moment[first]]), np.zeros(n)
-        moment[first] = two_axis_moment(x[:, :2], v[:, :2], load, none, np.inf)
         over = ~(np.abs(moment) <= self.limit)
         moment[over] = np.where(moment[over] > 0.0, self.limit[over], -self.limit[over])
         force[:] = np.einsum("mi,i->m", self._shapes, moment)

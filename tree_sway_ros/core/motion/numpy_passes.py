@@ -33,7 +33,10 @@ class NumpyPasses:
 
     def __init__(self, branches: Any) -> None:
         """Take over columns, and sort the branches by level."""
-        names = ("parent", "source", "twist", "centre", "flow", "turn", "push", "lever", "speed")
+        names = (
+            "parent", "source", "twist", "centre", "flow", "turn", "push", "lever", "speed",
+            "base", "arm", "per_arm",
+        )  # fmt: skip
         self._of: dict[str, Any] = {
             name: np.ascontiguousarray(branches[name])
             for name in (*names, "spread", "area", "axial_lever", "frame", "couple")
@@ -105,6 +108,27 @@ class NumpyPasses:
             np.add.at(pull, parent, of["axial_lever"][1:] * along)
         moment[self._column[self.is_there]] = own[self.is_there]
         return pull
+
+    def bent_loads(self, base: Floats, x: Floats, force: Floats, moment: Floats) -> None:
+        """Write moments on the coordinates of a tree as it is bent and turned, (N,), in [N m]."""
+        of = self._of
+        own_turn = np.einsum("bc,bck->bk", x, of["turn"])
+        turned = cayley_turned(-(base[:, 6:] + own_turn), force)
+        own = np.einsum("bck,bk->bc", of["push"], turned)
+        couple = np.einsum("bij,bj->bi", of["couple"], turned) - cross(of["base"], turned)
+        wrench = np.hstack([cayley_turned(-base[:, 6:], force), cayley_turned(own_turn, couple)])
+        for level in reversed(self.levels):
+            parent, twist, at = (of[name][level] for name in ("parent", "twist", "base"))
+            moved = np.einsum("bc,bck->bk", x[parent], twist)
+            turn, shift = moved[:, 3:], moved[:, :3] + cross(moved[:, 3:], at)
+            f, m = (cayley_turned(turn, wrench[level][:, k : k + 3]) for k in (0, 3))
+            arm, per = of["arm"][level], of["per_arm"][level, None]
+            now = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
+            np.add.at(wrench, parent, np.hstack([f, m + cross(now, f)]))
+            f = f - 2.0 * per * (arm * f).sum(axis=1, keepdims=True) * shift
+            m = m + 0.5 * cross(m, turn) + cross(at, f)
+            np.add.at(own, parent, np.einsum("bck,bk->bc", twist, np.hstack([f, m])))
+        moment[self._column[self.is_there]] = own[self.is_there]
 
 
 def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True) -> Floats:

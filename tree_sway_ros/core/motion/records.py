@@ -75,6 +75,9 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("skew", "f8"),  # third cumulant of its slope shape, over 6
             ("tip_skew", "f8"),  # the same of the tip-load shape
             ("offset", "f8", (3,)),  # base, from its base segment's start, in that one's frame
+            ("base", "f8", (3,)),  # base at rest
+            ("arm", "f8", (3,)),  # the same from its parent's base
+            ("per_arm", "f8"),  # 0.5 over the square of its length [1/m^2]
         ]
     )
 
@@ -202,7 +205,9 @@ WORK = np.dtype(
         ("velocity", "f8", (6,)),  # of the base (v, w), about the root, in rest geometry
         ("rotation", "f8", (3,)),  # of the base, from rest
         ("force", "f8", (3,)),  # of the wind on the branch in the last step [N]
-        ("wrench", "f8", (6,)),  # force and moment about the root of all it carries
+        ("turn", "f8", (3,)),  # rotation of the base, from its parent's base
+        ("shift", "f8", (3,)),  # displacement of the base in its parent's base's frame
+        ("wrench", "f8", (6,)),  # force and moment of itself and all it carries (`tree_passes`)
         ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
         ("key", "f8", (2,)),  # half the key rotation, stretched, for who sits on a plain branch
     ]
@@ -231,6 +236,7 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         ("turn", "f8", (n_coordinates, 3, LANES)),
         ("push", "f8", (n_coordinates, 3, LANES)),
         ("along", "f8", (3, LANES)),  # its chord times its lever
+        ("couple", "f8", (3, 3, LANES)),  # its moment about its base per force [m]
         # Set with the time step:
         ("compliance", "f8", (LANES,)),  # velocity half a step after a unit of force [s/kg]
         # Set with the wind:
@@ -246,6 +252,8 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         ("slip", "f8", (3, LANES)),
         ("force", "f8", (3, LANES)),
         ("turned_force", "f8", (3, LANES)),  # the same in the frame of the turned base
+        ("own_force", "f8", (3, LANES)),  # in that of the branch as it is turned
+        ("moment", "f8", (3, LANES)),  # about the base, in its frame [N m]
         ("load", "f8", (1 + n_coordinates, LANES)),  # along b, then on each coordinate [N m]
     ]
 

@@ -28,7 +28,8 @@ def outward_pass(branches: Any, work: Any, x: Floats, v: Floats) -> None:
     Parameters
     ----------
     branches, work
-        Records of `BRANCH` and `WORK`, (b,); velocity and rotation of the latter are written.
+        Records of `BRANCH` and `WORK`, (b,); how bases move and are turned is written to the
+        latter.
     x, v
         Key rotations in [rad] and their rates in [rad/s], (N,).
 
@@ -39,16 +40,24 @@ def outward_pass(branches: Any, work: Any, x: Floats, v: Floats) -> None:
         i, twist = parent.coordinate, branch.twist
         here, below = work[b], work[branch.parent]
         vx, vy, ax, ay = v[i], v[i + 1], x[i], x[i + 1]
+        shift, turn, at = here.shift, here.turn, branch.base
         for k in range(6):
             here.velocity[k] = below.velocity[k] + twist[0, k] * vx + twist[1, k] * vy
         for k in range(3):
-            here.rotation[k] = below.rotation[k] + twist[0, 3 + k] * ax + twist[1, 3 + k] * ay
+            shift[k] = twist[0, k] * ax + twist[1, k] * ay
+            turn[k] = twist[0, 3 + k] * ax + twist[1, 3 + k] * ay
         for c in range(2, parent.n_coordinates):
             rate, angle = v[i + c], x[i + c]
             for k in range(6):
                 here.velocity[k] += twist[c, k] * rate
             for k in range(3):
-                here.rotation[k] += twist[c, 3 + k] * angle
+                shift[k] += twist[c, k] * angle
+                turn[k] += twist[c, 3 + k] * angle
+        for k in range(3):
+            here.rotation[k] = below.rotation[k] + turn[k]
+        shift[0] += turn[1] * at[2] - turn[2] * at[1]
+        shift[1] += turn[2] * at[0] - turn[0] * at[2]
+        shift[2] += turn[0] * at[1] - turn[1] * at[0]
 
 
 @kernel
@@ -136,6 +145,7 @@ def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared:
         loads.speed, loads.motion, loads.turned, loads.base, loads.slip, loads.gust,
     )  # fmt: skip
     force, turned_force, p, v = loads.force, loads.turned_force, loads.projector, loads.v
+    own_force = loads.own_force
     for j in range(LANES):
         tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
         ux, uy, uz = turned(
@@ -152,6 +162,7 @@ def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared:
             loads.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
         )  # fmt: skip
         slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
+        own_force[0, j], own_force[1, j], own_force[2, j] = fx, fy, fz
         fx, fy, fz = turned(tx, ty, tz, fx, fy, fz)
         force[0, j], force[1, j], force[2, j] = fx, fy, fz
         turned_force[0, j], turned_force[1, j], turned_force[2, j] = turned(
@@ -252,3 +263,83 @@ def _add_carried_loads(branches: Any, work: Any, moment: Floats, pull: Floats) -
             )  # fmt: skip
         along = chord[0, 0] * wrench[0] + chord[0, 1] * wrench[1] + chord[0, 2] * wrench[2]
         pull[branch.parent] += branch.axial_lever * along
+
+
+@fused
+def bent_loads(branches: Any, work: Any, loads: Any, moment: Floats) -> None:
+    """
+    Turn forces into moments on the coordinates of a tree as it is bent and turned.
+
+    The load of a branch goes with it as it turns, and each branch hands on what acts on it, at the
+    place where its base now is, in the frame of its parent's base. On its way there the base keeps
+    its distance from the parent's base, as the end of a rod does.
+
+    Parameters
+    ----------
+    branches, work, loads
+        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`, after `wind_forces`.
+    moment
+        Moments on the coordinates in [N m], (N,), written.
+
+    """
+    for block in range(len(loads)):
+        _turned_loads(loads[block])
+    for b in range(len(branches)):
+        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        for c in range(branches[b].n_coordinates):
+            moment[i + c] = here.load[1 + c, j]
+        wrench = work[b].wrench
+        for k in range(3):
+            wrench[k], wrench[3 + k] = here.turned_force[k, j], here.moment[k, j]
+    for b in range(len(branches) - 1, 0, -1):
+        branch, here = branches[b], work[b]
+        wrench, turn, shift = here.wrench, here.turn, here.shift
+        tx, ty, tz, dx, dy, dz = turn[0], turn[1], turn[2], shift[0], shift[1], shift[2]
+        fx, fy, fz = turned(tx, ty, tz, wrench[0], wrench[1], wrench[2])
+        mx, my, mz = turned(tx, ty, tz, wrench[3], wrench[4], wrench[5])
+        arm, at, twist = branch.arm, branch.base, branch.twist
+        shrunk = 1.0 - branch.per_arm * (dx * dx + dy * dy + dz * dz)
+        ax, ay, az = shrunk * arm[0] + dx, shrunk * arm[1] + dy, shrunk * arm[2] + dz
+        below = work[branch.parent].wrench
+        below[0], below[1], below[2] = below[0] + fx, below[1] + fy, below[2] + fz
+        below[3] += mx + ay * fz - az * fy
+        below[4] += my + az * fx - ax * fz
+        below[5] += mz + ax * fy - ay * fx
+        pull = 2.0 * branch.per_arm * (arm[0] * fx + arm[1] * fy + arm[2] * fz)
+        fx, fy, fz = fx - pull * dx, fy - pull * dy, fz - pull * dz
+        # A rotation on top of one by t turns by half of t more than its own vector says.
+        px = mx + 0.5 * (my * tz - mz * ty) + at[1] * fz - at[2] * fy
+        py = my + 0.5 * (mz * tx - mx * tz) + at[2] * fx - at[0] * fz
+        pz = mz + 0.5 * (mx * ty - my * tx) + at[0] * fy - at[1] * fx
+        parent = branches[branch.parent]
+        i = parent.coordinate
+        for c in range(parent.n_coordinates):
+            moment[i + c] += (
+                twist[c, 0] * fx + twist[c, 1] * fy + twist[c, 2] * fz
+                + twist[c, 3] * px + twist[c, 4] * py + twist[c, 5] * pz
+            )  # fmt: skip
+
+
+@fused
+def _turned_loads(loads: Any) -> None:
+    """
+    Turn the wind's own forces on sixteen branches into loads on their coordinates and moments about
+    their bases.
+
+    """
+    force, push, load, couple = loads.own_force, loads.push, loads.load, loads.couple
+    turn, base, moment = loads.turned, loads.base, loads.moment
+    for j in range(LANES):
+        fx, fy, fz = force[0, j], force[1, j], force[2, j]
+        load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
+        load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
+        moment[0, j], moment[1, j], moment[2, j] = turned(
+            turn[0, j] - base[0, j], turn[1, j] - base[1, j], turn[2, j] - base[2, j],
+            couple[0, 0, j] * fx + couple[0, 1, j] * fy + couple[0, 2, j] * fz,
+            couple[1, 0, j] * fx + couple[1, 1, j] * fy + couple[1, 2, j] * fz,
+            couple[2, 0, j] * fx + couple[2, 1, j] * fy + couple[2, 2, j] * fz,
+        )  # fmt: skip
+    for c in range(2, loads.n_rows):
+        for j in range(LANES):
+            fx, fy, fz = force[0, j], force[1, j], force[2, j]
+            load[1 + c, j] = push[c, 0, j] * fx + push[c, 1, j] * fy + push[c, 2, j] * fz

@@ -112,7 +112,7 @@ class WindBasisTable:
         self._bank, self._shapes = bank, bank.shapes
         n, m = bank.shapes.shape
         self._work = np.zeros(len(bank.branches), dtype=WORK)
-        self._loads, self._pull = load_records(bank.branches), np.zeros(len(bank.branches))
+        self._loads = load_records(bank.branches)
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
@@ -136,7 +136,7 @@ class WindBasisTable:
         """Moments of a wind of 1 kg/m^3 on a tree at x that moves at v, (N,)."""
         moments = np.empty(len(x))
         wind_moments(
-            self._bank.branches, self._work, self._loads, x, v, moments, self._pull,
+            self._bank.branches, self._work, self._loads, x, v, moments,
             float(wind[0]), float(wind[1]), float(wind[2]), 1.0,
         )  # fmt: skip
         return moments

@@ -128,13 +128,13 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
-def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
+def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
     """
-    Keep the modes that loads drive most.
+    Keep the modes by which turbulence moves the tips most.
 
-    A mode's share in the bending energy under a static load q is ``(phi . q)^2 / w^2``; it is
-    weighed by 1 / w, for turbulence has less for the quick ones. Of modes that loads do not reach,
-    as branches that swing against each other, nothing is lost.
+    At its own pace a mode goes ``phi . q / (2 zeta w^2)`` under a load q; turbulence there has a
+    power of ``w^(-5/3)``, over a band as wide as w. Of modes that loads do not reach, as branches
+    that swing against each other, nothing is lost.
 
     Parameters
     ----------
@@ -142,6 +142,8 @@ def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
         To choose from.
     loads
         Moments on the key rotations, (N, any).
+    moved
+        Sum over the tips of the square of what a unit of each mode moves them, (m,).
     count
         How many to keep.
 
@@ -151,7 +153,7 @@ def most_driven(modes: Modes, loads: Floats, count: int) -> Modes:
         The chosen ones, the slowest first.
 
     """
-    driven = (np.square(modes.shapes.T @ loads) / modes.circular[:, None] ** 3).sum(axis=1)
+    driven = moved * np.square(modes.shapes.T @ loads).sum(axis=1) / modes.circular ** (14.0 / 3.0)
     kept = np.sort(np.argsort(-driven, kind="stable")[:count])
     return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
 

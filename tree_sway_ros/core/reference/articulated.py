@@ -36,6 +36,9 @@ from tree_sway_ros.core.tree.tree import Tree
 RIGID_TWIST = 1e3
 """Stiffness in twist over that in bending by which joints hardly twist."""
 
+LARGEST_TURN = 0.3
+"""Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
+
 FASTEST_DECAY = 15.0
 """
 Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of 1/60
@@ -117,19 +120,15 @@ class ArticulatedTree:
         factor = np.ones(tree.n_segments) if wind_factor is None else np.asarray(wind_factor)
         self._wind_factor = np.repeat(factor, subdivisions)[:, None]
         self._gravity, self._damped_modes = gravity, damped_modes
+        none = np.zeros((0, n, 3))
         if rayleigh is None:
-            by_mass, by_stiffness, by_mode, momentum = self._even_damping(
-                damping_ratio, damped_modes
-            )
+            damping = self._even_damping(damping_ratio, damped_modes)
         else:
             by_mass, by_stiffness = float(rayleigh[0]), float(rayleigh[1])
-            by_mode, momentum = np.zeros(0), np.zeros((0, n, 3))
+            damping = by_mass, by_stiffness, np.zeros(0), np.zeros(0), none, none
         self.laws = Laws(
             gravity,
-            by_mass,
-            by_stiffness,
-            by_mode,
-            momentum,
+            *damping,
             0.5 * air_density * drag_coefficient,
             drag_exponent,
             STREAMLINING_FROM,
@@ -152,38 +151,39 @@ class ArticulatedTree:
         self.bodies.twist[:] *= stiffness
         self.bodies.rest_torque[:] *= weight
         self._gravity *= weight
-        by_mass, by_stiffness, by_mode, momentum = self._even_damping(
-            damping_ratio, self._damped_modes
-        )
-        self.laws = self.laws._replace(
-            gravity=self._gravity,
-            mass_damping=by_mass,
-            stiffness_damping=by_stiffness,
-            mode_damping=by_mode,
-            mode_momentum=momentum,
-        )
+        damping = self._even_damping(damping_ratio, self._damped_modes)
+        self.laws = Laws(self._gravity, *damping, *self.laws[7:])
 
     def reset(self) -> None:
         """Go back to rest."""
         self.state.turn[:] = [1.0, 0.0, 0.0, 0.0]
         self.state.rate[:] = 0.0
 
-    def step(self, wind: ArrayLike, dt: float) -> None:
-        """Advance by dt in [s] under a wind in [m/s], (3,), or one per segment, (n, 3)."""
+    def step(self, wind: ArrayLike, dt: float) -> bool:
+        """
+        Advance by dt in [s] under a wind in [m/s], (3,), or one per segment, (n, 3).
+
+        Where a joint would turn by more than `LARGEST_TURN`, as that of a twig does in a gale, the
+        step is taken in finer pieces. Returns whether that helped; if not the tree is at rest
+        again.
+
+        """
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
         np.multiply(self._wind_factor, wind, out=self._wind)
-        advance(
-            self.bodies,
-            self.laws,
-            self.state,
-            self._wind,
-            dt,
-            self._motion,
-            self._articulation,
-            self._room,
-        )
+        room = self._motion, self._articulation, self._room
+        before = self.state.turn.copy(), self.state.rate.copy()
+        for pieces in (1, 4, 16, 64, 256):
+            for _ in range(pieces):
+                advance(self.bodies, self.laws, self.state, self._wind, dt / pieces, *room)
+                if not np.abs(self.state.rate).max() * dt / pieces <= LARGEST_TURN:
+                    break
+            else:
+                return True
+            self.state.turn[:], self.state.rate[:] = before
+        self.reset()
+        return False
 
     @property
     def node_positions(self) -> Floats:
@@ -223,10 +223,12 @@ class ArticulatedTree:
         shapes = end_displacements(self.bodies, modes.turn)
         return modes.frequency, shapes[:, self.subdivisions - 1 :: self.subdivisions]
 
-    def _even_damping(self, ratio: float, count: int) -> tuple[float, float, Floats, Floats]:
+    def _even_damping(
+        self, ratio: float, count: int
+    ) -> tuple[float, float, Floats, Floats, Floats, Floats]:
         """
-        By stiffness so much that the last of these modes has the ratio, and the rest to each below
-        it.
+        Damping of `Laws`: by stiffness so much that the last of these modes has the ratio, and the
+        rest to each below it.
 
         """
         modes = joint_modes(self.bodies, self._gravity, count)
@@ -235,7 +237,7 @@ class ArticulatedTree:
         modes, circular = JointModes(*(part[:slow] for part in modes)), circular[:slow]
         by_stiffness = 2.0 * ratio / float(circular[-1])
         by_mode = 2.0 * ratio * circular - by_stiffness * circular**2
-        return 0.0, by_stiffness, by_mode, modes.momentum
+        return 0.0, by_stiffness, by_mode, circular**2, modes.turn, modes.momentum
 
     def _place_bodies(self) -> None:
         place_bodies(self.bodies, self.state.turn, self._rotation, *self._nodes)

@@ -58,8 +58,10 @@ class Laws(NamedTuple):
         In [m/s^2].
     mass_damping, stiffness_damping
         Rayleigh's coefficients in [1/s] and [s].
-    mode_damping, mode_momentum
-        Damping of single modes on top, (k,) in [1/s], and their momenta per rate, (k, n, 3).
+    mode_damping, mode_square
+        Damping of single modes on top in [1/s] and their circular frequencies squared, (k,).
+    mode_turn, mode_momentum
+        Their rotations of the joints and momenta per rate, (k, n, 3).
     drag
         Half the density of air times C of Cd = C U^-N, in [kg/m^3 (m/s)^N].
     drag_exponent
@@ -75,6 +77,8 @@ class Laws(NamedTuple):
     mass_damping: float
     stiffness_damping: float
     mode_damping: Floats
+    mode_square: Floats
+    mode_turn: Floats
     mode_momentum: Floats
     drag: float
     drag_exponent: float
@@ -178,16 +182,22 @@ def spring(bodies: Bodies, i: int, v: Vector, twist: float, twist_axis: Vector) 
 
 
 @kernel
-def damp_modes(laws: Laws, rate: Floats, torque: Floats) -> None:
-    """Take the damping of single modes off the torques of the joints, (n, 3)."""
+def damp_modes(laws: Laws, rate: Floats, implicit: float, out: Floats) -> None:
+    """
+    Take the damping of single modes off the accelerations of the joints, (n, 3).
+
+    Taken off their torques it would shake a bent tree to pieces: there a torque that bends the tree
+    at rest also twists it, and has hardly any inertia to do so against.
+
+    """
     for mode in range(len(laws.mode_damping)):
-        momentum = laws.mode_momentum[mode]
+        momentum, shape = laws.mode_momentum[mode], laws.mode_turn[mode]
         speed = 0.0
         for i in range(len(rate)):
             speed += dot(read(momentum, i), read(rate, i))
-        speed *= laws.mode_damping[mode]
+        speed *= laws.mode_damping[mode] / (1.0 + implicit * laws.mode_square[mode])
         for i in range(len(rate)):
-            write(torque, i, plus(read(torque, i), read(momentum, i), -speed))
+            write(out, i, plus(read(out, i), read(shape, i), -speed))
 
 
 @kernel
@@ -232,11 +242,11 @@ def respond(
         torque = plus(torque, spring(bodies, i, v, twist, g), -1.0)
         v = plus(read(room.pull, i), read(rate, i), -late)
         write(room.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
-    damp_modes(laws, rate, room.torque)
     move(bodies, room.matrix, rate, motion)
     load(bodies, motion, laws.gravity, laws.mass_damping, articulation)
     push_drag(bodies, motion, laws, wind, articulation)
     accelerate(bodies, motion, room.torque, room.twist_axis, implicit * late, articulation, out)
+    damp_modes(laws, rate, implicit * late, out)
 
 
 @kernel

@@ -102,7 +102,7 @@ USUAL_MODES = 12
 """Modes that are stepped where no number is asked for."""
 
 _FEW_MODES = 6
-"""Of more modes than this, two are what the others lack of the static sway along x and y."""
+"""To more modes than this comes what they lack of the static sway along x, y and z."""
 
 
 class Frozen:
@@ -439,12 +439,16 @@ class CalibratedTree:
         if not is_driven:
             return modes
         from tree_sway_ros.core.motion.numpy_passes import even_wind_moments, mean_wind_moments
+        from tree_sway_ros.core.motion.response import tip_motion
 
-        if not _FEW_MODES < n_modes < n - 1:
-            return most_driven(modes, even_wind_moments(self.coupled.branches, n), n_modes)
-        loads = mean_wind_moments(self.coupled.branches, n)
-        driven = most_driven(modes, loads, n_modes - loads.shape[1])
-        return with_static(driven, reduction, loads)
+        branches = self.coupled.branches
+        moved = np.square(tip_motion(branches, modes.shapes)).sum(axis=(0, 1))
+        loads = mean_wind_moments(branches, n)
+        n_static = loads.shape[1]
+        if not _FEW_MODES < n_modes < n - n_static:
+            return most_driven(modes, even_wind_moments(branches, n), moved, n_modes)
+        n_driven = n_modes - n_static if model == "wind_basis" else n_modes
+        return with_static(most_driven(modes, loads, moved, n_driven), reduction, loads)
 
     def _modal_bank(self) -> type[ModalBank]:
         if self.plain:

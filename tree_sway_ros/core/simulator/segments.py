@@ -44,9 +44,6 @@ from tree_sway_ros.errors import ParameterError
 LONGEST_STEP = 1.0 / 60.0
 """Longest step of the implicit springs in [s]; longer ones are cut."""
 
-LARGEST_TURN = 0.3
-"""Most that a joint may turn in a step in [rad]: beyond it the springs follow no more."""
-
 
 class SegmentsSimulator(OneTree, KeepsState):
     """
@@ -113,9 +110,6 @@ class SegmentsSimulator(OneTree, KeepsState):
         """
         Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut.
 
-        Joints that would turn by more than `LARGEST_TURN` within a piece of a step, as a twig does
-        in a gale, are taken in finer pieces.
-
         """
         refuse_time_step(dt)
         status = OK
@@ -125,8 +119,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         self._blow(dt)
         pieces = math.ceil(dt / LONGEST_STEP - 1e-9)
         for _ in range(pieces):
-            if not self._advance(dt / pieces):
-                self._model.reset()
+            if not self._model.step(self._air, dt / pieces):
                 self.counts.restarted += 1
                 status |= RESTARTED
         self.counts.steps += 1
@@ -159,21 +152,6 @@ class SegmentsSimulator(OneTree, KeepsState):
         if self._crown is not None:
             x, y, z = self.wind.tolist()
             self._air += self._crown.push(x, y, z, dt)[self._delay_of_segment]
-
-    def _advance(self, dt: float) -> bool:
-        """Advance by a time [s], finer where joints turn too fast; tell whether they still do."""
-        turn, rate = self._model.state
-        before = turn.copy(), rate.copy()
-        for pieces in (1, 4, 16, 64, 256):
-            for _ in range(pieces):
-                self._model.step(self._air, dt / pieces)
-                largest = float(np.abs(rate).max()) * dt / pieces
-                if not largest <= LARGEST_TURN:
-                    break
-            else:
-                return True
-            turn[:], rate[:] = before
-        return False
 
     @cached_property
     def _joined(self) -> tuple[Bank, RotationFit]:
