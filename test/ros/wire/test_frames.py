@@ -9,6 +9,7 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import TransformStamped  # noqa: E402
 from scipy.spatial.transform import Rotation  # noqa: E402
 
+from tree_sway_ros.ros.wire import frames  # noqa: E402
 from tree_sway_ros.ros.wire.frames import Frames  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import fill_stamp  # noqa: E402
 
@@ -70,3 +71,13 @@ def test_what_is_no_rotation_or_leads_nowhere_is_none():
     assert known.rotation("mast", "map", 0) is None
     known.take([transform("a", "b", yaw(0.1)), transform("b", "a", yaw(0.1))])
     assert known.rotation("a", "map", 0) is None  # a ring of frames ends, too
+
+
+def test_frames_that_are_made_up_are_not_kept_without_end(monkeypatch):
+    monkeypatch.setattr(frames, "_MOST", 3)
+    known = Frames()
+    known.take([transform(f"frame{number}", "map", yaw(0.1)) for number in range(9)])
+    known.take([transform("frame1", "map", yaw(0.2))])
+    np.testing.assert_allclose(known.rotation("frame1", "map", 0), yaw(0.2).as_matrix())
+    assert known.rotation("frame2", "map", 0) is not None
+    assert known.rotation("frame3", "map", 0) is None

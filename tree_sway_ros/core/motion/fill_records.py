@@ -120,6 +120,7 @@ def head_records(branches: Any, segments: Any) -> Any:
     return heads
 
 
+_rotated = rotated.py_func  # type: ignore[attr-defined]  # whole arrays at once
 _AS_ONE = 1e-12
 """Share of a chord by which a segment may miss it and still reach from its start to its end."""
 
@@ -127,7 +128,7 @@ _AS_ONE = 1e-12
 def _joined(segments: Any) -> Any:
     """Tell chords in each segment's own frame, and of which records they run along its x axis."""
     w, x, y, z = np.moveaxis(segments["rest"], 1, 0)
-    reach = rotated.py_func(w, -x, -y, -z, *np.moveaxis(segments["chord"], 1, 0))  # type: ignore[attr-defined]
+    reach = _rotated(w, -x, -y, -z, *np.moveaxis(segments["chord"], 1, 0))
     segments["reach"] = np.stack(reach, axis=1)
     return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
 
@@ -201,7 +202,7 @@ def branch_records(
         if base >= 0:
             w, x, y, z = rest[base]
             offset = tree.start[here.start] - tree.start[base]
-            records["offset"][branch] = rotated.py_func(w, -x, -y, -z, *offset)  # type: ignore[attr-defined]
+            records["offset"][branch] = _rotated(w, -x, -y, -z, *offset)
         _fill_load(model, speed_profile[here], records[branch])
     _fill_arms(tree, records)
     _fill_axial_levers(records)

@@ -228,12 +228,14 @@ class SwaySimulator(OneTree, KeepsState):
         if dt != self._dt or (self._tuning is not None and self._tuning.step(dt)):
             self._set_step(dt)
         counts.steps += 1
-        if self._in_one_call is not None:
-            told = self._in_one_call(wind_mean[0], wind_mean[1], wind_mean[2])  # type: ignore[index, arg-type]
+        call = self._in_one_call
+        if call is not None:
+            told = call(wind_mean[0], wind_mean[1], wind_mean[2])  # type: ignore[index, arg-type]
             if told == 0:
                 return OK
             counts.refused += told & 1
-            held = self.bank.oscillators.step_outside() if told & 2 else 0  # type: ignore[attr-defined]
+            step_outside = self.bank.oscillators.step_outside  # type: ignore[attr-defined]
+            held = step_outside() if told & 2 else 0
             return (WIND_REFUSED if told & 1 else OK) | self._count(held)
         status = OK
         if not take_wind(self._wind, wind_mean, self._max_wind):

@@ -24,6 +24,8 @@ from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns
 
 _KEPT = 100
 """Transforms kept per frame: a second of a fast one."""
+_MOST = 4096
+"""Frames that are kept, and told of: whoever may publish can make up any number."""
 _PATIENCE = 2.0
 """So long the first transform is waited for [s]."""
 
@@ -49,9 +51,12 @@ class Frames:
             turn = (q.x, q.y, q.z, q.w)
             if not 0.5 < math.hypot(*turn) < 2.0:  # NaN is not, either
                 continue
+            child = each.child_frame_id.strip("/")
+            if child not in self._links and len(self._links) >= _MOST:
+                continue
             stamp = 0 if is_static else stamp_to_ns(each.header.stamp)
             link = _Link(stamp, each.header.frame_id.strip("/"), turn)
-            links = self._links.setdefault(each.child_frame_id.strip("/"), deque(maxlen=_KEPT))
+            links = self._links.setdefault(child, deque(maxlen=_KEPT))
             if links and (links[-1].stamp >= stamp or links[-1].parent != link.parent):
                 links.clear()
             links.append(link)
@@ -130,7 +135,7 @@ class FrameListener:
         if found is not None:
             way, self._until = f"turned into '{self._base}' by /tf", 0.0
         self.text = f"wind is in frame '{frame}', {way}"
-        if self.text not in self._said:
+        if self.text not in self._said and len(self._said) < _MOST:
             self._said.add(self.text)
             # Two places, as a place of the log keeps to one severity.
             if found is None:
