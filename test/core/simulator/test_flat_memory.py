@@ -48,8 +48,7 @@ def test_no_step_asks_for_memory(fork, model, allocations):
     simulator = SwaySimulator(fork(), model=model)
     out = np.zeros((simulator.tree.n_segments, 7))
     sway(simulator, out, 2)
-    oscillators = simulator.bank.oscillators
-    step = oscillators._step if model == "wind_basis" else oscillators._compiled
+    step = simulator._in_one_call or simulator.bank.oscillators._compiled
     arrays, blocks = allocations(), sys.getallocatedblocks()
     for wind in WINDS * 5:
         simulator.step(wind, DT)
