@@ -79,7 +79,9 @@ def main(command):
         stop("no command given", "for example: python3 .ci/in_venv.py tree-sway demo")
     extras = extras_for(command)
     environment = without_ros(dict(os.environ))
-    environment.pop("PYTHONHOME", None)
+    # Set by the ROS wheels of another checkout, the second keeps those here from being found.
+    for name in ("PYTHONHOME", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"):
+        environment.pop(name, None)
     with open(__file__) as lock:  # one set-up at a time, however many start at once
         fcntl.flock(lock, fcntl.LOCK_EX)
         make_ready(environment, extras)
