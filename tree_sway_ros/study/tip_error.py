@@ -3,8 +3,8 @@
 """
 How far one model of a tree is from another: tip error over tip motion.
 
-Anything that steps and places will do: the reduced-order tree on any model, and the articulated
-truth.
+Anything that steps and places can be measured: the reduced-order tree on any model, and the
+articulated truth.
 
 """
 

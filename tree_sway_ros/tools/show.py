@@ -110,7 +110,7 @@ def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
 
 
 def stand(scene: TreeFile, count: int, fidelity: str) -> StandFile:
-    """Trees of one kind on a grid, each turned another way; on their table where it will do."""
+    """Trees of one kind on a grid, each turned another way; on their table where they have one."""
     tree = scene.tree
     low, high = tree.start.min(axis=0), tree.end.max(axis=0)
     spacing = _SPACING * float(max(*(high - low)[:2], 0.5 * tree.height))

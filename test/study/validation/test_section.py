@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A check holds between its limits and says so; a section stands in the page as Markdown."""
+"""A check holds between its limits and says so; a section is Markdown on the page."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ class Section(NamedTuple):
     table: str = ""
 
     def markdown(self) -> str:
-        """Return the section as it stands in the page."""
+        """Return the section as Markdown, with its marks."""
         parts = [f"## {self.title}\n", f"{self.text}\n"]
         head = "| check | measured | limit | |\n|---|---|---|---|"
         if self.checks:
