@@ -43,6 +43,16 @@ def measure(effort: Effort) -> Section:
             max(of.jump for of in found),
             high=1.0,
         ),
+        Check(
+            f"gap over the displacement of the moment, from {MET_AFTER:g} s on",
+            max(of.gap_of_now for of in found),
+            high=0.1,
+        ),
+        Check(
+            "move in any frame beyond the full model's, largest [mm]",
+            max(of.jump_of_any for of in found),
+            high=1.0,
+        ),
     ]
     rows = [
         [
