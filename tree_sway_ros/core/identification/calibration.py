@@ -25,6 +25,7 @@ from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TreeError
@@ -66,8 +67,8 @@ class Calibration:
 
 
 def calibrate(
-    tree: Tree,
-    species: Species,
+    tree: Tree | GrownTree,
+    species: Species | None,
     frequency: float,
     damping_ratio: float | None = None,
     settings: Settings | None = None,
@@ -78,7 +79,7 @@ def calibrate(
     Parameters
     ----------
     tree, species
-        The tree and its wood so far.
+        The tree and its wood so far; the tree's own if None.
     frequency
         Measured natural frequency in [Hz].
     damping_ratio
@@ -102,6 +103,7 @@ def calibrate(
 
     """
     within("frequency", frequency, 0.0, 1e3, "Hz", above=True)
+    tree, species = tree_and_species(tree, species)
     settings = in_season(tree, species, settings or Settings())
     model = _ScaledTree(tree, species, settings)
     found = model.swaying_at((2.0 * math.pi * frequency) ** 2)

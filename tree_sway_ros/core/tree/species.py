@@ -231,6 +231,9 @@ def species_named(key: str) -> Species:
         If no species has that key; the error lists those that exist.
 
     """
+    if not isinstance(key, str):
+        what = f"a {type(key).__name__}, where the key of a species is asked for"
+        raise SpeciesError(what, cure="give its key, as 'oak'")
     try:
         return _TABLE[key]
     except KeyError:

@@ -13,7 +13,7 @@ from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.tree.plausibility import doubts, refuse_nonsense
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -93,7 +93,7 @@ class TreeFile:
             As `make_simulator`.
 
         """
-        model = replace(settings or Settings(), **changes)
+        model = settings_with(settings, changes)
         return make_simulator(self.tree, self.species, model, tolerance=tolerance)
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
