@@ -20,11 +20,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.fidelity.estimate import Estimate, model_name
 from tree_sway_ros.core.fidelity.frame_cost import frame_cost
 from tree_sway_ros.core.fidelity.quiet_branches import quiet_sets
@@ -201,7 +200,7 @@ def _best(tree: Tree) -> tuple[str, int]:
     return ("coupled", 0) if tree.n_branches <= MOST_COUPLED else ("modes", MOST_MODES)
 
 
-def _n_coordinates(branches: Any) -> int:
+def _n_coordinates(branches: Records) -> int:
     return int(branches["n_coordinates"].sum())
 
 

@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
@@ -165,7 +164,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         return self._joined[0]
 
     @property
-    def joints(self) -> Any:
+    def joints(self) -> Records:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
         return self.bank.branches
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
@@ -174,7 +174,7 @@ class SwaySimulator(OneTree, KeepsState):
         return self.bank.frequencies[:count]
 
     @property
-    def joints(self) -> Any:
+    def joints(self) -> Records:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
         return self.bank.branches
 

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.motion.response import tip_motion
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.state.state_basis import BasisError, StateBasis
@@ -46,7 +46,7 @@ class Swaying(Protocol):
     tree: Tree
 
     @property
-    def joints(self) -> Any:
+    def joints(self) -> Records:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -147,7 +147,7 @@ def _run(
             yield simulator.rotations().copy()
 
 
-def _singular_shapes(joints: Any, runs: list[Floats]) -> tuple[Floats, Floats]:
+def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Floats]:
     """
     Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
     (m, N).
@@ -168,7 +168,7 @@ def _singular_shapes(joints: Any, runs: list[Floats]) -> tuple[Floats, Floats]:
     return np.hstack(shapes) @ mixes, tip_moments(joints, tips).T
 
 
-def tip_moments(joints: Any, forces: Floats) -> Floats:
+def tip_moments(joints: Records, forces: Floats) -> Floats:
     """
     Moments on the coordinates under forces on the tips: the transpose of `tip_motion`.
 
