@@ -3,8 +3,8 @@
 """
 The wind of the last while as a choice of model needs to know it: how its load swings, and how fast.
 
-A load goes with ``|U| U``. Of a wind that is only described its mean and covariance in the plane are
-known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral time
+A load goes with ``|U| U``. Of a wind that is only described its mean and covariance in the plane
+are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral time
 (von Karman, 1948). A wind that was measured has a spectrum of its own.
 
 """
