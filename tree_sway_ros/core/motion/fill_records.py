@@ -228,7 +228,7 @@ def _fill_shapes(model: BranchModel, record: Record) -> None:
     record["frame"] = model.beam.chord, *across(model.beam.chord)
     tip_load = _tip_load_slope(model)
     record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
-    length = model.beam.length
+    length = model.beam.segment_length
     record["skew"] = _skew(model.shape.segment_slope, length)
     record["tip_skew"] = _skew(tip_load, length)
 
@@ -245,7 +245,7 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> Non
     share = weight / total
     record["centre"] = np.einsum("sg,sgk->k", share, beam.point)
     record["couple"] = cross_matrix(record["centre"])
-    speed = float((share * speed_profile[:, None]).sum())
+    speed = float((share * speed_profile[beam.segment, None]).sum())
     record["speed"] = speed
     record["area"] = total / speed**2 if speed > 0.0 else 0.0
     along = np.einsum("sg,si,sj->ij", share, beam.tangent, beam.tangent)
@@ -485,8 +485,7 @@ def _drawn_turns(model: BranchModel) -> Floats:
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)
         return np.multiply.outer(model.shape.segment_slope, [e2, -e1]).transpose(1, 0, 2)
-    turns = [(model.beam.weight[..., None] * one.slope).sum(axis=1) for one in model.fields]
-    return np.stack(turns) / model.beam.length[:, None]
+    return np.stack([model.beam.over_segments(one.slope) for one in model.fields])
 
 
 def _skew(slope: Floats, length: Floats) -> float:
@@ -503,10 +502,10 @@ def _tip_load_slope(model: BranchModel) -> Floats:
     Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip.
 
     """
-    u = model.beam.node / model.beam.node[-1]
-    first = model.shape
+    length = model.beam.segment_length
+    u = np.concatenate([[0.0], np.cumsum(length / length.sum())])
     primitive = 1.5 * (u * u - u**3 / 3.0)
-    mean = float(first.segment_slope @ model.beam.length) / float(model.beam.node[-1])
+    mean = float(model.shape.segment_slope @ length) / float(length.sum())
     slope: Floats = mean * np.diff(primitive) / np.diff(u)
     return slope
 
