@@ -8,7 +8,6 @@ stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so
 once. The lowest w^2 rises with s and bends down, being the least of functions linear in s, with the
 slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a bracket
 keeps it off the buckling load, where w is 0.
-
 """
 
 from __future__ import annotations
@@ -137,7 +136,6 @@ class _Sway:
     """
     Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns
     most.
-
     """
 
     scale: float

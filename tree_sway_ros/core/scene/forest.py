@@ -6,7 +6,6 @@ Several trees in one wind, solved one after another and placed in one block.
 Every tree is turned and moved to where it stands once, before it is calibrated, so that no wind
 need be turned into its frame and no pose out of it. The gusts reach one tree after the other
 (`gust_travel`).
-
 """
 
 from __future__ import annotations

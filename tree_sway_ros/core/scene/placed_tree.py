@@ -77,7 +77,6 @@ class PlacedTree:
     def placed(self) -> Tree:
         """
         Return the tree where it stands, in the frame of the forest, under its name in the forest.
-
         """
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
-
 """
 
 from __future__ import annotations

@@ -6,7 +6,6 @@ A stand: thousands of trees of a few kinds in one wind.
 Trees of one kind share its model, tables and rest geometry: a tree is a state, a pose, a scale and
 the delay with which gusts reach it. All are solved in one call, on the model `wind_basis`, and
 placed only where asked for. A tree may stand still, or be solved on a model of its own.
-
 """
 
 from __future__ import annotations

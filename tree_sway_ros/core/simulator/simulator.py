@@ -169,7 +169,6 @@ class SwaySimulator(OneTree, KeepsState):
     def frequencies(self, count: int = 10) -> Floats:
         """
         Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
-
         """
         return self.bank.frequencies[:count]
 
@@ -308,7 +307,6 @@ class SwaySimulator(OneTree, KeepsState):
         """
         Moment of the last step's wind about the root node, of all branches where they stand at
         rest, in [N m], (3,).
-
         """
         couple, force = self.bank.branches["couple"], self.bank.oscillators.forces()
         moment: Floats = np.einsum("bij,bj->i", couple, force)

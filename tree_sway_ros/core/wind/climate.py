@@ -6,7 +6,6 @@ The wind of the last while as a choice of model needs to know it: how its load s
 A load goes with ``|U| U``. Of a wind that is only described its mean and covariance in the plane
 are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral time
 (von Karman, 1948). A wind that was measured has a spectrum of its own.
-
 """
 
 from __future__ import annotations
@@ -152,7 +151,6 @@ class ClimateTracker:
     def add(self, wind: Floats, dt: float) -> None:
         """
         Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step.
-
         """
         u, v, w = wind.tolist()
         speed, left = math.sqrt(u * u + v * v + w * w), min(dt, self._memory)

@@ -5,7 +5,6 @@ Write a tree for other programs: our YAML, Wavefront OBJ, glTF.
 
 YAML is exact and reads back. OBJ holds the shape at rest, one object per segment, named as in
 `Tree.segment_names`, z up as the tree. glTF sways by a skin or by morph targets; see `gltf_tree`.
-
 """
 
 from __future__ import annotations
