@@ -83,7 +83,7 @@ class Skeleton:
         Parameters
         ----------
         diameters
-            Diameter at the nodes of each shoot in [m], one (k + 1,) a shoot.
+            Diameter at the nodes of each shoot in [m], one (k + 1,) per shoot.
         name, species
             What the tree is called, and the key of its wood.
 

@@ -27,7 +27,7 @@ INSERTION_RATIO = 0.76
 
 
 def carried_length(skeleton: Skeleton) -> list[Floats]:
-    """Length of all shoots beyond each node in [m], one (k + 1,) a shoot."""
+    """Length of all shoots beyond each node in [m], one (k + 1,) per shoot."""
     shoots = skeleton.shoots
     added = [np.zeros(len(shoot.nodes)) for shoot in shoots]
     beyond: list[Floats] = [np.empty(0)] * len(shoots)
@@ -71,7 +71,7 @@ def node_diameters(
     Returns
     -------
     list
-        One (k + 1,) a shoot in [m], falling from base to tip.
+        One (k + 1,) per shoot in [m], falling from base to tip.
 
     Raises
     ------

@@ -36,7 +36,7 @@ from tree_sway_ros.core.motion.wind_basis_table import STEEPEST, WindBasisTable
 
 
 def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
-    """State of one tree on a table, and room to work in."""
+    """State of one tree on a table, and scratch."""
     m = table_layout(n_modes, n_harmonics)["stiffness"].shape[0]
     return np.dtype(
         [
@@ -50,7 +50,7 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
             ("middle", "f8", (m,)),
             ("middle_rate", "f8", (m,)),
             ("wanted", "f8", (m,)),
-            ("room", "f8", (3, m)),
+            ("scratch", "f8", (3, m)),
             ("values", "f8", (n_harmonics,)),
         ]
     )
@@ -338,7 +338,7 @@ def step_instance(
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
         energy += table.stiffness[i] * middle[i] * middle[i]
     wind_force(
-        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.room, wanted
+        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.scratch, wanted
     )
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
@@ -346,7 +346,7 @@ def step_instance(
     instance.outside = 0 if is_held or (inside and abs(z) * push <= STEEPEST * push) else 1
     if instance.outside:
         return 1
-    diagonal = instance.room[2]
+    diagonal = instance.scratch[2]
     for i in range(len(eta)):
         # Implicit in the mode's own damping: stable for any wind and step.
         own = diagonal[i] * half[5, i]

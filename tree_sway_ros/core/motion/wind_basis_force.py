@@ -99,7 +99,7 @@ def table_corners(
 @fused
 def wind_force(
     table: Record, x: float, y: float, z: float, push: float, drag: float,
-    eta: Floats, rate: Floats, values: Floats, room: Floats, force: Floats,
+    eta: Floats, rate: Floats, values: Floats, scratch: Floats, force: Floats,
 ) -> None:  # fmt: skip
     """
     Find the modal forces of an even wind.
@@ -114,7 +114,7 @@ def wind_force(
         Dynamic pressure ``p U^2`` in [kg/m/s^2] and ``p U`` in [kg/m^2/s].
     eta, rate
         Modes and their rates, (m,).
-    values, room
+    values, scratch
         Harmonics, (h,), written; and to work in, (3, m), the last of these gets the diagonal of the
         damping.
     force
@@ -125,7 +125,7 @@ def wind_force(
     fill_harmonics(x, y, z, table.degree, values)
     first, second, j, share, up, lean = table_corners(table, x, y, eta)
     a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up
-    off, damp, diagonal = room[0], room[1], room[2]
+    off, damp, diagonal = scratch[0], scratch[1], scratch[2]
     for i in range(m):
         static = (1.0 - share) * table.static[first, i] + share * table.static[second, i]
         off[i] = eta[i] - lean * static

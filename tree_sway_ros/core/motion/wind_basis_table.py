@@ -266,7 +266,7 @@ class WindBasisTable:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table["n_modes"]), table["stiffness"]
-        forces, room = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
+        forces, scratch = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
         values, rest, still = np.zeros(COUNT[degree]), np.zeros(N_REST), np.zeros(len(stiffness))
         wrong = right = 0.0
         for _ in range(_TRIALS):
@@ -277,9 +277,7 @@ class WindBasisTable:
             at = harmonics_at(side[None], degree)[0]
             eta = np.zeros(len(stiffness))
             eta[:m] = lean * (at @ table["harmonics"][:, :m]) / stiffness[:m]
-            _force(
-                self.record, wind[0], wind[1], wind[2], push, eta, still, values, room, forces, rest
-            )
+            _force(self.record, *wind, push, eta, still, values, scratch, forces, rest)
             x = self._shapes @ eta[:m] + rest @ self.rest_shapes
             true = push * self._moments(x, self._still, wind) @ self._shapes
             wrong += float((np.square(forces[:m] - true) / stiffness[:m]).sum())
@@ -327,7 +325,7 @@ def _fill(directions: Floats, degree: int, out: Floats) -> None:
 @fused
 def _force(
     tables: Records, x: float, y: float, z: float, push: float, eta: Floats, rate: Floats,
-    values: Floats, room: Floats, force: Floats, rest: Floats,
+    values: Floats, scratch: Floats, force: Floats, rest: Floats,
 ) -> None:  # fmt: skip
-    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, room, force)
+    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, scratch, force)
     wind_rest(tables[0], x, y, push, 0.0, eta, rate, values, rest)
