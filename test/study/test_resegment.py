@@ -50,20 +50,8 @@ def limbs(sketch, cuts):
     return s.tree()
 
 
-KINK = pytest.mark.xfail(
-    strict=True,
-    reason="a twist has a kink where a child sits within a segment: cut in 3 it errs by 0.1-0.3 %",
-)
-
-
-@pytest.mark.parametrize(
-    ("kind", "model"),
-    [
-        *[("one branch", model) for model in ("branch", "subtree", "coupled")],
-        ("four branches", "branch"),
-        *[pytest.param("four branches", model, marks=KINK) for model in ("subtree", "coupled")],
-    ],
-)
+@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+@pytest.mark.parametrize("kind", ["one branch", "four branches"])
 def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty, model, kind):
     # Cut in 4, so that a cut in 3 leaves the twig within a segment.
     tree = (

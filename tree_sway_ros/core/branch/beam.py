@@ -3,9 +3,11 @@
 """
 One branch as a beam: quadrature along its segments, bending by a load, slope and displacement.
 
-Each segment carries five Gauss-Legendre points, at which the diameter is known from the linear
-taper between its two ends. Integrals are taken on those points, so the result does not depend on
-how finely a branch is cut.
+A segment is one panel, or more where children sit within it. Each panel carries five
+Gauss-Legendre points, at which the diameter is known from the linear taper between the ends of the
+segment. Integrals are taken on those points, so the result does not depend on how finely a branch
+is cut; and as what a child hands over makes a step or a kink at its foot, no panel reaches across
+one.
 
 Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M
 / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
@@ -26,26 +28,19 @@ from tree_sway_ros.core.arrays import Floats, Ints
 
 N_POINTS = 5
 
+_DIGITS = 9
+"""Of places along a segment: feet that are nearer to each other, or to a node, are one."""
 
 _ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
 _POINTS = (_ROOTS + 1.0) / 2.0
 _WEIGHTS = _ROOT_WEIGHTS / 2.0
 _OTHERS = [(node, np.delete(_POINTS, i)) for i, node in enumerate(_POINTS)]
 _LAGRANGE = [Polynomial.fromroots(rest) / np.prod(node - rest) for node, rest in _OTHERS]
-_PRIMITIVES = {m: np.stack([basis.integ(m).coef for basis in _LAGRANGE]) for m in (1, 2)}
+_PRIMITIVES = np.stack([basis.integ().coef for basis in _LAGRANGE])
 
 
-def _integration_rows(places: Floats, times: int = 1) -> Floats:
-    """
-    Weights w of the integral of f from 0 to each place in 0 .. 1, taken once or twice, ``w .
-    f(points)``.
-
-    """
-    rows: Floats = places[:, None] ** np.arange(N_POINTS + times) @ _PRIMITIVES[times].T
-    return rows
-
-
-_TO_POINTS = _integration_rows(_POINTS)
+_TO_POINTS: Floats = _POINTS[:, None] ** np.arange(N_POINTS + 1) @ _PRIMITIVES.T
+"""Weights w of the integral of f from 0 to each point, ``w . f(points)``."""
 
 
 @dataclass(frozen=True)
@@ -95,28 +90,35 @@ class BranchBeam:
     ) -> None:
         """Set the quadrature points along the branch."""
         step = end - start
-        self.length = np.linalg.norm(step, axis=1)
-        self.tangent = step / self.length[:, None]
-        self.children = children
+        seats = np.round(children.segment + children.fraction, _DIGITS)
+        cuts = np.unique(np.concatenate([np.arange(len(step) + 1.0), seats]))
+        self.segment: Ints = cuts[:-1].astype(np.int64)
+        """Segment that each panel is a part of, (p,)."""
+        self.segment_length: Floats = np.linalg.norm(step, axis=1)
+        share = np.diff(cuts)
+        self.length = share * self.segment_length[self.segment]
+        """Of each panel in [m], (p,)."""
+        self.tangent = (step / self.segment_length[:, None])[self.segment]
         self.node = np.concatenate([[0.0], np.cumsum(self.length)])
         self.place = self.node[:-1, None] + self.length[:, None] * _POINTS
         self.weight = self.length[:, None] * _WEIGHTS
-        self.diameter = base_diameter[:, None] + (tip_diameter - base_diameter)[:, None] * _POINTS
-        self.point = start[:, None, :] + step[:, None, :] * _POINTS[:, None]
-        self.child_place = (
-            self.node[children.segment] + children.fraction * self.length[children.segment]
-        )
+        along = (cuts[:-1] - self.segment)[:, None] + share[:, None] * _POINTS
+        thinning = (tip_diameter - base_diameter)[self.segment, None]
+        self.diameter = base_diameter[self.segment, None] + thinning * along
+        self.point = start[self.segment, None] + step[self.segment, None] * along[..., None]
+        self.foot: Ints = np.searchsorted(cuts, seats)
+        """Node between panels that each child sits on, (c,)."""
+        self.child_place = self.node[self.foot]
         self.child_point = (
             start[children.segment] + children.fraction[:, None] * step[children.segment]
         )
-        self._child_rows = _integration_rows(children.fraction)
         chord = end[-1] - start[0]
         self.chord_length = float(np.linalg.norm(chord))
         self.chord = chord / self.chord_length if self.chord_length > 1e-9 else self.tangent[0]
         self.second_moment = np.pi / 64.0 * self.diameter**4
         """
-        Second moment of area at each point in [m^4], (m, 5); at the first, a twentieth up the first
-        segment, with the spring in series.
+        Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the first
+        panel, with the spring in series.
         """
         if root_compliance > 0.0:
             own = 1.0 / self.second_moment[0, 0] + root_compliance / self.weight[0, 0]
@@ -124,11 +126,11 @@ class BranchBeam:
 
     @property
     def area(self) -> Floats:
-        """Cross-section at each point in [m^2], (m, 5)."""
+        """Cross-section at each point in [m^2], (p, 5)."""
         return np.pi / 4.0 * self.diameter**2
 
     def integral(self, values: Floats) -> Floats:
-        """Integral over the branch of values at the points, (m, 5, ...)."""
+        """Integral over the branch of values at the points, (p, 5, ...)."""
         total: Floats = self.weight.ravel() @ values.reshape(self.weight.size, -1)
         return total.reshape(values.shape[2:])
 
@@ -139,27 +141,29 @@ class BranchBeam:
         Parameters
         ----------
         values
-            At the points, (m, 5, ...).
+            At the points, (p, 5, ...).
 
         Returns
         -------
         tuple
-            The integral up to each point (m, 5, ...), each node (m + 1, ...) and each child (c,
+            The integral up to each point (p, 5, ...), each node (p + 1, ...) and each child (c,
             ...).
 
         """
-        tail = values.shape[2:]
         flat = values.reshape(*values.shape[:2], -1)
         nodes = np.zeros((len(flat) + 1, flat.shape[2]))
         np.cumsum((self.weight[:, None, :] @ flat)[:, 0], axis=0, out=nodes[1:])
         points = nodes[:-1, None] + self.length[:, None, None] * (_TO_POINTS @ flat)
-        segment = self.children.segment
-        if len(segment) == 0:
-            none = np.zeros((0, *tail))
-            return points.reshape(values.shape), nodes.reshape(-1, *tail), none
-        within = (self._child_rows[:, None, :] @ flat[segment])[:, 0]
-        children = nodes[segment] + self.length[segment, None] * within
-        return points.reshape(values.shape), nodes.reshape(-1, *tail), children.reshape(-1, *tail)
+        at_nodes = nodes.reshape(-1, *values.shape[2:])
+        return points.reshape(values.shape), at_nodes, at_nodes[self.foot]
+
+    def over_segments(self, values: Floats) -> Floats:
+        """Mean over each segment of values at the points, (p, 5, ...), as (m, ...)."""
+        panels = np.einsum("pg,pg...->p...", self.weight, values)
+        first = np.searchsorted(self.segment, np.arange(len(self.segment_length)))
+        sums = np.add.reduceat(panels, first, axis=0)
+        mean: Floats = (sums.T / self.segment_length).T
+        return mean
 
     def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
@@ -168,14 +172,14 @@ class BranchBeam:
         Parameters
         ----------
         load
-            Load per length at the points, (m, 5).
+            Load per length at the points, (p, 5).
         force, moment
             Force and moment that each child hands over, (c,).
 
         Returns
         -------
         Floats
-            At the points, (m, 5).
+            At the points, (p, 5).
 
         """
         points, nodes, _ = self.from_base(load)
@@ -194,7 +198,7 @@ class BranchBeam:
         Parameters
         ----------
         load
-            Force per length at the points in [N/m] in each of some cases, (m, 5, k, 3).
+            Force per length at the points in [N/m] in each of some cases, (p, 5, k, 3).
         force, moment
             Force that each child hands over, and its moment about the root of the tree, both (c, k,
             3).
@@ -202,7 +206,7 @@ class BranchBeam:
         Returns
         -------
         Floats
-            Of all that acts beyond each point, about that point, (m, 5, k, 3).
+            Of all that acts beyond each point, about that point, (p, 5, k, 3).
 
         """
         point = self.point[:, :, None]
@@ -218,7 +222,7 @@ class BranchBeam:
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
         """
         Curvature by an internal moment, for a modulus of 1: bent by what acts across the branch,
-        twisted by what acts about it, both (m, 5, k, 3).
+        twisted by what acts about it, both (p, 5, k, 3).
 
         """
         along = self.tangent[:, None, None, :]
@@ -230,21 +234,12 @@ class BranchBeam:
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
         """
-        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (m,
+        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (p,
         5, c).
 
-        In the segment that a child sits on, the one has a kink and the other a step. There both are
-        projected on the polynomials that the points carry, so that a segment bends as if it were
-        cut at the child.
-
         """
-        carrying, each = self.children.segment, np.arange(len(self.children.segment))
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
-        within = (lever > 0.0).astype(np.float64)
-        twice = _integration_rows(self.children.fraction, times=2)
-        lever[carrying, :, each] = self.length[carrying, None] * twice / _WEIGHTS
-        within[carrying, :, each] = self._child_rows / _WEIGHTS
-        return lever, within
+        return lever, (lever > 0.0).astype(np.float64)
 
     def slope_shape(self, bending: Floats) -> SlopeShape:
         """
@@ -253,7 +248,7 @@ class BranchBeam:
         Parameters
         ----------
         bending
-            Bending moment at the points, (m, 5), in any unit.
+            Bending moment at the points, (p, 5), in any unit.
 
         """
         curvature = bending / self.second_moment
@@ -276,7 +271,7 @@ class SlopeShape:
     beam
         The branch.
     curvature
-        d psi / d s at the points in [1/m], (m, 5).
+        d psi / d s at the points in [1/m], (p, 5).
 
     """
 
@@ -285,8 +280,7 @@ class SlopeShape:
         self.beam = beam
         self.curvature = curvature
         self.slope, self.node_slope, self.child_slope = beam.from_base(curvature)
-        whole = (beam.weight * self.slope).sum(axis=1)
-        self.segment_slope = whole / beam.length
+        self.segment_slope = beam.over_segments(self.slope)
         self.deflection, self.node_deflection, self.child_deflection = beam.from_base(self.slope)
 
     def stiffness(self, other: SlopeShape, modulus: float) -> float:
@@ -307,7 +301,7 @@ class SlopeShape:
         Returns
         -------
         tuple
-            At the points (m, 5, 3), nodes (m + 1, 3) and children (c, 3), in [m/rad].
+            At the points (p, 5, 3), nodes (p + 1, 3) and children (c, 3), in [m/rad].
 
         """
         about = cross_matrix(rotation).T
@@ -333,7 +327,7 @@ class RotationField:
     beam
         The branch.
     curvature
-        d phi / d s at the points in [1/m], (m, 5, 3).
+        d phi / d s at the points in [1/m], (p, 5, 3).
 
     """
 
@@ -345,7 +339,7 @@ class RotationField:
         self.points, self.nodes, self.children = beam.from_base(
             cross(self.slope, beam.tangent[:, None, :])
         )
-        """Displacement in [m/rad]: points (m, 5, 3), nodes (m + 1, 3), children (c, 3)."""
+        """Displacement in [m/rad]: points (p, 5, 3), nodes (p + 1, 3), children (c, 3)."""
 
     @classmethod
     def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:

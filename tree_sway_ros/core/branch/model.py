@@ -44,9 +44,9 @@ class BranchModel:
     beam
         Its quadrature and bending.
     drag_area
-        Area that the wind meets per length at each point in [m], (m, 5).
+        Area that the wind meets per length at each point in [m], (p, 5).
     mass
-        Mass per length at each point in [kg/m], (m, 5).
+        Mass per length at each point in [kg/m], (p, 5).
     shape
         Slope per unit of its key rotation, as a plain branch is drawn.
     fields
@@ -153,7 +153,7 @@ def branch_models(
         if leaf_area is not None:
             drag_area += leaf_area[branch] / length
         if speed_profile is not None:
-            drag_area *= (speed_profile[here] ** 2)[:, None]
+            drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
         carried = sums[children if carries else children[:0]]
         richness = _richness(tree, branch, enriched)
         shape, fields = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)

@@ -119,7 +119,7 @@ def ways_to_move(
     beam
         The branch.
     drag_area, mass
-        Per length at its points in [m] and [kg/m], (m, 5).
+        Per length at its points in [m] and [kg/m], (p, 5).
     carried
         What its children hand down; none for a branch that is taken alone.
     shear_ratio
@@ -153,7 +153,7 @@ def ways_to_move(
 def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     """
     Force per length on the branch at rest, of winds from all sides along the ground, as far as it
-    is linear in the wind: per m/s of winds along x, y and z and kg/m^3 in winds of 1 m/s, (m, 5, 3,
+    is linear in the wind: per m/s of winds along x, y and z and kg/m^3 in winds of 1 m/s, (p, 5, 3,
     3), the wind first.
 
     """
@@ -175,8 +175,8 @@ _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
-    Curvatures that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do, (2, m,
-    5, 3), out of those of the three, (m, 5, 3, 3).
+    Curvatures that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do, (2, p,
+    5, 3), out of those of the three, (p, 5, 3, 3).
 
     Of all that do, these come nearest to what the three winds make of the branch (least squares, an
     upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both ways, what
@@ -254,7 +254,7 @@ def inertial_moment(
     beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
 ) -> Floats:
     """
-    Internal moment by the inertia of a field and of all that rides on it, (m, 5, 3); of all that is
+    Internal moment by the inertia of a field and of all that rides on it, (p, 5, 3); of all that is
     carried turning about the chord as one where there is no field.
 
     """

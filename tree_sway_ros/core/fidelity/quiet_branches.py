@@ -12,11 +12,10 @@ is the largest whose freezing costs no more than a given share of the motion of 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.motion.response import Complexes, base_motion, carried_to, tip_motion
 from tree_sway_ros.core.reduction.pruning import Bools, Pruning
 from tree_sway_ros.core.tree.tree import Tree
@@ -24,7 +23,11 @@ from tree_sway_ros.core.wind.climate import WindClimate
 
 
 def quiet_sets(
-    tree: Tree, branches: Any, rotations: Complexes, frequencies: Floats, shares: Sequence[float]
+    tree: Tree,
+    branches: Records,
+    rotations: Complexes,
+    frequencies: Floats,
+    shares: Sequence[float],
 ) -> list[Bools]:
     """
     Find the branches to freeze.
@@ -72,7 +75,7 @@ def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed:
     return quiet
 
 
-def _swings(tree: Tree, branches: Any, rotations: Complexes) -> tuple[Floats, float]:
+def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats, float]:
     """
     Sum over the tips of each subtree of the squared displacement from its base, (b,), and that of
     all tips from the ground.
@@ -91,8 +94,6 @@ def _swings(tree: Tree, branches: Any, rotations: Complexes) -> tuple[Floats, fl
 def _weights(frequencies: Floats) -> Floats:
     """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side, (f,)."""
     climate = WindClimate.steady(1.0, 0.2)
-    density = climate.spectrum(frequencies) * np.trace(climate.covariance)
-    steps = np.diff(frequencies)
-    weights = 0.5 * density * (np.append(steps, 0.0) + np.insert(steps, 0, 0.0))
+    weights: Floats = np.trace(climate.power(frequencies), axis1=1, axis2=2)
     weights[0] += np.square(climate.mean).sum()
-    return np.asarray(weights, dtype=np.float64)
+    return weights

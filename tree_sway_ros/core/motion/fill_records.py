@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import math
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Record, Records
 from tree_sway_ros.core.branch.beam import cross, cross_matrix
 from tree_sway_ros.core.branch.model import BranchModel
 from tree_sway_ros.core.branch.shapes import across, exposure
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from tree_sway_ros.core.reduction.pruning import Pruning
 
 
-def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
+def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
     """
     Fill what placing needs to know of each segment.
 
@@ -68,7 +69,7 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Any:
     return records
 
 
-def turns_of_segments(branch: Any, segments: Any) -> Floats:
+def turns_of_segments(branch: np.void, segments: Records) -> Floats:
     """
     Rotation vector of each segment of a branch per unit of each coordinate, as placing draws it,
     (m, k, 3).
@@ -90,7 +91,7 @@ def turns_of_segments(branch: Any, segments: Any) -> Floats:
     return np.multiply.outer(slope, np.stack([e2, -e1]))
 
 
-def head_records(branches: Any, segments: Any) -> Any:
+def head_records(branches: Records, segments: Records) -> Records:
     """
     Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
 
@@ -125,7 +126,7 @@ _AS_ONE = 1e-12
 """Share of a chord by which a segment may miss it and still reach from its start to its end."""
 
 
-def _joined(segments: Any) -> Any:
+def _joined(segments: Records) -> NDArray[np.bool_]:
     """Tell chords in each segment's own frame, and of which records they run along its x axis."""
     w, x, y, z = np.moveaxis(segments["rest"], 1, 0)
     reach = _rotated(w, -x, -y, -z, *np.moveaxis(segments["chord"], 1, 0))
@@ -133,7 +134,7 @@ def _joined(segments: Any) -> Any:
     return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
 
 
-def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Any, Any, int]:
+def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Ints, Ints, int]:
     """
     Give each branch a lane of a block: parents in earlier blocks, long branches together, so that
     few lanes stay empty.
@@ -167,7 +168,7 @@ def branch_records(
     reduction: Reduction,
     speed_profile: Floats,
     layout: np.dtype[np.void] | None = None,
-) -> Any:
+) -> Records:
     """
     All that stepping and placing know of the branches.
 
@@ -209,7 +210,7 @@ def branch_records(
     return records
 
 
-def _fill_arms(tree: Tree, records: Any) -> None:
+def _fill_arms(tree: Tree, records: Records) -> None:
     """Fill where bases are at rest."""
     base = tree.start[tree.branch_first[:-1]] - tree.start[0]
     arm = base - base[np.maximum(tree.branch_parent, 0)]
@@ -218,7 +219,7 @@ def _fill_arms(tree: Tree, records: Any) -> None:
     records["per_arm"] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
 
 
-def _fill_shapes(model: BranchModel, record: Any) -> None:
+def _fill_shapes(model: BranchModel, record: Record) -> None:
     """Fill what bends."""
     record["n_coordinates"] = len(model.fields)
     for i, (field, turn) in enumerate(zip(model.fields, _drawn_turns(model), strict=True)):
@@ -227,7 +228,7 @@ def _fill_shapes(model: BranchModel, record: Any) -> None:
     record["frame"] = model.beam.chord, *across(model.beam.chord)
     tip_load = _tip_load_slope(model)
     record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
-    length = model.beam.length
+    length = model.beam.segment_length
     record["skew"] = _skew(model.shape.segment_slope, length)
     record["tip_skew"] = _skew(tip_load, length)
 
@@ -236,7 +237,7 @@ _STRAIGHT = 0.03
 """Share of the wind along a branch below which this is not told apart from none."""
 
 
-def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
+def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> None:
     """Fill what the wind load reads; wind speed at its segments over that at the anemometer."""
     beam = model.beam
     weight = model.drag_area * beam.weight
@@ -244,7 +245,7 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Any) -> None:
     share = weight / total
     record["centre"] = np.einsum("sg,sgk->k", share, beam.point)
     record["couple"] = cross_matrix(record["centre"])
-    speed = float((share * speed_profile[:, None]).sum())
+    speed = float((share * speed_profile[beam.segment, None]).sum())
     record["speed"] = speed
     record["area"] = total / speed**2 if speed > 0.0 else 0.0
     along = np.einsum("sg,si,sj->ij", share, beam.tangent, beam.tangent)
@@ -284,7 +285,7 @@ def _cubes(squares: Floats) -> Floats:
     return cubes
 
 
-def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
+def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
     """
     Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
     all winds, push and couple (least squares).
@@ -310,7 +311,7 @@ def _fit_load(model: BranchModel, share: Floats, record: Any) -> None:
     record["push"][:k] += (fit @ (pushed - force @ record["push"][:k].T)).T
 
 
-def _fill_flow(record: Any, mean: Floats, square: float, cube: float) -> None:
+def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None:
     """
     Scale the mean displacement across the branch to that at which drag damps, so that what the
     drag on it does is the mean square of the displacement: both axes of the first shape as one, so
@@ -328,7 +329,7 @@ def _fill_flow(record: Any, mean: Floats, square: float, cube: float) -> None:
     record["lever"] = math.sqrt(0.5 * across)
 
 
-def _fill_axial_levers(records: Any) -> None:
+def _fill_axial_levers(records: Records) -> None:
     """
     Find how far up the parent's chord each subtree's centre of load swings: its displacement across
     per unit of rotation.
@@ -346,7 +347,7 @@ def _fill_axial_levers(records: Any) -> None:
         moment[parent] += moment[b]
 
 
-def copy_twigs(records: Any, source: Ints) -> None:
+def copy_twigs(records: Records, source: Ints) -> None:
     """
     Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
 
@@ -362,7 +363,7 @@ def copy_twigs(records: Any, source: Ints) -> None:
     records["frame"] = records["frame"][source]
 
 
-def moving_records(pruning: Pruning, whole: Any) -> Any:
+def moving_records(pruning: Pruning, whole: Records) -> Records:
     """
     Keep the records of the moving branches, with the load of what they now carry as part of
     themselves.
@@ -394,7 +395,7 @@ def moving_records(pruning: Pruning, whole: Any) -> Any:
     return records
 
 
-def _join_loads(record: Any, own: Any, loads: Any, twists: Floats) -> None:
+def _join_loads(record: Record, own: Record, loads: Records, twists: Floats) -> None:
     """
     Make loads that a branch carries part of its own.
 
@@ -484,8 +485,7 @@ def _drawn_turns(model: BranchModel) -> Floats:
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)
         return np.multiply.outer(model.shape.segment_slope, [e2, -e1]).transpose(1, 0, 2)
-    turns = [(model.beam.weight[..., None] * one.slope).sum(axis=1) for one in model.fields]
-    return np.stack(turns) / model.beam.length[:, None]
+    return np.stack([model.beam.over_segments(one.slope) for one in model.fields])
 
 
 def _skew(slope: Floats, length: Floats) -> float:
@@ -502,15 +502,15 @@ def _tip_load_slope(model: BranchModel) -> Floats:
     Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip.
 
     """
-    u = model.beam.node / model.beam.node[-1]
-    first = model.shape
+    length = model.beam.segment_length
+    u = np.concatenate([[0.0], np.cumsum(length / length.sum())])
     primitive = 1.5 * (u * u - u**3 / 3.0)
-    mean = float(first.segment_slope @ model.beam.length) / float(model.beam.node[-1])
+    mean = float(model.shape.segment_slope @ length) / float(length.sum())
     slope: Floats = mean * np.diff(primitive) / np.diff(u)
     return slope
 
 
-def load_records(branches: Any, layout: np.dtype[np.void] | None = None) -> Any:
+def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
     """
     Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time.
 

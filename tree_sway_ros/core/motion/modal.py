@@ -17,12 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.branch.beam import cross_matrix
 from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.fill_records import load_records
@@ -60,7 +59,7 @@ class ModalBank:
 
     def __init__(
         self,
-        branches: Any,
+        branches: Records,
         reduction: Reduction,
         modes: Modes,
         damping_ratio: float,
@@ -88,7 +87,7 @@ class ModalBank:
         self.whole, self.half = np.zeros((2, m, 8))
 
     @property
-    def loads(self) -> Any:
+    def loads(self) -> Records:
         """Records of `load_fields`."""
         return self._loads
 
@@ -195,7 +194,7 @@ class ModalBank:
         self._loads["slip"] = 0.0
 
 
-def _participation(branches: Any, shapes: Floats) -> Floats:
+def _participation(branches: Records, shapes: Floats) -> Floats:
     """Mean over three directions of the squared motion of each load centre in each mode, (b, m)."""
     m = shapes.shape[1]
     motion = np.zeros((len(branches), 6, m))
@@ -249,7 +248,7 @@ def _to_middle(
 
 @fused
 def wind_moments(
-    branches: Any, work: Any, loads: Any, x: Floats, v: Floats, moment: Floats,
+    branches: Records, work: Records, loads: Records, x: Floats, v: Floats, moment: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """
@@ -278,7 +277,7 @@ def wind_moments(
 
 @fused
 def _advance(
-    branches: Any, work: Any, loads: Any, modal: Floats, state: Floats, shapes: Floats,
+    branches: Records, work: Records, loads: Records, modal: Floats, state: Floats, shapes: Floats,
     held: Floats, flexibility: Floats, limit: Floats, whole: Floats, half: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip

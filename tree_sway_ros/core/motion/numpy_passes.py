@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.motion.numpy_rotation import cayley_turned, cross
 from tree_sway_ros.core.motion.records import LANES
 
@@ -31,13 +31,13 @@ class NumpyPasses:
 
     """
 
-    def __init__(self, branches: Any) -> None:
+    def __init__(self, branches: Records) -> None:
         """Take over columns, and sort the branches by level."""
         names = (
             "parent", "source", "twist", "centre", "flow", "turn", "push", "lever", "speed",
             "base", "arm", "per_arm",
         )  # fmt: skip
-        self._of: dict[str, Any] = {
+        self._of: dict[str, NDArray[Any]] = {
             name: np.ascontiguousarray(branches[name])
             for name in (*names, "spread", "area", "axial_lever", "frame", "couple")
         }
@@ -131,7 +131,7 @@ class NumpyPasses:
         moment[self._column[self.is_there]] = own[self.is_there]
 
 
-def even_wind_moments(branches: Any, n_coordinates: int, *, carries: bool = True) -> Floats:
+def even_wind_moments(branches: Records, n_coordinates: int, *, carries: bool = True) -> Floats:
     """
     Moments of an even wind of 1 m/s and 1 kg/m^3, along x and along y, on the tree at rest.
 
@@ -188,7 +188,7 @@ def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
     field[block, ..., lane] = rows
 
 
-def mean_wind_moments(branches: Any, n_coordinates: int) -> Floats:
+def mean_wind_moments(branches: Records, n_coordinates: int) -> Floats:
     """
     Moments of winds from all sides, as far as they are linear in the wind: those along x and y then
     stand for any between.

@@ -13,8 +13,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.motion.numpy_passes import NumpyPasses
 from tree_sway_ros.core.motion.numpy_rotation import (
     quaternion_product,
@@ -39,10 +40,10 @@ class NumpyPlacing:
 
     """
 
-    def __init__(self, branches: Any, segments: Any, frozen: RigidParts | None) -> None:
+    def __init__(self, branches: Records, segments: Records, frozen: RigidParts | None) -> None:
         """Lay out the segments in the order of the branches."""
         names = ("parent", "skew", "tip_skew", "offset")
-        self._branch: dict[str, Any] = {name: branches[name].copy() for name in names}
+        self._branch: dict[str, NDArray[Any]] = {name: branches[name].copy() for name in names}
         self._branch["base_turn"] = branches["twist"][:, :, 3:].copy()
         self._frozen, self._passes = frozen, NumpyPasses(branches)
         counts = branches["end"] - branches["first"]
@@ -51,7 +52,7 @@ class NumpyPlacing:
         rank = np.arange(int(counts.sum())) - begin[self._owner]
         self._begin, self._rows = begin, branches["first"][self._owner] + rank
         at, lane = branches["block"][self._owner] + rank, branches["lane"][self._owner]
-        self._segment: dict[str, Any] = {
+        self._segment: dict[str, NDArray[Any]] = {
             name: segments[name][at, ..., lane] for name in ("slope", "tip_slope", "chord", "rest")
         }
         # x turns about e2 and y about -e1.

@@ -20,11 +20,9 @@ stands at its segment's root-side node, its x axis runs along the segment (REP-1
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.lanes import put_four, take_four
 from tree_sway_ros.core.motion.records import LANES
@@ -47,7 +45,8 @@ _STRETCH_TO = np.deg2rad(90.0) ** 2
 
 @fused
 def place(
-    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, origin: Floats, out: Floats
+    branches: Records, segments: Records, heads: Records, work: Records,
+    x: Floats, origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """
     Place every segment.
@@ -72,7 +71,7 @@ def place(
 
 @fused
 def place_standing_at(
-    branches: Any, segments: Any, heads: Any, work: Any, x: Floats,
+    branches: Records, segments: Records, heads: Records, work: Records, x: Floats,
     east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -118,7 +117,7 @@ def place_standing_at(
 
 
 @fused
-def turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
+def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
     Rotation of a place on a branch.
 
@@ -151,7 +150,7 @@ def turn_at(parent: Any, turns: Floats, x: Floats) -> tuple[float, float, float,
 
 @fused
 def _read_parents(
-    branches: Any, head: Any, scratch: Any, work: Any, x: Floats,
+    branches: Records, head: Record, scratch: Record, work: Records, x: Floats,
     east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
@@ -200,7 +199,7 @@ def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> N
 
 
 @fused
-def _turn_on_parents(head: Any, scratch: Any) -> None:
+def _turn_on_parents(head: Record, scratch: Record) -> None:
     """Find how sixteen branches are turned from the bases of their parents, by half the vector."""
     key, per, turned = scratch.parent_key, head.base_turn, scratch.carrier_turn
     if head.n_parent_rows == 2:
@@ -227,7 +226,7 @@ def _turn_on_parents(head: Any, scratch: Any) -> None:
 
 
 @fused
-def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
+def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
@@ -276,7 +275,7 @@ def _turn_bases(head: Any, scratch: Any, scale: float) -> None:
 
 
 @fused
-def _write_bases(head: Any, scratch: Any, work: Any) -> float:
+def _write_bases(head: Record, scratch: Record, work: Records) -> float:
     """
     Leave for the children how their parents are turned; return a bound on the square of half the
     angle that any segment turns by.
@@ -304,7 +303,7 @@ def _write_bases(head: Any, scratch: Any, work: Any) -> float:
 
 
 @fused
-def _set_further_keys(branches: Any, head: Any, scratch: Any, x: Floats) -> float:
+def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Floats) -> float:
     """Set the further coordinates; return as `_write_bases`, of the branches that have them."""
     farthest, half_key = 0.0, scratch.half_key
     half_key[2:] = 0.0
@@ -340,7 +339,7 @@ def _write_poses(head: Any, scratch: Any, rank: int, n_lanes: int, out: Floats) 
 
 
 @inlined
-def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, float]:
+def _half_vector(segment: Record, scratch: Record, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
     far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
@@ -353,7 +352,9 @@ def _half_vector(segment: Any, scratch: Any, j: int) -> tuple[float, float, floa
 
 
 @inlined
-def _turn(segment: Any, scratch: Any, j: int, qw: float, qx: float, qy: float, qz: float) -> None:
+def _turn(
+    segment: Record, scratch: Record, j: int, qw: float, qx: float, qy: float, qz: float
+) -> None:
     """Turn the segment of the lane j from rest."""
     rest, pose = segment.rest, scratch.pose
     pose[6, j], pose[3, j], pose[4, j], pose[5, j] = product(
@@ -362,7 +363,7 @@ def _turn(segment: Any, scratch: Any, j: int, qw: float, qx: float, qy: float, q
 
 
 @fused
-def _join(segment: Any, scratch: Any, scale: float) -> None:
+def _join(segment: Record, scratch: Record, scale: float) -> None:
     """Put sixteen turned segments at the ends of those before them, and find their own ends."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
     for j in range(LANES):
@@ -376,7 +377,7 @@ def _join(segment: Any, scratch: Any, scale: float) -> None:
 
 
 @fused
-def _join_gaps(segment: Any, scratch: Any, scale: float) -> None:
+def _join_gaps(segment: Record, scratch: Record, scale: float) -> None:
     """Do the same where the next segment does not start at this one's end."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
     for j in range(LANES):
@@ -391,7 +392,7 @@ def _join_gaps(segment: Any, scratch: Any, scale: float) -> None:
 
 
 @fused
-def _bend_in_plane(segment: Any, scratch: Any, is_near: bool) -> None:
+def _bend_in_plane(segment: Record, scratch: Record, is_near: bool) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
     slope, base, swing = segment.slope, scratch.base, scratch.swing
     for j in range(LANES):
@@ -410,7 +411,7 @@ def _bend_in_plane(segment: Any, scratch: Any, is_near: bool) -> None:
 
 
 @fused
-def _bend(segment: Any, scratch: Any) -> None:
+def _bend(segment: Record, scratch: Record) -> None:
     """Turn sixteen segments of branches with further coordinates."""
     base = scratch.base
     for j in range(LANES):
@@ -422,7 +423,7 @@ def _bend(segment: Any, scratch: Any) -> None:
 
 
 @fused
-def _bend_far(segment: Any, scratch: Any, n_rows: int) -> None:
+def _bend_far(segment: Record, scratch: Record, n_rows: int) -> None:
     """Turn sixteen segments, some of a branch that bends beyond the series."""
     base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):

@@ -25,6 +25,7 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Records
 from tree_sway_ros.core.branch.shapes import MAX_COORDINATES
 
 
@@ -105,7 +106,7 @@ def _whole_lines(fields: list[tuple[Any, ...]]) -> np.dtype[np.void]:
     )
 
 
-def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Any:
+def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Records:
     """Return so many records of zeros that begin where a cache line does."""
     memory = np.zeros(count * layout.itemsize + _LINE, dtype=np.uint8)
     first = -memory.ctypes.data % _LINE

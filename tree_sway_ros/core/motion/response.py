@@ -20,7 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.motion.numpy_passes import even_wind_moments
 
 Complexes = NDArray[np.complex128]
@@ -29,7 +29,7 @@ Complexes = NDArray[np.complex128]
 class Responding(Protocol):
     """Oscillators whose steady answer to a swinging moment is known."""
 
-    branches: Any
+    branches: Records
     carries: bool
     is_tabled: bool
 
@@ -61,7 +61,7 @@ def key_response(oscillators: Responding, n_coordinates: int, frequencies: Float
     return oscillators.response(moments, 2.0 * np.pi * np.asarray(frequencies))
 
 
-def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
+def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """
     Join small rotations from the root to motions of the tips.
 
@@ -84,7 +84,7 @@ def tip_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
     return tips
 
 
-def _moved(branches: Any, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
+def _moved(branches: Records, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
     """Rotations (k, c, ...) of those branches (k,) that have as many coordinates, c."""
     for count in np.unique(branches["n_coordinates"]):
         rows = np.flatnonzero(branches["n_coordinates"] == count)
@@ -98,7 +98,7 @@ def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
     return moved.reshape(len(twists), twists.shape[2], *rotations.shape[2:])
 
 
-def base_motion(branches: Any, rotations: NDArray[Any]) -> NDArray[Any]:
+def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """
     Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6,
     ...).

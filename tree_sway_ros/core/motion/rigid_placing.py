@@ -11,11 +11,10 @@ segment keeps its place and orientation relative to the base.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.placing import turn_at
 from tree_sway_ros.core.reduction.pruning import Pruning
@@ -50,7 +49,7 @@ class RigidParts:
     rest: Floats
 
     @staticmethod
-    def of(pruning: Pruning, branches: Any) -> RigidParts:
+    def of(pruning: Pruning, branches: Records) -> RigidParts:
         """
         Lay out the frozen subtrees of a tree.
 
@@ -77,7 +76,7 @@ class RigidParts:
             tree.rest_frame,
         )
 
-    def place(self, branches: Any, work: Any, x: Floats, out: Floats) -> None:
+    def place(self, branches: Records, work: Records, x: Floats, out: Floats) -> None:
         """
         Place the frozen segments, once the moving ones are.
 
@@ -100,7 +99,7 @@ class RigidParts:
 @fused
 def _place(
     parents: Ints, rows: Ints, base_turn: Floats, offset: Floats, arm: Floats, rest: Floats,
-    branches: Any, work: Any, x: Floats, out: Floats,
+    branches: Records, work: Records, x: Floats, out: Floats,
 ) -> None:  # fmt: skip
     for t in range(len(parents)):
         on, below = rows[t, 0], work[parents[t]].base

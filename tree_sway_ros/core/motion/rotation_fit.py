@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.fill_records import turns_of_segments
 from tree_sway_ros.core.motion.placing import turn_at
@@ -40,7 +40,7 @@ class RotationFit:
 
     """
 
-    def __init__(self, tree: Tree, branches: Any, segments: Any) -> None:
+    def __init__(self, tree: Tree, branches: Records, segments: Records) -> None:
         """Invert the shapes of every branch."""
         self._branches = branches
         self._rest = tree.rest_frame
@@ -66,7 +66,7 @@ class RotationFit:
 
 @fused
 def _fit(
-    branches: Any, inverse: Floats, rest: Floats, poses: Floats, bases: Floats, x: Floats
+    branches: Records, inverse: Floats, rest: Floats, poses: Floats, bases: Floats, x: Floats
 ) -> None:
     x[:] = 0.0
     for b in range(len(branches)):
@@ -96,7 +96,7 @@ def _fit(
             x[i], x[i + 1] = ux / stretch, uy / stretch
 
 
-def coordinates_within(branches: Any, moving: Ints, whole: Any) -> Any:
+def coordinates_within(branches: Records, moving: Ints, whole: Records) -> Any:
     """
     Lay the coordinates of a part of a tree out among those of the whole, sparse (N, M).
 

@@ -14,11 +14,10 @@ but that the speed is that at its own height.)
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.placing import place_standing_at
@@ -46,7 +45,12 @@ _pressure = inlined(pressure)
 
 @fused
 def step_standing(
-    tables: Any, paces: Any, standing: Any, instances: Any, drag_laws: Floats, winds: Floats
+    tables: Records,
+    paces: Records,
+    standing: Records,
+    instances: Records,
+    drag_laws: Floats,
+    winds: Floats,
 ) -> tuple[int, int]:
     """
     Step every tree that is not still.
@@ -109,7 +113,7 @@ def step_standing(
 
 
 @fused
-def find_rests(tables: Any, standing: Any, instances: Any, which: Ints) -> None:
+def find_rests(tables: Records, standing: Records, instances: Records, which: Ints) -> None:
     """Write the static rest of some trees; arrays as of `step_standing`."""
     for t in which:
         find_rest(tables[standing[t].kind], instances[t])
@@ -117,8 +121,8 @@ def find_rests(tables: Any, standing: Any, instances: Any, which: Ints) -> None:
 
 @fused
 def place_standing(
-    tables: Any, standing: Any, instances: Any, which: Ints, shapes: Floats,
-    branches: Any, segments: Any, heads: Any, work: Any, x: Floats, poses: Floats,
+    tables: Records, standing: Records, instances: Records, which: Ints, shapes: Floats,
+    branches: Records, segments: Records, heads: Records, work: Records, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """

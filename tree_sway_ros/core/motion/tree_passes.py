@@ -11,9 +11,7 @@ branch adds up force and moment of all it carries.
 
 from __future__ import annotations
 
-from typing import Any
-
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import fused, kernel
 from tree_sway_ros.core.motion.drag import drag
 from tree_sway_ros.core.motion.records import LANES
@@ -21,7 +19,7 @@ from tree_sway_ros.core.rotation import turned
 
 
 @fused
-def outward_pass(branches: Any, work: Any, x: Floats, v: Floats) -> None:
+def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None:
     """
     Hand rotation and velocity of every parent to the bases of its children.
 
@@ -61,7 +59,7 @@ def outward_pass(branches: Any, work: Any, x: Floats, v: Floats) -> None:
 
 
 @kernel
-def blow(loads: Any, apart: Floats) -> None:
+def set_gusts(loads: Records, apart: Floats) -> None:
     """Give every branch the wind of its delay: by how much it differs from the tree's (d, 3)."""
     for block in range(len(loads)):
         here = loads[block]
@@ -73,7 +71,7 @@ def blow(loads: Any, apart: Floats) -> None:
 
 @fused
 def wind_forces(
-    branches: Any, work: Any, loads: Any, carries: bool,
+    branches: Records, work: Records, loads: Records, carries: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """
@@ -115,7 +113,7 @@ def wind_forces(
 
 
 @fused
-def _move_loads(loads: Any) -> None:
+def _move_loads(loads: Record) -> None:
     """Set how the loads of sixteen branches move and are turned, half a step on."""
     velocity, centre, base, flow, lean = (
         loads.velocity, loads.centre, loads.base, loads.flow, loads.turn,
@@ -139,7 +137,7 @@ def _move_loads(loads: Any) -> None:
 
 
 @fused
-def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
+def _drag_forces(loads: Record, wx: float, wy: float, wz: float, per_speed_squared: float) -> None:
     """Find the force on sixteen branches, drag in the frame of each as it is turned."""
     speed, motion, turn, base, slip, gust = (
         loads.speed, loads.motion, loads.turned, loads.base, loads.slip, loads.gust,
@@ -171,7 +169,7 @@ def _drag_forces(loads: Any, wx: float, wy: float, wz: float, per_speed_squared:
 
 
 @fused
-def _copy_force(here: Any, j: int, loads: Any, source: int) -> None:
+def _copy_force(here: Record, j: int, loads: Records, source: int) -> None:
     """Give a branch that copies the force on its source."""
     force, base, into = loads[source // LANES].force, here.base, here.turned_force
     fx, fy, fz = force[0, source % LANES], force[1, source % LANES], force[2, source % LANES]
@@ -181,7 +179,7 @@ def _copy_force(here: Any, j: int, loads: Any, source: int) -> None:
 
 @fused
 def generalised_loads(
-    branches: Any, work: Any, loads: Any, carries: bool, moment: Floats, pull: Floats
+    branches: Records, work: Records, loads: Records, carries: bool, moment: Floats, pull: Floats
 ) -> None:
     """
     Turn forces into moments on the key rotations.
@@ -213,7 +211,7 @@ def generalised_loads(
 
 
 @fused
-def _own_loads(loads: Any) -> None:
+def _own_loads(loads: Record) -> None:
     """Turn the wind's own forces on sixteen branches into loads on their coordinates."""
     force, push, along, load = loads.turned_force, loads.push, loads.along, loads.load
     for j in range(LANES):
@@ -228,7 +226,7 @@ def _own_loads(loads: Any) -> None:
 
 
 @fused
-def inward_pass(branches: Any, work: Any) -> None:
+def inward_pass(branches: Records, work: Records) -> None:
     """
     Add up, from the twigs to the stem, force and moment about the root of all that each branch
     carries.
@@ -249,7 +247,7 @@ def inward_pass(branches: Any, work: Any) -> None:
 
 
 @fused
-def _add_carried_loads(branches: Any, work: Any, moment: Floats, pull: Floats) -> None:
+def _add_carried_loads(branches: Records, work: Records, moment: Floats, pull: Floats) -> None:
     """Add to moments and pulls, as of `generalised_loads`, those of all that a branch carries."""
     for b in range(1, len(branches)):
         branch, wrench = branches[b], work[b].wrench
@@ -266,7 +264,7 @@ def _add_carried_loads(branches: Any, work: Any, moment: Floats, pull: Floats) -
 
 
 @fused
-def bent_loads(branches: Any, work: Any, loads: Any, moment: Floats) -> None:
+def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats) -> None:
     """
     Turn forces into moments on the coordinates of a tree as it is bent and turned.
 
@@ -321,7 +319,7 @@ def bent_loads(branches: Any, work: Any, loads: Any, moment: Floats) -> None:
 
 
 @fused
-def _turned_loads(loads: Any) -> None:
+def _turned_loads(loads: Record) -> None:
     """
     Turn the wind's own forces on sixteen branches into loads on their coordinates and moments about
     their bases.

@@ -17,12 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.fill_records import load_records
 from tree_sway_ros.core.motion.records import LANES, OSCILLATORS, WORK
@@ -54,7 +53,7 @@ class UncoupledBank:
 
     def __init__(
         self,
-        branches: Any,
+        branches: Records,
         inertia: Floats,
         damping: Floats,
         stiffness: Floats,
@@ -73,7 +72,7 @@ class UncoupledBank:
         self._banks = load_records(branches, OSCILLATORS)
 
     @property
-    def loads(self) -> Any:
+    def loads(self) -> Records:
         """Records of `load_fields`, and what the oscillators add."""
         return self._banks
 
@@ -161,7 +160,7 @@ class UncoupledBank:
 
 @fused
 def _advance(
-    branches: Any, work: Any, banks: Any, state: Floats, pull: Floats, carries: bool,
+    branches: Records, work: Records, banks: Records, state: Floats, pull: Floats, carries: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     x, v, moment, middle_x, middle_v = state[0], state[1], state[2], state[3], state[4]
@@ -198,7 +197,7 @@ def _advance(
 
 
 @fused
-def _to_middle(bank: Any) -> None:
+def _to_middle(bank: Record) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
@@ -211,7 +210,7 @@ def _to_middle(bank: Any) -> None:
 
 
 @fused
-def _step(bank: Any) -> int:
+def _step(bank: Record) -> int:
     """Step sixteen branches; return how many loads were held."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
     is_solved, held = bank.is_solved, 0

@@ -15,12 +15,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import entry_of, fused, inlined
 from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
@@ -78,7 +77,7 @@ class WindBasisBank:
 
     carries = True
     is_tabled = True
-    loads: Any | None = None
+    loads: Records | None = None
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
         """Stand at rest."""
@@ -129,7 +128,7 @@ class WindBasisBank:
         arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
 
-    def placing(self, segments: Any, heads: Any) -> Callable[[Floats, Floats], None]:
+    def placing(self, segments: Records, heads: Records) -> Callable[[Floats, Floats], None]:
         """Return the placing of the state as one compiled call, of a root node and a pose block."""
         arrays = (
             self.record, self.instance, self.all_shapes, self._x,
@@ -182,7 +181,7 @@ class WindBasisBank:
         self.modal.reset()
 
 
-def fill_pace(pace: Any, modal: ModalBank) -> None:
+def fill_pace(pace: np.void, modal: ModalBank) -> None:
     """Take the coefficients of a time step over into a record of `pace_layout`."""
     m = modal.shapes.shape[1]
     pace["whole"], pace["half"] = 0.0, 0.0
@@ -194,7 +193,7 @@ def fill_pace(pace: Any, modal: ModalBank) -> None:
     )  # fmt: skip
 
 
-def step_outside(instance: Any, modal: ModalBank, shapes: Floats, rotations: Floats) -> int:
+def step_outside(instance: Record, modal: ModalBank, shapes: Floats, rotations: Floats) -> int:
     """
     Step a tree that is outside of its table on the loads of its branches.
 
@@ -228,7 +227,7 @@ def step_outside(instance: Any, modal: ModalBank, shapes: Floats, rotations: Flo
 
 
 @fused
-def find_rest(table: Any, instance: Any) -> None:
+def find_rest(table: Record, instance: Record) -> None:
     """Write the static rest of an instance, as of `expand`, in the wind of its last step."""
     if not instance.outside:
         wx, wy, wz = instance.wind[0], instance.wind[1], instance.wind[2]
@@ -243,7 +242,7 @@ def find_rest(table: Any, instance: Any) -> None:
 
 
 @fused
-def expand(table: Any, instance: Any, shapes: Floats, x: Floats) -> None:
+def expand(table: Record, instance: Record, shapes: Floats, x: Floats) -> None:
     """
     Key rotations of an instance: by its modes and by its static rest.
 
@@ -283,8 +282,9 @@ def _add_four(shapes: Floats, row: int, amounts: Floats, k: int, x: Floats) -> N
 
 @fused
 def place_one(
-    tables: Any, instances: Any, shapes: Floats, x: Floats, branches: Any, segments: Any,
-    heads: Any, work: Any, origin: Floats, out: Floats,
+    tables: Records, instances: Records, shapes: Floats, x: Floats,
+    branches: Records, segments: Records, heads: Records, work: Records,
+    origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """Do what `expand` does for the first record of each array, then what `place` does."""
     expand(tables[0], instances[0], shapes, x)
@@ -292,14 +292,14 @@ def place_one(
 
 
 @fused
-def expand_one(tables: Any, instances: Any, shapes: Floats, x: Floats) -> None:
+def expand_one(tables: Records, instances: Records, shapes: Floats, x: Floats) -> None:
     """Do what `expand` does, for the first record of each array."""
     expand(tables[0], instances[0], shapes, x)
 
 
 @fused
 def step_instance(
-    table: Any, pace: Any, instance: Any, is_held: bool,
+    table: Record, pace: Record, instance: Record, is_held: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     """
@@ -360,7 +360,7 @@ def step_instance(
 
 @fused
 def _advance(
-    tables: Any, paces: Any, instances: Any,
+    tables: Records, paces: Records, instances: Records,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     return step_instance(tables[0], paces[0], instances[0], False, wx, wy, wz, per_speed_squared)
@@ -368,7 +368,7 @@ def _advance(
 
 @fused
 def step_in_wind(
-    tables: Any, paces: Any, instances: Any, limits: Floats, kept: Floats,
+    tables: Records, paces: Records, instances: Records, limits: Floats, kept: Floats,
     x: float, y: float, z: float,
 ) -> int:  # fmt: skip
     """

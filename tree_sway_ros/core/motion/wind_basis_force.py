@@ -6,11 +6,10 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Record
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.harmonics import fill_harmonics
 
@@ -69,7 +68,7 @@ def pace_layout(n_modes: int) -> np.dtype[np.void]:
 
 @inlined
 def table_corners(
-    table: Any, x: float, y: float, eta: Floats
+    table: Record, x: float, y: float, eta: Floats
 ) -> tuple[int, int, int, float, float, float]:
     """
     Where a wind and a lean are in a table.
@@ -99,7 +98,7 @@ def table_corners(
 
 @fused
 def wind_force(
-    table: Any, x: float, y: float, z: float, push: float, drag: float,
+    table: Record, x: float, y: float, z: float, push: float, drag: float,
     eta: Floats, rate: Floats, values: Floats, room: Floats, force: Floats,
 ) -> None:  # fmt: skip
     """
@@ -163,7 +162,7 @@ def wind_force(
 
 @fused
 def wind_rest(
-    table: Any, x: float, y: float, push: float, drag: float,
+    table: Record, x: float, y: float, push: float, drag: float,
     eta: Floats, rate: Floats, values: Floats, rest: Floats,
 ) -> None:  # fmt: skip
     """

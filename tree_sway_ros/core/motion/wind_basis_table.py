@@ -24,11 +24,12 @@ with V the few shapes that the static rest of the modes left out takes.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import fused
 from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.fill_records import load_records
@@ -156,7 +157,7 @@ class WindBasisTable:
         rest: Floats = bank.flexibility * moments - (moments @ bank.held.T) @ self._shapes.T
         return rest
 
-    def _fit_harmonics(self, table: Any, degree: int) -> Floats:
+    def _fit_harmonics(self, table: Record, degree: int) -> Floats:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing="ij"
@@ -169,7 +170,7 @@ class WindBasisTable:
         table["harmonics"][:, : table["n_modes"]] = fitted @ self._shapes
         return self._rest_of(fitted)
 
-    def _fill_slopes(self, table: Any) -> None:
+    def _fill_slopes(self, table: Record) -> None:
         """Fill the deflections in level winds, and what winds aslant and stronger ones change."""
         m, shapes = int(table["n_modes"]), self._shapes
         stiffness = table["stiffness"][:m]
@@ -219,7 +220,7 @@ class WindBasisTable:
                     level.rest_slopes[kind, k] = self._rest_of(slopes)
         return level
 
-    def _fill_levels(self, table: Any, levels: list[_Level]) -> None:
+    def _fill_levels(self, table: Record, levels: list[_Level]) -> None:
         """Fill what the lean changes, and how far the table goes on."""
         m = int(table["n_modes"])
         table["levels"] = [level.pressure for level in levels]
@@ -233,7 +234,7 @@ class WindBasisTable:
         assert levels[1].rest_slopes is not None
         self._fill_rest(table, rest, levels[1].rest_slopes)
 
-    def _fill_rest(self, table: Any, rest: Floats, by_mode: Floats) -> None:
+    def _fill_rest(self, table: Record, rest: Floats, by_mode: Floats) -> None:
         """Lay the rest out on the few shapes that move the tips most in winds."""
         m, levels, rests = int(table["n_modes"]), table["levels"], self._rests
         n, top = rests.shape[1], levels[1]
@@ -261,7 +262,7 @@ class WindBasisTable:
             table[name][tuple(map(slice, amounts.shape))] = amounts
             first += rows
 
-    def _tried(self, table: Any, degree: int) -> float:
+    def _tried(self, table: Record, degree: int) -> float:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table["n_modes"]), table["stiffness"]
@@ -300,12 +301,12 @@ def _between(asked: Floats) -> Floats:
     return found
 
 
-def direction(azimuth: Any, elevation: Any) -> Floats:
+def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
     """Unit vectors, (..., 3)."""
+    azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
     level = np.cos(elevation)
     out: Floats = np.stack(
-        [level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation) + 0.0 * azimuth],
-        axis=-1,
+        [level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1
     )
     return out
 
@@ -325,7 +326,7 @@ def _fill(directions: Floats, degree: int, out: Floats) -> None:
 
 @fused
 def _force(
-    tables: Any, x: float, y: float, z: float, push: float, eta: Floats, rate: Floats,
+    tables: Records, x: float, y: float, z: float, push: float, eta: Floats, rate: Floats,
     values: Floats, room: Floats, force: Floats, rest: Floats,
 ) -> None:  # fmt: skip
     wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, room, force)

@@ -187,7 +187,7 @@ class _Blocks:
 
 def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     """
-    Displacement at the points (k, m, 5, 3) and twist on the children (k, c, 6) of each coordinate.
+    Displacement at the points (k, p, 5, 3) and twist on the children (k, c, 6) of each coordinate.
 
     """
     places = model.beam.child_point

@@ -4,7 +4,6 @@
 From a tree to the oscillators that move it, for every model of the ladder.
 
 What only one model needs is imported where that model is made.
-
 """
 
 from __future__ import annotations
@@ -12,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
@@ -61,11 +60,11 @@ class Oscillators(Protocol):
 
     carries: bool
     is_tabled: bool
-    branches: Any
-    work: Any
+    branches: Records
+    work: Records
 
     @property
-    def loads(self) -> Any | None:
+    def loads(self) -> Records | None:
         """Records of `load_fields`; None where only an even wind is known."""
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
@@ -110,9 +109,9 @@ class Frozen:
 
     carries = True
     is_tabled = False
-    loads: Any | None = None
+    loads: Records | None = None
 
-    def __init__(self, branches: Any, n_coordinates: int) -> None:
+    def __init__(self, branches: Records, n_coordinates: int) -> None:
         """Rest is all there is."""
         self.branches = branches
         self.work = np.zeros(len(branches), dtype=WORK)
@@ -178,9 +177,9 @@ class Bank:
     """
 
     oscillators: Oscillators
-    branches: Any
-    segments: Any
-    heads: Any
+    branches: Records
+    segments: Records
+    heads: Records
     frequencies: Floats
     n_solved: int
     mass: float
@@ -213,7 +212,6 @@ class Bank:
         Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
 
         Nothing is checked: arrays must be of float64, in one piece and of these shapes.
-
         """
         if self.plain:
             self._plain_placing.place(rotations, origin, out)
@@ -234,8 +232,8 @@ class Layer:
 
     models: list[BranchModel]
     reduction: Reduction
-    branches: Any
-    segments: Any
+    branches: Records
+    segments: Records
     mass: float
 
 
@@ -425,7 +423,6 @@ class CalibratedTree:
     def _modes(self, model: str, count: int | None) -> Modes:
         """
         All modes, or those of the slowest that the wind drives most and the static sway they lack.
-
         """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
@@ -459,7 +456,7 @@ class CalibratedTree:
 
         return ModalBank
 
-    def _uncoupled(self, layer: Layer, branches: Any, *, carries: bool) -> UncoupledBank:
+    def _uncoupled(self, layer: Layer, branches: Records, *, carries: bool) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
         from tree_sway_ros.core.motion.uncoupled import UncoupledBank
         from tree_sway_ros.core.reduction.carried_inertia import carried_inertia

@@ -5,21 +5,19 @@ Gusts that reach the limbs of a tree one after another, handed to the model in u
 
 `segments` and the models that step branches give each limb its own wind. `wind_basis` knows even
 winds alone and takes the mean of the limbs' winds, weighted by their loads.
-
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of
 from tree_sway_ros.core.motion.numpy_passes import into_lanes
-from tree_sway_ros.core.motion.tree_passes import blow
+from tree_sway_ros.core.motion.tree_passes import set_gusts
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.crown_wind import CrownDelays, CrownWind, crown_delays
 
@@ -49,7 +47,7 @@ class CrownGusts:
 
     """
 
-    def __init__(self, delays: CrownDelays, coherence: float, loads: Any | None) -> None:
+    def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
         """Start without wind."""
         self.wind, self._delays = CrownWind(delays.spread, coherence), delays
         self._hand_out: Callable[[Floats], None] | None = None
@@ -57,9 +55,9 @@ class CrownGusts:
             into_lanes(delays.of_branch, loads["delay"])
             self._hand_out = self._plainly(loads)
             if not WHY_PLAIN:
-                self._hand_out = partial(entry_of(blow, loads, np.zeros((1, 3))), loads)
+                self._hand_out = partial(entry_of(set_gusts, loads, np.zeros((1, 3))), loads)
 
-    def _plainly(self, loads: Any) -> Callable[[Floats], None]:
+    def _plainly(self, loads: Records) -> Callable[[Floats], None]:
         return lambda apart: into_lanes(apart[self._delays.of_branch], loads["gust"])
 
     def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts
@@ -86,7 +86,7 @@ class TreeSimulator(Simulator, Protocol):
         """Records of the tree and the oscillators, as `Bank`."""
 
     @property
-    def joints(self) -> Any:
+    def joints(self) -> Records:
         """Records of `BRANCH` in the order of the rotations, (b,)."""
 
     def digest(self) -> str:

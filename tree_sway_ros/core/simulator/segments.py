@@ -6,19 +6,17 @@ reduced tree.
 
 It is there to compare with, and for a scene that has the time: its steps are many times as dear
 (`tree-sway chart cost`).
-
 """
 
 from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.motion.rotation_fit import RotationFit
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
@@ -107,10 +105,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """
-        Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut.
-
-        """
+        """Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut."""
         refuse_time_step(dt)
         status = OK
         if not take_wind(self.wind, wind_mean, self.settings.max_wind):
@@ -165,7 +160,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         return self._joined[0]
 
     @property
-    def joints(self) -> Any:
+    def joints(self) -> Records:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
         return self.bank.branches
 

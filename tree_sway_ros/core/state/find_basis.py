@@ -5,7 +5,6 @@ Finding the basis of a tree's shapes: singular values of what the tips do in see
 
 Three winds, calm to storm, turn once about the tree each; each run counts alike, whatever its
 strength. What the basis leaves out is told by runs in other winds.
-
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.motion.response import tip_motion
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.state.state_basis import BasisError, StateBasis
@@ -46,7 +45,7 @@ class Swaying(Protocol):
     tree: Tree
 
     @property
-    def joints(self) -> Any:
+    def joints(self) -> Records:
         """Records of `BRANCH` that the key rotations are told by, (b,)."""
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -147,11 +146,10 @@ def _run(
             yield simulator.rotations().copy()
 
 
-def _singular_shapes(joints: Any, runs: list[Floats]) -> tuple[Floats, Floats]:
+def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Floats]:
     """
     Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
     (m, N).
-
     """
     shapes, projections = [], []
     for rotations in runs:
@@ -168,7 +166,7 @@ def _singular_shapes(joints: Any, runs: list[Floats]) -> tuple[Floats, Floats]:
     return np.hstack(shapes) @ mixes, tip_moments(joints, tips).T
 
 
-def tip_moments(joints: Any, forces: Floats) -> Floats:
+def tip_moments(joints: Records, forces: Floats) -> Floats:
     """
     Moments on the coordinates under forces on the tips: the transpose of `tip_motion`.
 

@@ -10,6 +10,7 @@ something about it. ROS itself may be missing, so nothing here imports it at the
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import importlib
 import os
@@ -23,6 +24,8 @@ from tree_sway_ros.ros.process.ending import Ending
 _BAD_NAMES = ("InvalidNamespaceException", "InvalidNodeNameException")
 _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
+_M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
+"""Of glibc: what is larger [bytes] goes back to the system when it is freed."""
 
 
 def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
@@ -85,6 +88,9 @@ def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
     """
     # The paced threads must not wait 5 ms for an executor that holds the interpreter.
     sys.setswitchinterval(_SWITCH_INTERVAL)
+    # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
+    if hasattr(ctypes.pythonapi, "mallopt"):
+        ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
     domain = os.environ.get("ROS_DOMAIN_ID", "")
     if domain and not (domain.isdecimal() and int(domain) <= 232):
         raise TransportError(

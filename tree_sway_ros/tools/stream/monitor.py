@@ -31,6 +31,8 @@ from tree_sway_ros.tools.stream.totals import StreamTotals
 WINDOW = 2.0
 """For so long messages are kept one by one [s]."""
 _POSE = 7 * 8
+_QUEUE = 50
+"""Messages that may wait: what came while this program was held up is late, not missing."""
 _LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
 
 
@@ -116,6 +118,7 @@ class StreamMonitor(Listener):
             (WIND_FILTERED, self._receive_wind, False),
         ):
             qos = qos_profile(topic)
+            qos.depth = _QUEUE
             self.node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
 
     def expect_silence(self) -> None:
