@@ -323,7 +323,7 @@ def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Float
 
 
 @fused
-def _write_poses(head: Any, scratch: Any, rank: int, n_lanes: int, out: Floats) -> None:
+def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each behind the one before it on its branch."""
     pose, first = scratch.pose, head.first
     whole = n_lanes - n_lanes % 4
