@@ -42,10 +42,10 @@ def take_four(a: Any, b: Any, c: Any, d: Any, first: int, lanes: Any, row: int, 
 
 
 if not WHY_PLAIN:
-    from llvmlite import ir  # type: ignore[import-untyped]
     from numba.core import cgutils, types
     from numba.extending import intrinsic, overload
 
+    ir = cgutils.ir
     _VECTOR = ir.VectorType(ir.DoubleType(), 4)
 
     def _place(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
