@@ -4,7 +4,6 @@
 Rotations of the hot path, as scalars: quaternions w x y z and rotation vectors.
 
 Compiled into their callers, so nothing is allocated and no array is made.
-
 """
 
 from __future__ import annotations
@@ -120,7 +119,6 @@ def turned(
 
     That is the angle itself to r^3 / 12, enough to tell which way a branch faces the wind, at no
     root, sine or cosine. The opposite rotation vector undoes it to rounding.
-
     """
     hx, hy, hz = 0.5 * rx, 0.5 * ry, 0.5 * rz
     f = 2.0 / (1.0 + hx * hx + hy * hy + hz * hz)

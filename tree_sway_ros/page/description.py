@@ -6,7 +6,6 @@ how its branches bend, and the basis of its state; of each tree its kind, and wh
 
 A branch that moves with its parent as one body has no coordinate, and slopes of 0. A kind stands
 with its root node at the origin.
-
 """
 
 from __future__ import annotations

@@ -10,7 +10,6 @@ The line between sites: keys of Zenoh, whose payloads are messages of ROS, JSON,
 ``PREFIX/description``     answers the description of doc/streaming.md
 ``PREFIX/frame``           its frames
 ========================= ====================================================
-
 """
 
 from __future__ import annotations

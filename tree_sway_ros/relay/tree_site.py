@@ -5,7 +5,6 @@ A site: a tree that is solved on a grid of absolute time, as far as its wind is 
 
 Sites that have the same samples take the same steps and agree bit for bit, whenever the samples
 come. One that joins later sets a snapshot of another, or waits until damping has made them alike.
-
 """
 
 from __future__ import annotations

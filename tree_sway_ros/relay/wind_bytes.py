@@ -4,7 +4,6 @@
 A sample of wind as the CDR bytes of ``geometry_msgs/Vector3Stamped``, written and read without ROS.
 
 The bytes are those that a Zenoh bridge of ROS 2 carries, so that it may stand at either end.
-
 """
 
 from __future__ import annotations

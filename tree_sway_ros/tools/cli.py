@@ -6,7 +6,6 @@ The command line ``tree-sway``: one module per command, imported when it is aske
 
 A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the user
 can mend ends as one line on standard error and exit code 2.
-
 """
 
 from __future__ import annotations
@@ -209,7 +208,6 @@ def _module(command: str) -> Any:
 def _parser(chosen: str) -> _OneLineParser:
     """
     Parser of all commands; only the chosen one's arguments, as the others' modules may be slow.
-
     """
     parser = _OneLineParser(prog="tree-sway", description="Trees that sway in measured wind.")
     version = importlib.import_module("tree_sway_ros").__version__

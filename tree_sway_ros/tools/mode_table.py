@@ -3,7 +3,6 @@
 """
 Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that
 bends most.
-
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ What a command shows while it works: a bar for what is counted, a line for what 
 
 Everything goes to standard error. Bars are tqdm's and stand on terminals alone; without tqdm, and
 where there is no terminal, a line says now and then how far the work is.
-
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ From points to a picture plane.
 
 A camera without perspective looks level or from above; what it sees to the right and up are two
 coordinates, what is away from it is the third.
-
 """
 
 from __future__ import annotations

@@ -174,7 +174,6 @@ def painted_shapes(
 def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
     """
     Draw the tree at rest as a pale shape behind whatever else is drawn, to see how far it moved.
-
     """
     from matplotlib.collections import PolyCollection
 

@@ -94,8 +94,6 @@ def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats
 def _weights(frequencies: Floats) -> Floats:
     """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side, (f,)."""
     climate = WindClimate.steady(1.0, 0.2)
-    density = climate.spectrum(frequencies) * np.trace(climate.covariance)
-    steps = np.diff(frequencies)
-    weights = 0.5 * density * (np.append(steps, 0.0) + np.insert(steps, 0, 0.0))
+    weights: Floats = np.trace(climate.power(frequencies), axis1=1, axis2=2)
     weights[0] += np.square(climate.mean).sum()
-    return np.asarray(weights, dtype=np.float64)
+    return weights

@@ -11,7 +11,6 @@ each bin on its own (Whittle, 1953). The likelihood of a resonance on a smooth l
 is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the resolution
 of the spectrum, and p takes up the slope of the turbulence and whether displacement, tilt or
 acceleration was measured. Standard errors are those of Fisher's information (Brillinger, 1981).
-
 """
 
 from __future__ import annotations
@@ -108,7 +107,6 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
     """
     Frequencies, power of mean 1 along the axis that moves most there, and of how many bins each is
     the mean.
-
     """
     taper = signal.windows.tukey(len(motion), 0.1)
     spectrum = np.fft.rfft(taper[:, None] * motion, axis=0)
@@ -127,7 +125,6 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
 def _starts() -> list[Floats]:
     """
     Shifts of the first guess: the surface has side valleys where damping and floor trade places.
-
     """
     return [
         np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)

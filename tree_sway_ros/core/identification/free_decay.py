@@ -10,7 +10,6 @@ from how much the answer changes as the decay goes on, for the damping of a real
 amplitude.
 
 Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping ratio.
-
 """
 
 from __future__ import annotations
@@ -65,7 +64,6 @@ class FreeDecay(SwayEstimate):
 class _Fit:
     """
     Dominant pole of a stretch of motion, its standard error, and the share of energy explained.
-
     """
 
     pole: complex
@@ -193,7 +191,6 @@ def _standard_error(
 
     A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s
     t)`` can replace.
-
     """
     moved = dt * np.arange(len(decay)) * decay
     moved -= decay * np.vdot(decay, moved) / np.vdot(decay, decay)

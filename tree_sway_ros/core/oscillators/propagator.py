@@ -14,7 +14,6 @@ two eigenvalues times h. With e[..] for the divided differences of the exponenti
 follows from ``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham 2008,
 Functions of Matrices, 10.7: the phi functions), which `exponential_differences` finds without
 cancellation.
-
 """
 
 from __future__ import annotations

@@ -7,7 +7,6 @@ Every rule is linear in angle, rate and the moments at both ends of a step, so e
 per oscillator hold it; the kernels apply those and do not know which rule made them. What the rules
 are, with order, limits and sources, is declared where they are studied side by side
 (``study/methods``).
-
 """
 
 from __future__ import annotations
@@ -154,7 +153,6 @@ def rule_propagator(
 ) -> Array:
     """
     Eight coefficients per oscillator, as `propagator.propagator`, of a rule's own step, (n, 8).
-
     """
     i, c, k = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))

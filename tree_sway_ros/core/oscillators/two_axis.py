@@ -25,7 +25,6 @@ k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no e
 moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w
 h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the branch to
 the right side and angle; at 4 / (w h)^2 it no longer does.
-
 """
 
 from __future__ import annotations
@@ -135,7 +134,6 @@ def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, fl
     Hold the length of a load at a limit in [N m]; the last value tells whether it was held.
 
     What is not a number, or so large that its square is not, counts as held and pulls nowhere.
-
     """
     square = wb * wb + w1 * w1 + w2 * w2
     if square <= limit * limit:

@@ -7,7 +7,6 @@ Every segment bends at one joint inside it (see `articulated_bodies`), the artic
 algorithm gives the accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit
 (`articulated_step`). It stands beside the reduced model as the truth for large, coupled motion, and
 as the last model of the ladder.
-
 """
 
 from __future__ import annotations
@@ -166,7 +165,6 @@ class ArticulatedTree:
         Where a joint would turn by more than `LARGEST_TURN`, as that of a twig does in a gale, the
         step is taken in finer pieces. Returns whether that helped; if not the tree is at rest
         again.
-
         """
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
@@ -229,7 +227,6 @@ class ArticulatedTree:
         """
         Damping of `Laws`: by stiffness so much that the last of these modes has the ratio, and the
         rest to each below it.
-
         """
         modes = joint_modes(self.bodies, self._gravity, count)
         circular = 2.0 * math.pi * modes.frequency

@@ -8,7 +8,6 @@ taken about each body's own joint. The articulated inertia of a body is three bl
 and f the moment and force that its joint passes, alpha and a the accelerations there,
 
     n = A alpha + B a + n0,   f = B^T alpha + C a + f0.
-
 """
 
 from __future__ import annotations
@@ -134,7 +133,6 @@ def load(
     Start each articulated inertia and bias from the body's own, with its weight.
 
     The damping in [1/s] acts on each body's momentum.
-
     """
     half, own = np.empty((3, 3)), np.empty((3, 3))
     for i in range(len(bodies.mass)):
@@ -260,7 +258,6 @@ def _shift(
 ) -> None:  # fmt: skip
     """
     Add an inertia to one whose point lies back by d: B + d x C, and A + d x B^T - (B + d x C) d x.
-
     """
     cross_columns(d, C, first)
     for j in range(3):

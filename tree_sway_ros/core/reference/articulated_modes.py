@@ -5,7 +5,6 @@ Linear modes of the articulated tree: mass and stiffness of its joints at rest.
 
 Both matrices couple a joint with those that carry it and those that it carries only, so they are
 sparse.
-
 """
 
 from __future__ import annotations
@@ -82,7 +81,6 @@ def joint_mass(bodies: Bodies) -> Any:
     Mass matrix of the joints' rotations at rest in [kg m^2], sparse (3 n, 3 n).
 
     Composite rigid bodies (Featherstone 2008, table 6.2).
-
     """
     _, lever, tensor = _composite(bodies)
     own = [np.array(t) for t in tensor]
@@ -104,7 +102,6 @@ def joint_stiffness(bodies: Bodies, gravity: float) -> Any:
 
     Gravity's part is the second variation of the height of the masses, each joint turned in the
     axes its carrier has turned already, with the springs' share in holding the rest shape.
-
     """
     twist = np.einsum("ni,nj->nij", bodies.axis, bodies.axis)
     springs = bodies.bend[:, None, None] * (np.eye(3) - twist) + bodies.twist[:, None, None] * twist

@@ -9,7 +9,6 @@ Jacobian, L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and 
 own joint only, so that (1 - gamma h A) costs no more than some inertia added to each joint:
 
     (M + gamma h C + gamma^2 h^2 K) k = f - gamma h K w.
-
 """
 
 from __future__ import annotations
@@ -91,7 +90,6 @@ class State(NamedTuple):
     """
     Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body
     axes.
-
     """
 
     turn: Floats
@@ -153,7 +151,6 @@ def push_drag(
     Push the drag on every segment by the wind (n, 3) relative to the middle of its chord.
 
     Each part of the segment takes the force on its own area, at its own middle.
-
     """
     for i in range(len(bodies.mass)):
         p = bodies.carrier[i]
@@ -188,7 +185,6 @@ def damp_modes(laws: Laws, rate: Floats, implicit: float, out: Floats) -> None:
 
     Taken off their torques it would shake a bent tree to pieces: there a torque that bends the tree
     at rest also twists it, and has hardly any inertia to do so against.
-
     """
     for mode in range(len(laws.mode_damping)):
         momentum, shape = laws.mode_momentum[mode], laws.mode_turn[mode]

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 What every model of a tree is measured by: where its tips are, in winds that are even per frame.
-
 """
 
 from __future__ import annotations

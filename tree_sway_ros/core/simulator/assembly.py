@@ -4,7 +4,6 @@
 From a tree to the oscillators that move it, for every model of the ladder.
 
 What only one model needs is imported where that model is made.
-
 """
 
 from __future__ import annotations
@@ -213,7 +212,6 @@ class Bank:
         Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
 
         Nothing is checked: arrays must be of float64, in one piece and of these shapes.
-
         """
         if self.plain:
             self._plain_placing.place(rotations, origin, out)
@@ -425,7 +423,6 @@ class CalibratedTree:
     def _modes(self, model: str, count: int | None) -> Modes:
         """
         All modes, or those of the slowest that the wind drives most and the static sway they lack.
-
         """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates

@@ -5,7 +5,6 @@ Gusts that reach the limbs of a tree one after another, handed to the model in u
 
 `segments` and the models that step branches give each limb its own wind. `wind_basis` knows even
 winds alone and takes the mean of the limbs' winds, weighted by their loads.
-
 """
 
 from __future__ import annotations

@@ -6,7 +6,6 @@ Stiffness, damping and weight of a tree changed while it sways, without building
 A change is gone over in `GLIDE`, so that no pose jumps. Modes keep their shapes: a mode of elastic
 stiffness k_e and of weight k_g per unit of gravity has ``w^2 = s k_e + g k_g``, Rayleigh's
 quotient, which errs by the square of what the shapes would change by.
-
 """
 
 from __future__ import annotations

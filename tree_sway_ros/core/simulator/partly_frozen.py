@@ -3,7 +3,6 @@
 """
 A calibrated tree some of whose branches move with their parents: the models between one model and
 the next.
-
 """
 
 from __future__ import annotations

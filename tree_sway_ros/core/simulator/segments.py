@@ -6,7 +6,6 @@ reduced tree.
 
 It is there to compare with, and for a scene that has the time: its steps are many times as dear
 (`tree-sway chart cost`).
-
 """
 
 from __future__ import annotations
@@ -106,10 +105,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """
-        Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut.
-
-        """
+        """Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut."""
         refuse_time_step(dt)
         status = OK
         if not take_wind(self.wind, wind_mean, self.settings.max_wind):

@@ -5,7 +5,6 @@ Finding the basis of a tree's shapes: singular values of what the tips do in see
 
 Three winds, calm to storm, turn once about the tree each; each run counts alike, whatever its
 strength. What the basis leaves out is told by runs in other winds.
-
 """
 
 from __future__ import annotations
@@ -151,7 +150,6 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
     """
     Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
     (m, N).
-
     """
     shapes, projections = [], []
     for rotations in runs:

@@ -8,7 +8,6 @@ shapes that it takes in any wind: ``x = B c``, ``c = P x``. A coordinate is meas
 to the tips of all branches, so that what is left out is what is seen least (proper orthogonal
 decomposition; Holmes et al. 2012, *Turbulence, Coherent Structures, Dynamical Systems and
 Symmetry*, 3.1).
-
 """
 
 from __future__ import annotations

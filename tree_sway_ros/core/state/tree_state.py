@@ -5,7 +5,6 @@ All that a simulator carries from one step to the next, to be kept and set again
 
 A simulator that is set to a state goes on bit for bit as the one that gave it. A state tells which
 tree, settings and model it belongs to, by a digest of all of them, and is refused by any other.
-
 """
 
 from __future__ import annotations
@@ -111,7 +110,6 @@ def digest_of(*told: Any) -> str:
 class KeepsState:
     """
     A simulator whose state can be kept, set and placed; bases of this class give what it asks for.
-
     """
 
     tree: Tree

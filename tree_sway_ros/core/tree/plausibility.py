@@ -9,7 +9,6 @@ stems has 3 to 20 GPa and 400 to 1300 kg/m^3, and stems are 10 to 150 times as h
 lies ten times and more beyond that is refused. The slowest sway of a tree of its size is that of
 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in [cm], H in [m] (Moore & Maguire
 2004).
-
 """
 
 from __future__ import annotations

@@ -4,7 +4,6 @@
 The frame of a segment: x along it, turned from the axes of the world as little as possible.
 
 Every pose, file and picture that speaks of the frame of a segment means this one.
-
 """
 
 from __future__ import annotations

@@ -6,7 +6,6 @@ How to read wind: sign, unit, yaw of the mast and force plane.
 ROS vectors are velocities in ENU (REP-103): a wind vector points where the air goes. Meteorology
 names the wind by where it comes from. A source that does the latter has every sign the other way
 round.
-
 """
 
 from __future__ import annotations

@@ -13,7 +13,6 @@ than itself.
 
 Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and the
 same in every run. Delays follow the mean wind as in `gust_travel`.
-
 """
 
 from __future__ import annotations

@@ -57,7 +57,6 @@ class WindCurve:
     def cut(self, time: float) -> None:
         """
         Drop what comes after a time in [s], and be level from there: the past stays as it was.
-
         """
         if self._knots and self.end > time:
             value = self.value(time)

@@ -15,7 +15,6 @@ much older than it, a duplicate, out of order) is counted by its cause; in its p
 of arrival, less the delay of the sample before, so that the times of a mixed stream go on evenly. A
 stamp ahead is believed only if those before it were nearly as far ahead: a single one would shut
 out the good samples that follow it. All times are whole nanoseconds of one clock.
-
 """
 
 from __future__ import annotations

@@ -12,7 +12,6 @@ gusts travel, the mean speed itself over open ground and up to 1.8 of it over a 
 The wind is kept as its run, the displacement of the air since the start, at the end of every step:
 the mean over any span is then the difference of two runs over the span. As the mean wind turns or
 freshens, delays follow so slowly that for every tree time goes on.
-
 """
 
 from __future__ import annotations
@@ -111,7 +110,6 @@ class GustHistory:
     def n_forgotten(self) -> int:
         """
         Places so far downwind that the history is too short; they feel the oldest wind there is.
-
         """
         return int((self._wanted > self._memory).sum())
 
@@ -203,7 +201,6 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
     """
     A plain mean while there is little wind to average, then a running one; its span stands beside
     it.
-
     """
     mean[2] = min(mean[2] + dt, max(averaging, dt))
     weight = dt / mean[2]
@@ -219,7 +216,6 @@ def _feel(
 ) -> None:  # fmt: skip
     """
     Let delays follow the mean wind, and take the mean of the history over each place's own step.
-
     """
     now = run[at[0], 0]
     speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)

@@ -4,7 +4,6 @@
 ``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
 
 The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved anew.
-
 """
 
 from __future__ import annotations

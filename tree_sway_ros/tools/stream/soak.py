@@ -5,7 +5,6 @@
 
 Every node is a process of its own, or all are in one, as the demo has them. A page is followed, so
 that the viewer has something to do.
-
 """
 
 from __future__ import annotations
@@ -128,7 +127,6 @@ def growth(seen: list[Health]) -> tuple[float, float]:
     """
     Slope of the memory after the warm-up, and its standard error, in [MB/h]; NaN from fewer than
     ten looks.
-
     """
     table = np.array([(each.time, each.memory) for each in seen])
     if len(table):

@@ -20,7 +20,6 @@ class Spread:
     Quantiles of times, to 0.6 %: counts of times that are alike, from 1 us to 1000 s.
 
     Shorter times count as the shortest, longer ones as the longest; the largest is kept as it is.
-
     """
 
     def __init__(self) -> None:

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 Watching a stream: until its time is over or somebody ends it, with a line that follows what comes.
-
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ A gust, step or turn of the wind as data: what happens, when, and how often.
 
 Speeds add along the wind in [m/s]; angles turn it about the vertical in [rad], counter-clockwise
 seen from above (REP-103). Gusts pass; steps and turns last.
-
 """
 
 from __future__ import annotations

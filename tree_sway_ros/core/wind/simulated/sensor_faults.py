@@ -6,7 +6,6 @@ What anemometers do when they fail, as a change of what they send: for rehearsal
 Each fault is one that was seen on sensors in the field: a wet sonic sends a code for no reading, a
 driver repeats its last value with new stamps, a logger sends a batch at once, a sensor starts
 again.
-
 """
 
 from __future__ import annotations

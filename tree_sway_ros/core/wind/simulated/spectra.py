@@ -5,7 +5,6 @@ Spectra of turbulence: how the variance of the wind at a point is shared by freq
 
 A new model of the wind is one function here and its entry in `SPECTRA`: the simulated anemometer,
 its node and the command line offer what stands there.
-
 """
 
 from __future__ import annotations

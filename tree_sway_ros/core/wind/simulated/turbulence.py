@@ -17,7 +17,6 @@ spectra from a slow record.
 Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard
 deviation [m/s], Lambda1 turbulence scale of IEC 61400-1 [m]. Axes of a record: u along the mean
 wind, v to its left, w up.
-
 """
 
 from __future__ import annotations
@@ -97,7 +96,6 @@ class Turbulence:
     def deviations(self) -> Floats:
         """
         Standard deviations of u, v, w in [m/s], (3,): IEC 61400-1:2005, equation 11 and table B.1.
-
         """
         if self.intensity is not None:
             along = self.intensity * self.mean_speed
@@ -113,7 +111,6 @@ class Turbulence:
     def spectrum(self, frequency: ArrayLike) -> Floats:
         """
         Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3).
-
         """
         of_component = SPECTRA[self.model].of_component
         columns = [
@@ -163,7 +160,6 @@ class Turbulence:
 
         As the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter 2)
         has it, no more than 1, and in all as much as `STRESS`.
-
         """
         shape = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
         both = np.sqrt(power[:, 0] * power[:, 2])

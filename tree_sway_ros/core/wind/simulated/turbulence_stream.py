@@ -8,7 +8,6 @@ The squares of two neighbouring fades sum to one and the records are independent
 and spectrum are the same at every tick (the spectrum smeared by no more than one line). Block k
 draws its phases from (seed, k) alone: a tick has one value, whichever ticks were asked for before,
 and a change of mean or intensity under the same seed keeps the pattern of the gusts.
-
 """
 
 from __future__ import annotations
