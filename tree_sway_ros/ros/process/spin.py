@@ -16,6 +16,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
@@ -26,6 +27,8 @@ _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 _M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
 """Of glibc: what is larger [bytes] goes back to the system when it is freed."""
+_PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+"""Name the file of Fast DDS 2 and of 3."""
 
 
 def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
@@ -91,6 +94,8 @@ def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
     # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
     if hasattr(ctypes.pythonapi, "mallopt"):
         ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
+    if not any(os.environ.get(name) for name in _PROFILES):
+        os.environ.update(dict.fromkeys(_PROFILES, str(Path(__file__).with_name("discovery.xml"))))
     domain = os.environ.get("ROS_DOMAIN_ID", "")
     if domain and not (domain.isdecimal() and int(domain) <= 232):
         raise TransportError(
