@@ -15,7 +15,6 @@ one by one; what the two still differ by fades within 0.4 s.
 **Down slowly.** A lesser model first sways along unseen until it has forgotten that it started at
 rest, then the picture goes over to it within a second. It is taken only when it would do with a
 third to spare, so that a wind on the border does not flicker.
-
 """
 
 from __future__ import annotations
@@ -301,7 +300,6 @@ class AdaptiveSimulator(OneTree, KeepsState):
     def reset(self) -> None:
         """
         Go back to rest and to the wind that was expected, at once on the model that it asks for.
-
         """
         self.choice = self._expect()
         self._shown, self._next, self._left = self._simulator(self.choice), None, None

@@ -6,7 +6,6 @@ models.
 
 Prices are fits to trees of 31 to 261 branches in 3 to 12 segments each, timed on one core of a
 server of 2020; `pace` scales them to the machine at hand.
-
 """
 
 from __future__ import annotations

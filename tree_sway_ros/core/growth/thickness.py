@@ -8,7 +8,6 @@ length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p
 where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as ours,
 lie between. The length w follows from the one diameter that is given, at the base or at breast
 height.
-
 """
 
 from __future__ import annotations

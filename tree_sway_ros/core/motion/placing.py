@@ -15,7 +15,6 @@ stand, then segment after segment up the sixteen branches at once.
 
 The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
 stands at its segment's root-side node, its x axis runs along the segment (REP-103).
-
 """
 
 from __future__ import annotations
@@ -230,7 +229,6 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
-
     """
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
@@ -279,7 +277,6 @@ def _write_bases(head: Record, scratch: Record, work: Records) -> float:
     """
     Leave for the children how their parents are turned; return a bound on the square of half the
     angle that any segment turns by.
-
     """
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
     for j in range(0, whole, 4):

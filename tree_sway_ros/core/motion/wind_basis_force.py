@@ -26,7 +26,6 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     Table of one tree; modes are filled up to a multiple of four, at least twelve.
 
     One layout serves most trees, so that the kernel is compiled once.
-
     """
     m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
     a, n = N_AZIMUTHS, N_LEVELS
@@ -166,15 +165,8 @@ def wind_rest(
     eta: Floats, rate: Floats, values: Floats, rest: Floats,
 ) -> None:  # fmt: skip
     """
-    Find the static rest of the modes left out, as `wind_force`.
-
-    Parameters
-    ----------
-    values
-        Harmonics of the wind's direction, (h,).
-    rest
-        Amounts of the shapes of the rest, (r,), written.
-
+    Find the static rest of the modes left out, (r,), as `wind_force`, by harmonics of the wind,
+    (h,).
     """
     first, second, j, share, up, lean = table_corners(table, x, y, eta)
     a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up

@@ -19,7 +19,6 @@ load turns and leans with the tree) and by their rates (aerodynamic damping):
     x = Phi eta + V {s [Y R + rest(a) + turning_r (eta - a e)] + p |U| damping_r eta'}
 
 with V the few shapes that the static rest of the modes left out takes.
-
 """
 
 from __future__ import annotations
@@ -197,7 +196,6 @@ class WindBasisTable:
         Ask the tree for its loads where it leans as a dynamic pressure [kg/m/s^2] holds it.
 
         The slopes of the rest are large, and wanted of the lowest lean alone.
-
         """
         shapes, count = self._shapes, len(_ASKED)
         n, m = shapes.shape
@@ -277,7 +275,10 @@ class WindBasisTable:
             at = harmonics_at(side[None], degree)[0]
             eta = np.zeros(len(stiffness))
             eta[:m] = lean * (at @ table["harmonics"][:, :m]) / stiffness[:m]
-            _force(self.record, *wind, push, eta, still, values, scratch, forces, rest)
+            _force(
+                self.record, wind[0], wind[1], wind[2], push, eta, still, values, scratch, forces,
+                rest,
+            )  # fmt: skip
             x = self._shapes @ eta[:m] + rest @ self.rest_shapes
             true = push * self._moments(x, self._still, wind) @ self._shapes
             wrong += float((np.square(forces[:m] - true) / stiffness[:m]).sum())

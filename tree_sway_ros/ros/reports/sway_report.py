@@ -39,19 +39,7 @@ class SwayReport:
     def statuses(
         self, stepper: Stepper, pacer: Pacer, frames: int, counts: GateCounts
     ) -> list[Status]:
-        """
-        Report on the wind, the output and the model.
-
-        Parameters
-        ----------
-        stepper, pacer
-            Of the solver.
-        frames
-            Pose arrays published so far.
-        counts
-            What became of the samples of the wind.
-
-        """
+        """Report on the wind, the output and the model, after so many pose arrays."""
         output = self._output(pacer.pace(), 1e9 / pacer.period, frames, pacer.is_simulated)
         statuses = [_wind(stepper.wind_state, counts), output, _model(stepper.simulator)]
         gusts = stepper.simulator.gusts

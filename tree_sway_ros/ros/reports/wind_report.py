@@ -24,7 +24,6 @@ class WindReport:
     """
     Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with
     stamps.
-
     """
 
     def __init__(self) -> None:
