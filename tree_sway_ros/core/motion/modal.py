@@ -55,6 +55,7 @@ class ModalBank:
 
     carries = True
     is_tabled = False
+    n_outside, table_error = 0, 0.0
 
     def __init__(
         self,

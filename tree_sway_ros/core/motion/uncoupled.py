@@ -49,6 +49,8 @@ class UncoupledBank:
     """
 
     is_tabled = False
+    n_outside, table_error = 0, 0.0
+    shapes = np.zeros((0, 0))
 
     def __init__(
         self,

@@ -74,7 +74,7 @@ class WindBasisBank:
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
         """Stand at rest."""
-        self.modal, self.table = modal, table
+        self.modal, self.table, self.table_error = modal, table, table.error
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
         n, m = modal.shapes.shape
         self.record, self.pace = table.record, np.zeros(1, dtype=pace_layout(m))

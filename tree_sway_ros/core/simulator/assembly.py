@@ -60,6 +60,12 @@ class Oscillators(Protocol):
 
     carries: bool
     is_tabled: bool
+    n_outside: int
+    """Steps outside of its table, if it has one."""
+    table_error: float
+    """Share by which the table's static deflections are wrong [-]."""
+    shapes: Floats
+    """Of its modes, (N, m); empty where branches swing on their own."""
     branches: Records
     work: Records
 
@@ -109,6 +115,8 @@ class Frozen:
 
     carries = True
     is_tabled = False
+    n_outside, table_error = 0, 0.0
+    shapes = np.zeros((0, 0))
     loads: Records | None = None
 
     def __init__(self, branches: Records, n_coordinates: int) -> None:
