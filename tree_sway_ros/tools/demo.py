@@ -4,7 +4,6 @@
 ``tree-sway demo``: a tree sways in wind, all nodes in one process, over real DDS.
 
 What it prints is what a subscriber receives, not what the solver believes to have sent.
-
 """
 
 from __future__ import annotations

@@ -38,13 +38,7 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
 
 def page_settings(arguments: argparse.Namespace) -> PageSettings:
     """
-    Settings of the page's server from the arguments.
-
-    Raises
-    ------
-    ParameterError
-        A port that is none.
-
+    Settings of the page's server from the arguments; a `ParameterError` for a port that is none.
     """
     port = arguments.port
     if port is None:

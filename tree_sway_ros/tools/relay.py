@@ -5,7 +5,6 @@
 
 One site sends the wind, and a snapshot to whoever joins; the others solve the same tree in it, or
 play the state. Where ROS runs, the wind comes from `wind/filtered` and goes to it.
-
 """
 
 from __future__ import annotations

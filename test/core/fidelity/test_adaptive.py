@@ -133,6 +133,29 @@ def test_a_gust_is_met_at_once(adaptive, before, after):
     assert (np.array([move for move, _ in moves[1:]]) <= true_moves + 1e-3).all()
 
 
+def test_an_unforeseen_gust_is_met_by_the_best_model_within_the_budget(adaptive):
+    met = {}
+    for budget in (0.0, 15.0):
+        sim = adaptive(0.05, budget=budget)
+        for speed, seconds in ((1.0, 20), (7.0, 1)):
+            for _ in range(seconds * 60):
+                sim.step((speed, 0.0, 0.0), DT)
+        met[budget] = sim.choice
+    assert met[0.0].name == "coupled"
+    assert met[15.0].error > met[0.0].error
+    assert met[15.0].cost <= 15.0
+
+
+def test_gusts_of_the_same_size_as_before_are_left_to_the_tolerance(adaptive):
+    sim, names = adaptive(0.5), set()
+    for second in range(40):
+        for _ in range(60):
+            sim.step((6.0 if second % 10 == 0 else 2.0, 0.0, 0.0), DT)
+        if second >= 15:
+            names.add(sim.choice.name)
+    assert "coupled" not in names
+
+
 def test_a_gust_that_goes_leaves_the_model_for_a_while(adaptive):
     sim = adaptive(0.05)
     for speed, seconds in ((0.5, 20), (10.0, 2), (0.5, 5)):

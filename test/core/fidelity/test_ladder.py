@@ -16,7 +16,6 @@ from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.wind.climate import WindClimate
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, RATIOS, forked_tree
-from tree_sway_ros.study.record_climate import climate_of_samples
 from tree_sway_ros.study.tip_error import record_tips
 
 DAMPING = 0.05
@@ -43,7 +42,7 @@ def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_
     )  # fmt: skip
     true_tips = record_tips(truth, tree, wind, 1.0 / RATE, substeps=2)[SETTLED:]
     effectivity, partly_frozen = [], 0
-    for estimate in ladder.estimates(climate_of_samples(wind, RATE)):
+    for estimate in ladder.estimates(WindClimate.of_samples(wind, RATE)):
         model = SwaySimulator(
             tree, WOOD, NO_WEIGHT, model=estimate.model, n_modes=max(estimate.n_modes, 1),
             calibrated=ladder.calibrated(estimate),

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
-from tree_sway_ros.study.record_climate import climate_of_samples
 
 
 def test_a_described_wind_has_the_moments_of_its_samples():
@@ -17,31 +17,40 @@ def test_a_described_wind_has_the_moments_of_its_samples():
     wind = np.zeros((n, 3))
     wind[:, 0] = mean + sigma * rng.standard_normal(n)
     wind[:, 1] = 0.8 * sigma * rng.standard_normal(n)
-    taken = climate_of_samples(wind, 10.0)
+    taken = WindClimate.of_samples(wind, 10.0)
     told = WindClimate.steady(mean, sigma / mean)
     assert taken.mean[0] == pytest.approx(told.mean[0], rel=0.01)
     assert taken.covariance[0, 0] == pytest.approx(told.covariance[0, 0], rel=0.03)
     assert taken.covariance[1, 1] == pytest.approx(told.covariance[1, 1], rel=0.03)
 
 
-def test_the_spectrum_holds_the_whole_variance():
+def test_the_power_of_a_described_wind_is_its_covariance():
     climate = WindClimate.steady(5.0, 0.2, integral_time=3.0)
-    f = np.geomspace(1e-6, 1e4, 20_000)
-    density = climate.spectrum(f)
-    assert np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(f)) == pytest.approx(1.0, abs=0.01)
+    power = climate.power(np.concatenate([[0.0], np.geomspace(1e-4, 1e4, 20_000)]))
+    np.testing.assert_allclose(power.sum(axis=0), climate.covariance, rtol=0.01, atol=1e-9)
 
 
-def test_the_integral_time_of_a_filtered_noise_is_its_time_constant():
-    rng = np.random.default_rng(2)
-    rate, tau, n = 20.0, 2.0, 200_000
-    keep = np.exp(-1.0 / (rate * tau))
-    noise = rng.standard_normal(n) * np.sqrt(1.0 - keep**2)
-    speed = np.empty(n)
-    speed[0] = 0.0
-    for i in range(1, n):
-        speed[i] = keep * speed[i - 1] + noise[i]
-    wind = np.stack([10.0 + 0.1 * speed, np.zeros(n), np.zeros(n)], axis=1)
-    assert climate_of_samples(wind, rate).integral_time == pytest.approx(tau, rel=0.2)
+def test_the_power_of_a_record_is_its_mean_square_about_the_mean():
+    wind = np.random.default_rng(3).normal(5.0, 1.0, (600, 3))
+    climate = WindClimate.of_samples(wind, 60.0)
+    power = climate.power(np.concatenate([[0.0], np.geomspace(0.01, 30.0, 160)]))
+    np.testing.assert_allclose(power.sum(axis=0), climate.covariance, rtol=1e-9)
+
+
+def test_what_an_oscillator_does_from_rest_is_no_more_than_its_answer_to_the_power():
+    rate, first, damping = 60.0, 0.8, 0.05
+    t = np.arange(0.0, 10.0, 1.0 / rate)
+    w = 2.0 * np.pi * first
+    frequencies = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 400)])
+    gain = 1.0 / np.abs(1.0 - (frequencies / first) ** 2 + 2j * damping * frequencies / first) ** 2
+    for speed in (5.0 + np.sin(w * t), np.where(t > 3.0, 6.0, 0.0), 6.0 + np.sin(9.0 * t)):
+        wind = np.stack([speed, 0.0 * t, 0.0 * t], axis=1)
+        climate = WindClimate.of_samples(wind, rate)
+        power = climate.power(frequencies)[:, 0, 0]
+        told = gain @ power + climate.mean[0] ** 2
+        system = signal.lti([w * w], [1.0, 2.0 * damping * w, w * w])
+        x = signal.lsim(system, speed * speed, t)[1]
+        assert 0.5 <= np.mean(x * x) / told <= 1.0
 
 
 def test_a_turned_wind_turns_its_covariance():
@@ -70,12 +79,22 @@ def test_the_first_sample_counts_whole():
 
 def test_a_wind_that_beats_is_told_from_turbulence():
     t = np.arange(0.0, 20.0, 1.0 / 60.0)
-    still = np.zeros_like(t)
-    wind = np.stack([5.0 + np.sin(2.0 * np.pi * 0.8 * t), still, still], axis=1)
-    climate = climate_of_samples(wind, 60.0)
-    assert climate.beat == pytest.approx(0.8, abs=0.03)
-    assert climate.beat_share > 0.8
-    f = np.geomspace(0.01, 30.0, 4000)
-    assert f[np.argmax(climate.spectrum(f))] == pytest.approx(0.8, abs=0.03)
-    gust = np.stack([5.0 + np.exp(-((t - 10.0) ** 2)), still, still], axis=1)
-    assert climate_of_samples(gust, 60.0).beat_share == 0.0
+    frequencies = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 160)])
+    tracker = ClimateTracker()
+    for speed in 5.0 + np.sin(2.0 * np.pi * 0.8 * t):
+        tracker.add(np.array([speed, 0.0, 0.0]), 1.0 / 60.0)
+    power = tracker.climate.power(frequencies)[:, 0, 0]
+    near = np.abs(frequencies - 0.8) < 0.1
+    assert power[near].sum() > 0.6 * power.sum()
+    assert WindClimate.steady(5.0, 0.14).power(frequencies)[near, 0, 0].sum() < 0.1 * power.sum()
+
+
+def test_the_tracker_knows_the_largest_load_of_its_memory():
+    tracker = ClimateTracker(memory=10.0)
+    for speed, seconds in ((7.0, 1), (3.0, 5)):
+        for _ in range(60 * seconds):
+            tracker.add(np.array([0.0, speed, 0.0]), 1.0 / 60.0)
+    assert tracker.largest_load == pytest.approx(49.0)
+    tracker.add(np.array([0.0, 3.0, 0.0]), 1e6)
+    assert tracker.largest_load == pytest.approx(9.0)
+    assert ClimateTracker().climate.speed == 0.0

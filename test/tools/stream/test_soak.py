@@ -39,10 +39,12 @@ def test_a_process_looks_at_itself() -> None:
 
 @pytest.mark.ros
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
-def test_the_chain_goes_through_all_faults(ros_environment: dict[str, str]) -> None:
+@pytest.mark.parametrize("kind", ["nodes", "demo"])
+def test_the_chain_goes_through_all_faults(kind: str, ros_environment: dict[str, str]) -> None:
     command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "soak", "--hours", "0.003"]
     ended = subprocess.run(
-        [*command, "--every", "0.5", "--speed", "2", "--slope", "1e9"],
+        [*command, "--every", "0.5", "--speed", "2", "--slope", "1e9"]
+        + ["--demo"] * (kind == "demo"),
         env=ros_environment,
         capture_output=True,
         text=True,
@@ -52,4 +54,6 @@ def test_the_chain_goes_through_all_faults(ros_environment: dict[str, str]) -> N
     assert ended.returncode == 0, ended.stderr
     assert re.search(r"^poses +\d+ at", ended.stdout, re.MULTILINE)
     assert "(wanted 120)" in ended.stdout
+    of_each = {"nodes": ["anemometer", "wind", "solver", "viewer"], "demo": ["demo"]}[kind]
+    assert re.findall(r"^memory +(\w+)", ended.stdout, re.MULTILINE) == of_each
     assert "failed   0 callbacks; 0 restarts" in ended.stdout

@@ -8,13 +8,13 @@ now, are known beforehand (`ladder`); the cheapest that stays within the toleran
 or, where none that can be afforded does, the most accurate of those.
 
 **Up at once.** A load beyond what the model was chosen for is noticed in the step in which it
-comes. The better model goes on from the motion that is shown, its coordinates mapped one by one;
-what the two still differ by fades within 0.4 s.
+comes; one beyond all of the last minute is met by the best model that can be afforded, as nothing
+is known of it yet. The better model goes on from the motion that is shown, its coordinates mapped
+one by one; what the two still differ by fades within 0.4 s.
 
 **Down slowly.** A lesser model first sways along unseen until it has forgotten that it started at
 rest, then the picture goes over to it within a second. It is taken only when it would do with a
 third to spare, so that a wind on the border does not flicker.
-
 """
 
 from __future__ import annotations
@@ -57,6 +57,9 @@ HAND_OVER = 0.4
 
 SURPRISE = 1.2
 """Load over the largest that the model was chosen for, at which the choice is looked at again."""
+
+UNFORESEEN = 2.0
+"""Load over the largest of the last minute at which the best model is taken that is affordable."""
 
 GUST_MEMORY = 5.0
 """Time in [s] after which a gust counts 1/e."""
@@ -168,7 +171,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         self._tracker.add(self._shown.wind, dt)
         self._behind = max(self._behind - dt / HAND_OVER, 0.0)
         if self._left is not None:
-            self._left.step(wind_mean, dt)
+            self._left.step(self._left.wind, dt)  # what changes is for the new model to meet
             self._set_apart(self._left)
         if self._next is not None:
             self._next.step(wind_mean, dt)
@@ -254,14 +257,25 @@ class AdaptiveSimulator(OneTree, KeepsState):
         for each in self._built.values():
             each.tune(**changes)
 
-    def review(self) -> Estimate:
+    def review(self, *, at_best: bool = False) -> Estimate:
         """
-        Look at the choice again: call it when the tolerance has changed. Returns what is chosen.
+        Look at the choice again: call it when the tolerance has changed.
+
+        Parameters
+        ----------
+        at_best
+            Whether to choose the most accurate that the budget allows, whatever the tolerance.
+
+        Returns
+        -------
+        Estimate
+            What is chosen.
 
         """
         self._since_review, self._judged = 0.0, self._gust
-        estimates = self._estimates(self._tracker.climate, self._gust_climate())
-        wanted = self._choose(estimates, current=self.choice)
+        climate = self._tracker.climate
+        estimates = self._estimates(climate, self._in_gust(climate))
+        wanted = self._choose(estimates, current=self.choice, at_best=at_best)
         now = next(e for e in estimates if e.name == self.choice.name)
         if wanted.name == self.choice.name:
             self.choice = wanted
@@ -286,7 +300,6 @@ class AdaptiveSimulator(OneTree, KeepsState):
     def reset(self) -> None:
         """
         Go back to rest and to the wind that was expected, at once on the model that it asks for.
-
         """
         self.choice = self._expect()
         self._shown, self._next, self._left = self._simulator(self.choice), None, None
@@ -308,13 +321,13 @@ class AdaptiveSimulator(OneTree, KeepsState):
         if self._gust < load and is_wind(x, y, z, self.settings.max_wind):
             self._gust, self._bearing = load, (x, y)
             if load > SURPRISE * self._judged:
-                self.review()
+                self.review(at_best=load > UNFORESEEN * self._tracker.largest_load)
 
-    def _gust_climate(self) -> WindClimate:
+    def _in_gust(self, climate: WindClimate) -> WindClimate:
         """Forecast until the next look: the last gust holds on, as unsteady as the last minute."""
         mean = np.array(self._bearing)
         mean *= self._gust / max(float(np.linalg.norm(mean)), 1e-9)
-        return replace(self._tracker.climate, mean=mean, speed=math.sqrt(self._gust))
+        return replace(climate, mean=mean, speed=math.sqrt(self._gust))
 
     def _hand_over(self, wanted: Estimate) -> None:
         """Let a better model go on from the motion that is shown."""
@@ -343,11 +356,13 @@ class AdaptiveSimulator(OneTree, KeepsState):
         each = [self.ladder.estimates(climate) for climate in climates]
         return [max(of_model, key=lambda e: e.error) for of_model in zip(*each, strict=True)]
 
-    def _choose(self, estimates: list[Estimate], current: Estimate | None = None) -> Estimate:
+    def _choose(
+        self, estimates: list[Estimate], current: Estimate | None = None, *, at_best: bool = False
+    ) -> Estimate:
         affordable = [e for e in estimates if self.pace * e.cost <= self.budget]
         affordable = (affordable or estimates[:1]) if self.budget > 0.0 else estimates
         same = next((e for e in affordable if current and e.name == current.name), None)
-        wanted = _least(affordable, self.tolerance)
+        wanted = None if at_best else _least(affordable, self.tolerance)
         if wanted is None:
             wanted = choose(affordable)
             return same if same is not None and _SPARE * same.error < wanted.error else wanted

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 How much model a scene needs: what is known of a model before it runs, and the least that will do.
-
 """
 
 from __future__ import annotations

@@ -6,12 +6,9 @@ models.
 
 Prices are fits to trees of 31 to 261 branches in 3 to 12 segments each, timed on one core of a
 server of 2020; `pace` scales them to the machine at hand.
-
 """
 
 from __future__ import annotations
-
-import numpy as np
 
 from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.tree.tree import Tree
@@ -52,8 +49,7 @@ def frame_cost(bank: Bank, tree: Tree) -> float:
     if not bank.frequencies.size:
         return place
     each = _STEP_CARRIED if bank.oscillators.carries else _STEP_ALONE
-    shapes = getattr(bank.oscillators, "shapes", np.zeros(0))
     step = _CALL + each * n_moving + _STEP_ENRICHED * n_enriched
     if bank.oscillators.is_tabled:
         step = _CALL + _STEP_TABLED
-    return place + step + _MODE_OF_COORDINATE * shapes.size
+    return place + step + _MODE_OF_COORDINATE * bank.oscillators.shapes.size

@@ -36,7 +36,7 @@ from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
 
-MARGIN = 1.6
+MARGIN = 1.3
 """Estimated over computed error: the wind is not quite linear in its effect."""
 
 FLOOR = 0.06
@@ -142,13 +142,17 @@ class FidelityLadder:
 
         """
         load = pressure(climate.speed, *self._drag_law)
-        means, swings = _mean_squares(self._grams, climate)
-        swing, offset = load * math.sqrt(swings[0]), load * math.sqrt(means[0] + swings[0])
-        errors = MARGIN * load * np.sqrt(means[1:] + swings[1:])
+        power = climate.power(_FREQUENCIES)
+        swings = np.maximum(_mean_squares(self._grams, power), 0.0)
+        power[0] += np.outer(climate.mean, climate.mean)
+        squares = np.maximum(_mean_squares(self._grams, power), 0.0)
+        swing, offset = load * math.sqrt(swings[0]), load * math.sqrt(squares[0])
+        errors = MARGIN * load * np.sqrt(squares[1:])
         found = []
-        tables = [each.table_error for each in self._models.values()]
-        for each, error, table in zip(self._models.values(), errors.tolist(), tables, strict=True):
-            bound = error + ((FLOOR + table) * offset if each.model != "frozen" else 0.0)
+        for each, error in zip(self._models.values(), errors.tolist(), strict=True):
+            # What no linear model knows has nothing to do with what a lesser one leaves out.
+            rest = (FLOOR + each.table_error) * offset if each.model != "frozen" else 0.0
+            bound = math.hypot(error, rest)
             found.append(Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen))
         return sorted(found, key=lambda e: e.cost)
 
@@ -173,8 +177,8 @@ class FidelityLadder:
         )
         error = _gram(tip_motion(whole.branches, rotations) - self._truth)
         cost = frame_cost(bank, self.tree)
-        table = getattr(bank.oscillators, "table", None)
-        told = 0.0 if table is None else TABLE_FLOOR + TABLE_MARGIN * table.error
+        of = bank.oscillators
+        told = TABLE_FLOOR + TABLE_MARGIN * of.table_error if of.is_tabled else 0.0
         self._models[name] = _Model(model, n_modes, share, bank.n_frozen, cost, error, told)
 
 
@@ -206,19 +210,7 @@ def _gram(response: Complexes) -> Floats:
     return np.asarray(gram, dtype=np.float64)
 
 
-def _mean_squares(grams: Floats, climate: WindClimate) -> tuple[Floats, Floats]:
-    """
-    Mean squares that the mean of a load and its swings make of responses, per unit of drag
-    pressure, both (k,), for `_gram` of each, (k, f, 2, 2).
-
-    """
-    spectrum = climate.spectrum(_FREQUENCIES) * _SPANS
-    weights = np.multiply.outer(spectrum, climate.covariance).ravel()
-    swings = grams.reshape(len(grams), -1) @ weights
-    means = grams[:, 0] @ climate.mean @ climate.mean
-    return np.maximum(means, 0.0), np.maximum(swings, 0.0)
-
-
-_SPANS = np.gradient(_FREQUENCIES)
-_SPANS[[0, -1]] *= 0.5
-"""Weights of the trapezoidal rule."""
+def _mean_squares(grams: Floats, power: Floats) -> Floats:
+    """Mean squares that the power of a load (f, 2, 2) makes of responses (k, f, 2, 2), (k,)."""
+    squares: Floats = grams.reshape(len(grams), -1) @ power.ravel()
+    return squares

@@ -5,7 +5,6 @@ A broadleaf that stands alone: a trunk that loses itself in limbs, and a crown o
 
 Limbs and their branches grow towards the outline of the crown and stop short of it; that alone
 shapes it.
-
 """
 
 from __future__ import annotations

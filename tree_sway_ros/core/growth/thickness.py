@@ -8,7 +8,6 @@ length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p
 where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as ours,
 lie between. The length w follows from the one diameter that is given, at the base or at breast
 height.
-
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ INSERTION_RATIO = 0.76
 
 
 def carried_length(skeleton: Skeleton) -> list[Floats]:
-    """Length of all shoots beyond each node in [m], one (k + 1,) a shoot."""
+    """Length of all shoots beyond each node in [m], one (k + 1,) per shoot."""
     shoots = skeleton.shoots
     added = [np.zeros(len(shoot.nodes)) for shoot in shoots]
     beyond: list[Floats] = [np.empty(0)] * len(shoots)
@@ -71,7 +70,7 @@ def node_diameters(
     Returns
     -------
     list
-        One (k + 1,) a shoot in [m], falling from base to tip.
+        One (k + 1,) per shoot in [m], falling from base to tip.
 
     Raises
     ------

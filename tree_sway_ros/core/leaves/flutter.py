@@ -12,7 +12,6 @@ pi f) U^2``. In strong wind leaves fold together and flutter grows no more (Tadr
 the amplitude levels off at `LARGEST_ANGLE`, which is an estimate.
 
 The law is two constants and one line, so that it can be computed where leaves are drawn.
-
 """
 
 from __future__ import annotations

@@ -8,7 +8,6 @@ has as much leaf area as its stem can supply, but no more than six times the gro
 stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun would:
 leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in a crown
 of outline F (Monsi & Saeki 1953).
-
 """
 
 from __future__ import annotations
@@ -83,7 +82,6 @@ class LeafClusters:
 def leafy_length(tree: Tree) -> Floats:
     """
     Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood, or 0.
-
     """
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
@@ -126,7 +124,6 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
     """
     Area of wood on each branch that is clad in needles, which stand all round it, in [m^2], (b,).
-
     """
     if not traits.are_needles:
         return np.zeros(tree.n_branches)
@@ -221,7 +218,6 @@ def no_clusters() -> LeafClusters:
 def _facing_up(away: Floats, rest: Floats) -> Floats:
     """
     Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
-
     """
     from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
 

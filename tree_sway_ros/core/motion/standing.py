@@ -8,7 +8,6 @@ tree scaled by k bends by the same angles in the same wind, and swings k times s
 goes with the fifth power of its size, its stiffness and the wind's moment with the third. So it is
 its kind, stepped by 1/k of the time. (Gravity and the profile of the wind are those of the kind,
 but that the speed is that at its own height.)
-
 """
 
 from __future__ import annotations

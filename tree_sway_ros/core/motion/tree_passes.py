@@ -6,7 +6,6 @@ One pass outward and one inward: how branches move on each other, and what they 
 Outward, from the stem to the twigs: each base takes over the motion of its parent, and the wind's
 force on each branch is found in the air that passes it. Inward, from the twigs to the stem: each
 branch adds up force and moment of all it carries.
-
 """
 
 from __future__ import annotations
@@ -230,7 +229,6 @@ def inward_pass(branches: Records, work: Records) -> None:
     """
     Add up, from the twigs to the stem, force and moment about the root of all that each branch
     carries.
-
     """
     for b in range(len(branches)):
         here, couple = work[b], branches[b].couple
@@ -323,7 +321,6 @@ def _turned_loads(loads: Record) -> None:
     """
     Turn the wind's own forces on sixteen branches into loads on their coordinates and moments about
     their bases.
-
     """
     force, push, load, couple = loads.own_force, loads.push, loads.load, loads.couple
     turn, base, moment = loads.turned, loads.base, loads.moment

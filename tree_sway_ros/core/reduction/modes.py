@@ -6,7 +6,6 @@ Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
 Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq,
 Sorensen & Yang, 1998); all modes of a small one from the dense problem. A tree whose stiffness with
 its own weight is not positive buckles (Greenhill, 1881): it is refused with the name of the branch.
-
 """
 
 from __future__ import annotations

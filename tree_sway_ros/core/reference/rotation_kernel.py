@@ -3,7 +3,6 @@
 """
 Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is
 allocated.
-
 """
 
 from __future__ import annotations
@@ -106,7 +105,6 @@ def inverse(m: Floats, out: Floats) -> None:
 def turn_on(q: Any, v: Vector, out: Any) -> None:
     """
     Turn a quaternion wxyz (4,) on by a rotation vector in its own axes in [rad], to unit length.
-
     """
     square = dot(v, v)
     half = 0.5 * math.sqrt(square)
@@ -146,7 +144,6 @@ def twist_of(q: Any, t: Vector) -> tuple[float, Vector]:
     Angle in [rad] that a quaternion wxyz (4,) turns about an axis, and its gradient in body axes.
 
     Swing and twist: the rotation is one about the axis and one across it (Dobrowolski 2015).
-
     """
     w, v = q[0], (q[1], q[2], q[3])
     about = dot(v, t)
@@ -164,7 +161,6 @@ def held_torque(v: Vector, torque: Vector) -> Vector:
 
     That is ``J^-T torque`` with J the right Jacobian of the exponential map (Chirikjian 2012,
     10.86).
-
     """
     square = dot(v, v)
     if square < 1e-4:

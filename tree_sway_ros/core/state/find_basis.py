@@ -5,7 +5,6 @@ Finding the basis of a tree's shapes: singular values of what the tips do in see
 
 Three winds, calm to storm, turn once about the tree each; each run counts alike, whatever its
 strength. What the basis leaves out is told by runs in other winds.
-
 """
 
 from __future__ import annotations
@@ -151,7 +150,6 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
     """
     Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
     (m, N).
-
     """
     shapes, projections = [], []
     for rotations in runs:
@@ -170,20 +168,7 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:
     """
-    Moments on the coordinates under forces on the tips: the transpose of `tip_motion`.
-
-    Parameters
-    ----------
-    joints
-        Records of `BRANCH`, (b,).
-    forces
-        (b, 3, m).
-
-    Returns
-    -------
-    Floats
-        (N, m).
-
+    Moments on the coordinates (N, m) under forces on the tips (b, 3, m): `tip_motion` transposed.
     """
     moments = np.zeros((int(joints["n_coordinates"].sum()), forces.shape[-1]))
     wrench = np.concatenate([forces, np.cross(joints["tip"][:, :, None], forces, axis=1)], axis=1)

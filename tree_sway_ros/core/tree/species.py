@@ -11,7 +11,6 @@ and the field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 a
 broadleaf of no known species take the mean of the three measured broadleaves, Goldcrest takes
 spruce's. Entries marked as estimates have no measurement behind them. Where leaves come from stands
 in `leaf_traits`.
-
 """
 
 from __future__ import annotations
@@ -231,6 +230,9 @@ def species_named(key: str) -> Species:
         If no species has that key; the error lists those that exist.
 
     """
+    if not isinstance(key, str):
+        what = f"a {type(key).__name__}, where the key of a species is asked for"
+        raise SpeciesError(what, cure="give its key, as 'oak'")
     try:
         return _TABLE[key]
     except KeyError:
@@ -257,7 +259,6 @@ def typical_root_stiffness(stem_mass: float) -> float:
     120 is taken. They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust &
     Krisans 2023, Forests 14, 533). Soils differ by a factor of two. That broadleaves are like
     conifers is assumed.
-
     """
     return 0.4 * 120.0 * stem_mass / math.radians(0.25)
 

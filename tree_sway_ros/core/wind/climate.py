@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The wind of the last while in a few numbers: what a choice of model needs to know of it.
+The wind of the last while as a choice of model needs to know it: how its load swings, and how fast.
 
-A load goes with ``|U| U``. Its mean and covariance are taken in the plane; how it is spread over
-frequencies is von Karman's longitudinal spectrum (von Karman, 1948) of the wind's integral time.
-
+A load goes with ``|U| U``. Of a wind that is only described its mean and covariance in the plane
+are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral time
+(von Karman, 1948). A wind that was measured has a spectrum of its own.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.wind.simulated.spectra import von_karman_spectrum
 
 
@@ -33,10 +33,10 @@ class WindClimate:
     speed
         Mean speed in [m/s].
     integral_time
-        How long a gust lasts in [s].
-    beat, beat_share
-        Frequency in [Hz] at which the load swings most, and the share of the variance that does so;
-        no share in turbulence.
+        How long a gust lasts in [s], of a wind that is only described.
+    record, rate
+        ``|U| U`` as it was measured in [m^2/s^2], (n, 2), and how often in [Hz]; None if it was
+        not.
 
     """
 
@@ -44,28 +44,19 @@ class WindClimate:
     covariance: Floats
     speed: float
     integral_time: float = 5.0
-    beat: float = 1.0
-    beat_share: float = 0.0
+    record: Floats | None = None
+    rate: float = 1.0
 
     @staticmethod
     def steady(
         mean_speed: float, intensity: float, bearing: float = 0.0, integral_time: float = 5.0
     ) -> WindClimate:
         """
-        Take a wind that is only described.
+        Take a wind that is only described: a mean speed [m/s] towards a bearing from x towards y in
+        [rad].
 
-        Parameters
-        ----------
-        mean_speed
-            In [m/s].
-        intensity
-            Standard deviation over mean of the along-wind speed in [-]; across it 0.8 of that (IEC
-            61400-1).
-        bearing
-            Angle of the mean from x towards y in [rad].
-        integral_time
-            How long a gust lasts in [s].
-
+        The intensity is that along the wind; across it 0.8 of that is taken (IEC 61400-1). A gust
+        lasts for the integral time [s].
         """
         along = np.array([math.cos(bearing), math.sin(bearing)])
         across = np.array([-along[1], along[0]])
@@ -76,63 +67,104 @@ class WindClimate:
             square * (1.0 + intensity**2) * along, covariance, mean_speed, integral_time
         )
 
-    def spectrum(self, frequencies: Floats) -> Floats:
-        """
-        Share of the variance per frequency in [1/Hz], of integral 1; (f,) for frequencies (f,) in
-        [Hz].
+    @staticmethod
+    def of_samples(velocity: Floats, rate: float) -> WindClimate:
+        """Take a wind that is known in [m/s], (n, 2) or (n, 3), at a rate in [Hz]."""
+        speed = np.linalg.norm(velocity, axis=1)
+        return _of_loads(speed[:, None] * velocity[:, :2], float(speed.mean()), rate)
 
+    def power(self, frequencies: Floats) -> Floats:
         """
-        share = von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
-        if self.beat_share > 0.0:
-            width = _BEAT_WIDTH * self.beat
-            swing = np.exp(-0.5 * np.square((frequencies - self.beat) / width))
-            swing *= self.beat_share / (math.sqrt(2.0 * math.pi) * width)
-            share = (1.0 - self.beat_share) * share + swing
-        return share
+        Mean square of the load's swings at frequencies [Hz], rising from 0, (f,); [m^4/s^4], (f, 2,
+        2).
+
+        A record stands for itself with calm before and after it, so that what sets in with it is
+        counted too: what a linear model answers to this power is no less than the mean square of
+        its motion from rest in that time (Parseval's theorem).
+        """
+        if self.record is None:
+            spans = np.gradient(frequencies)
+            spans[[0, -1]] *= 0.5
+            density = von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
+            return np.multiply.outer(density * spans, self.covariance)
+        n = len(self.record)
+        lines = np.fft.rfft(self.record, 2 * n, axis=0)
+        lines[1:-1] *= math.sqrt(2.0)
+        squares = np.einsum("fi,fj->ijf", lines.conj(), lines).real / (2 * n * n)
+        below, share = _between(np.arange(n + 1) * self.rate / (2 * n), frequencies)
+        power = np.empty((len(frequencies), 2, 2))
+        for i, j in np.ndindex(2, 2):
+            power[:, i, j] = np.bincount(below, (1.0 - share) * squares[i, j], len(power))
+            power[:, i, j] += np.bincount(below + 1, share * squares[i, j], len(power))
+        mean = self.record.mean(axis=0)
+        power[0] -= np.outer(mean, mean)
+        return power
 
 
 class ClimateTracker:
-    """
-    Statistics of the wind as it comes, the older the fainter.
-
-    Parameters
-    ----------
-    memory
-        Time after which a sample counts 1/e in [s].
-
-    """
+    """The wind as it comes, in cells of even length, remembered for ``memory`` [s]."""
 
     def __init__(self, memory: float = 60.0) -> None:
         """Start with no wind."""
-        self.memory = memory
-        self._weight = self._speed = 0.0
-        self._x = self._y = self._xx = self._xy = self._yy = 0.0
+        self._memory = memory
+        self._cells = np.zeros((round(memory * _RATE), 3))
+        self._count = 0
+        self._x = self._y = self._way = self._open = 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
         """
         Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step.
-
         """
         u, v, w = wind.tolist()
-        speed = math.sqrt(u * u + v * v + w * w)
-        x, y = speed * u, speed * v
-        keep = math.exp(-dt / self.memory)
-        self._weight = keep * self._weight + (1.0 - keep)
-        new = (1.0 - keep) / self._weight
-        self._speed += new * (speed - self._speed)
-        self._x += new * (x - self._x)
-        self._y += new * (y - self._y)
-        self._xx += new * (x * x - self._xx)
-        self._xy += new * (x * y - self._xy)
-        self._yy += new * (y * y - self._yy)
+        speed, left = math.sqrt(u * u + v * v + w * w), min(dt, self._memory)
+        while left > 0.0:
+            part = min(left, 1.0 / _RATE - self._open)
+            self._x += part * speed * u
+            self._y += part * speed * v
+            self._way += part * speed
+            self._open += part
+            left -= part
+            if self._open > (1.0 - 1e-9) / _RATE:
+                self._cells[self._count % len(self._cells)] = self._cell
+                self._count += 1
+                self._x = self._y = self._way = self._open = 0.0
 
     @property
     def climate(self) -> WindClimate:
-        """Statistics so far."""
-        mean = np.array([self._x, self._y])
-        square = np.array([[self._xx, self._xy], [self._xy, self._yy]])
-        return WindClimate(mean, square - np.outer(mean, mean), self._speed)
+        """What is remembered."""
+        cells = np.roll(self._cells, -self._count, axis=0)[max(-self._count, -len(self._cells)) :]
+        cells = cells if self._count else cells[:0]
+        if self._open > 0.0 or not len(cells):
+            cells = np.vstack([cells, self._cell])
+        return _of_loads(cells[:, :2], float(cells[:, 2].mean()), _RATE)
+
+    @property
+    def largest_load(self) -> float:
+        """Largest ``|U| U`` of a cell that is remembered in [m^2/s^2]."""
+        return float(np.hypot(self._cells[:, 0], self._cells[:, 1]).max())
+
+    @property
+    def _cell(self) -> tuple[float, float, float]:
+        """Means of the cell that is open."""
+        time = max(self._open, 1e-12)
+        return self._x / time, self._y / time, self._way / time
 
 
-_BEAT_WIDTH = 0.04
-"""Width of a beat over its frequency in [-]."""
+_RATE = 20.0
+"""Cells per second in [Hz]."""
+
+
+def _of_loads(loads: Floats, speed: float, rate: float) -> WindClimate:
+    mean = loads.mean(axis=0)
+    around = loads - mean
+    return WindClimate(
+        mean, around.T @ around / len(loads), speed, record=np.ascontiguousarray(loads), rate=rate
+    )
+
+
+def _between(lines: Floats, frequencies: Floats) -> tuple[Ints, Floats]:
+    """Which frequency is next below each line, (k,), and how far it is towards the one above."""
+    below = np.searchsorted(frequencies, lines, side="right") - 1
+    below = np.minimum(below, len(frequencies) - 2)
+    low, high = frequencies[below], frequencies[below + 1]
+    return below, np.minimum((lines - low) / (high - low), 1.0)

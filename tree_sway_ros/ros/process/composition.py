@@ -6,7 +6,6 @@ Several nodes in one process, over real DDS: for the demo, for tests, for progra
     with Composition({"anemometer": {}, "wind": {}, "solver": {"tree": "goldcrest"}}) as nodes:
         ...
         nodes.check()
-
 """
 
 from __future__ import annotations
@@ -83,19 +82,7 @@ class Composition:
         self._thread.start()
 
     def add(self, name: str, values: Mapping[str, Value], namespace: str = "") -> Any:
-        """
-        Start another node.
-
-        Parameters
-        ----------
-        name
-            One of `NODE_CLASSES`.
-        values
-            Of its parameters.
-        namespace
-            Of the node; two trees need two of them.
-
-        """
+        """Start another node of `NODE_CLASSES` in a namespace, with values of its parameters."""
         from rclpy.parameter import Parameter
 
         module, class_name = NODE_CLASSES[name]

@@ -160,17 +160,9 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def publisher(self, topic: Topic, kind: Any = None, *, alone: bool = False) -> Any:
         """
-        Publisher of a topic of the table.
+        Publisher of a topic of the table, of a kind of messages where a parameter chooses it.
 
-        Parameters
-        ----------
-        topic
-            Of the table.
-        kind
-            Class of the messages, where a parameter chooses it.
-        alone
-            Whether a second publisher on the topic is a fault, to be told of.
-
+        ``alone``: a second publisher on the topic is a fault, to be told of.
         """
         made = self.create_publisher(
             kind or message_class(topic),
@@ -194,7 +186,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """
         Subscription to a topic of the table; `kind` where a parameter chooses the type, `raw` for
         bytes, `alone` where a second publisher is a fault.
-
         """
         made = self.create_subscription(
             kind or message_class(topic),
@@ -214,7 +205,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
         No executor comes between a thread that keeps time and its messages: what came before the
         clock went on is there when the tick is.
-
         """
         made = self.create_subscription(
             message_class(topic),

@@ -6,7 +6,6 @@ The topics: name, type and quality of service of each, for the nodes and for the
 Names are relative, so that a namespace holds one tree. Poses and markers are RELIABLE because RViz
 and Unity ask for that and see nothing otherwise; queues are short because a reliable queue replays
 everything it holds once a broken link is back.
-
 """
 
 from __future__ import annotations

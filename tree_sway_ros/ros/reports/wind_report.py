@@ -24,7 +24,6 @@ class WindReport:
     """
     Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with
     stamps.
-
     """
 
     def __init__(self) -> None:
@@ -95,4 +94,7 @@ class WindReport:
             return Status("wind", WARN, f"no wind for {age:.1f} s, its force decays", values)
         if gate.is_frozen:
             return Status("wind", WARN, "frozen: the sensor repeats the same sample", values)
+        if gate.is_sluggish:
+            text = "sluggish: the sensor passes slow changes alone, is its bearing free?"
+            return Status("wind", WARN, text, values)
         return Status("wind", OK, f"{self.rate:.1f} Hz", values)

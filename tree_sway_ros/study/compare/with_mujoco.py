@@ -24,8 +24,8 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.climate import WindClimate
 from tree_sway_ros.study.compare.mujoco_tree import NO_TWIST, MujocoTree
-from tree_sway_ros.study.record_climate import climate_of_samples
 from tree_sway_ros.study.tip_error import Swaying, record_tips, tip_error
 from tree_sway_ros.tools.progress import bar, waiting
 
@@ -148,7 +148,7 @@ def compare_with_mujoco(
     ours: SwaySimulator | AdaptiveSimulator
     if model == "auto":
         motion = float(np.sqrt(np.square(truth - rest).sum(axis=2).mean()))
-        expected = climate_of_samples(wind, 1.0 / FRAME)
+        expected = WindClimate.of_samples(wind, 1.0 / FRAME)
         ours = AdaptiveSimulator(tree, wood, settings, tolerance=AUTO * motion, expected=expected)
         model = ours.choice.name
     else:

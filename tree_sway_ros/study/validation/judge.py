@@ -25,7 +25,6 @@ from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
 from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS
-from tree_sway_ros.study.record_climate import climate_of_samples
 from tree_sway_ros.study.tip_error import record_tips, tip_error
 from tree_sway_ros.study.validation.winds import FRAME
 
@@ -123,7 +122,7 @@ class Judge:
         for name, wind in winds.items():
             self.truth.reset()
             truth = record_tips(self.truth, self.tree, wind, FRAME, substeps=self.substeps)
-            for estimate in self.ladder.estimates(climate_of_samples(wind, 1.0 / FRAME)):
+            for estimate in self.ladder.estimates(WindClimate.of_samples(wind, 1.0 / FRAME)):
                 if wanted is None or estimate.name in wanted:
                     tips = record_tips(self._built(estimate), self.tree, wind, FRAME)
                     metres = float(np.sqrt(np.square(tips - truth).sum(axis=2).mean()))

@@ -4,7 +4,6 @@
 ``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
 
 The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved anew.
-
 """
 
 from __future__ import annotations
@@ -72,19 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 class Recorder(Listener):
     """
-    Writes what a tree's nodes send into a bag, message by message as bytes.
-
-    Parameters
-    ----------
-    context
-        Of rclpy; one of its own if None.
-    bag
-        To write to.
-    topics
-        What to record.
-    namespace
-        Of the nodes.
-
+    Writes what the nodes of a tree send on some topics into a bag, message by message as bytes.
     """
 
     def __init__(

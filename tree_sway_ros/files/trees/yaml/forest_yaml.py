@@ -11,7 +11,6 @@ Keys, kinds and ranges are those of ``forest_schema.json`` beside this file::
       - {name: fig, tree: benjamina, x: 0, y: 0, leaf_on: true}
       - {name: cypress, tree: goldcrest, x: 1.5, y: 0.4, yaw: 2.1, seed: 7}
       - {name: old oak, tree: ../scans/oak.mat, species: oak, x: 9, y: 3}
-
 """
 
 from __future__ import annotations
@@ -45,14 +44,7 @@ def is_forest(path: Path) -> bool:
 
 def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) -> ForestFile:
     """
-    Read a forest from a YAML file.
-
-    Parameters
-    ----------
-    path
-        The file.
-    open_tree
-        Opens a tree by its name or path, with a seed.
+    Read a forest from a YAML file, its trees opened by their names or paths, with a seed.
 
     Raises
     ------
