@@ -31,6 +31,9 @@ nothing.
 
 _DENSE_UP_TO = 400
 
+_MOST_LEFT = 0.05
+"""Of what wind drives slow modes to do, root mean square: as much may be left out."""
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -127,7 +130,9 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
-def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
+def most_driven(
+    modes: Modes, loads: Floats, moved: Floats, count: int, further: int = 0
+) -> Modes:
     """
     Keep the modes by which turbulence moves the tips most.
 
@@ -145,6 +150,9 @@ def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes
         Sum over the tips of the square of what a unit of each mode moves them, (m,).
     count
         How many to keep.
+    further
+        How many more at most, where else those left out would make up more than 5 % of the root
+        mean square of all.
 
     Returns
     -------
@@ -153,7 +161,10 @@ def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes
 
     """
     driven = moved * np.square(modes.shapes.T @ loads).sum(axis=1) / modes.circular ** (14.0 / 3.0)
-    kept = np.sort(np.argsort(-driven, kind="stable")[:count])
+    order = np.argsort(-driven, kind="stable")
+    left = 1.0 - np.cumsum(driven[order]) / max(float(driven.sum()), 1e-300)
+    missed = int((left[count - 1 :] > _MOST_LEFT**2).sum())
+    kept = np.sort(order[: count + min(missed, further)])
     return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
 
 
