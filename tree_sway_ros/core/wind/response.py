@@ -11,7 +11,6 @@ the resolution bring the ratio down to 1, and so never raise a false alarm.
 Over two minutes the ratio was 1.4 to 1.7 of a sonic 7 m above the ground and 0.9 to 1.6 of a vane
 and cup at sea; behind a filter of 5 s it was 3.2 to 3.6 of the sonic's record, of one of 0.5 s, as
 healthy cups are in light winds, 2.0 to 2.4.
-
 """
 
 from __future__ import annotations
