@@ -69,19 +69,11 @@ def _compiled(function: _F, **options: Any) -> _F:
 
 def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
     """
-    Return the machine code of a kernel for arguments of these types, to be called many times.
+    Return the machine code of a kernel for arguments such as these, to be called many times.
 
     A call of the kernel itself looks at the type of each argument first, which for a small tree
     takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types and
     layouts may be passed.
-
-    Parameters
-    ----------
-    function
-        The kernel.
-    *arguments
-        Such as it will be called with.
-
     """
     find = getattr(function, "get_overload", None)
     if find is None:
@@ -94,20 +86,7 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
 
 
 def need_compiler(what: str) -> None:
-    """
-    Refuse what has no form but the compiled one.
-
-    Parameters
-    ----------
-    what
-        What is asked for, for the error.
-
-    Raises
-    ------
-    MissingDependencyError
-        If kernels are not compiled here.
-
-    """
+    """Refuse what has no form but the compiled one, with a `MissingDependencyError`."""
     if WHY_PLAIN:
         raise MissingDependencyError(
             f"{what} needs compiled kernels, and {WHY_PLAIN}",

@@ -54,19 +54,9 @@ def half_angle_near(t: float) -> tuple[float, float]:
 @fused
 def half_angle(t: float) -> tuple[float, float]:
     """
-    Cosine of ``sqrt(t)`` and sine over ``sqrt(t)``: by series up to 1.5 rad (error below 3e-13),
-    exact beyond.
+    Cosine of ``sqrt(t)`` and sine over it, t the square of half the angle in [rad^2].
 
-    Parameters
-    ----------
-    t
-        Square of half the rotation angle in [rad^2].
-
-    Returns
-    -------
-    tuple
-        cos and sinc of half the angle.
-
+    By series up to 1.5 rad (error below 3e-13), exact beyond.
     """
     if t > SERIES_LIMIT:
         root = math.sqrt(t)

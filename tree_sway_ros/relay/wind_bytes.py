@@ -28,13 +28,7 @@ def encode_wind(stamp: int, vector: tuple[float, float, float], frame_id: str = 
 
 def decode_wind(data: bytes) -> tuple[int, tuple[float, float, float]]:
     """
-    Read a sample: its time [ns] and the vector [m/s].
-
-    Raises
-    ------
-    FormatError
-        Bytes that hold none, or numbers that are not finite.
-
+    Read a sample, its time [ns] and the vector [m/s]; a `FormatError` for bytes that hold none.
     """
     try:
         second, nanosecond, length = _STAMP.unpack_from(data, len(_HEAD))

@@ -123,18 +123,9 @@ class _OneLineParser(argparse.ArgumentParser):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """
-    Run a command.
+    Run a command by its arguments, `sys.argv` if None.
 
-    Parameters
-    ----------
-    argv
-        Arguments without the program's name; `sys.argv` if None.
-
-    Returns
-    -------
-    int
-        Exit code: 0, or 2 if the user can mend it, with one line that says how.
-
+    The exit code is 0, or 2 if the user can mend it, with one line that says how.
     """
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning  # type: ignore[assignment]

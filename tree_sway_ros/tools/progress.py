@@ -25,17 +25,7 @@ _LINES_EVERY = 10.0
 
 
 def bar(items: Collection[T], what: str) -> Iterator[T]:
-    """
-    Yield the items, and show how many of them are done.
-
-    Parameters
-    ----------
-    items
-        What is worked on, one after the other.
-    what
-        What is done, for the bar: "MuJoCo", "settling".
-
-    """
+    """Yield the items, and show how many of them are done, and of what: "MuJoCo", "settling"."""
     if sys.stderr is not None and sys.stderr.isatty():
         try:
             from tqdm import tqdm

@@ -31,17 +31,12 @@ _BLADES = 2800
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    add = parser.add_argument
     add_sway_arguments(parser)
-    parser.add_argument(
-        "--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)"
-    )
-    parser.add_argument("--start", type=float, default=0.0, help="of the wind [s] (%(default)s)")
-    parser.add_argument(
-        "--rate", type=float, default=20.0, help="pictures per second [Hz] (%(default)s)"
-    )
-    parser.add_argument(
-        "--pixels", type=int, default=480, help="height of the picture (%(default)s)"
-    )
+    add("--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)")
+    add("--start", type=float, default=0.0, help="of the wind [s] (%(default)s)")
+    add("--rate", type=float, default=20.0, help="pictures per second [Hz] (%(default)s)")
+    add("--pixels", type=int, default=480, help="height of the picture (%(default)s)")
     add_output_arguments(parser, "file to write: .gif, .png, .mp4, or a folder for its frames")
 
 

@@ -9,7 +9,6 @@ these bends it into, and so on; and how it is twisted by all it carries when tha
 chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its
 flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and twists
 in one: no coordinate of its own is spent on twist.
-
 """
 
 from __future__ import annotations
@@ -83,18 +82,9 @@ class Carried:
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
-    Two unit vectors across a chord: e1 in the vertical plane, or along x for an upright one.
+    Two unit vectors across a chord (3,): e1 in the vertical plane, or along x for an upright one.
 
-    Parameters
-    ----------
-    chord
-        Unit vector, (3,).
-
-    Returns
-    -------
-    tuple
-        e1 and e2 such that (b, e1, e2) is right-handed.
-
+    (b, e1, e2) is right-handed.
     """
     reference = np.array([1.0, 0.0, 0.0]) if abs(chord[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
     e1 = reference - (reference @ chord) * chord
@@ -155,7 +145,6 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     Force per length on the branch at rest, of winds from all sides along the ground, as far as it
     is linear in the wind: per m/s of winds along x, y and z and kg/m^3 in winds of 1 m/s, (p, 5, 3,
     3), the wind first.
-
     """
     tangent = beam.tangent
     across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
@@ -182,7 +171,6 @@ def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -
     upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both ways, what
     they do is exact, and so is the static sway of a tree. None for a branch whose chord no wind
     turns.
-
     """
     slopes = beam.from_base(curvatures)[0]
     ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
@@ -256,7 +244,6 @@ def inertial_moment(
     """
     Internal moment by the inertia of a field and of all that rides on it, (p, 5, 3); of all that is
     carried turning about the chord as one where there is no field.
-
     """
     places = beam.child_point[: len(carried.area)]
     if field is None:

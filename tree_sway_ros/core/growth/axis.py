@@ -6,7 +6,6 @@ The line a growing shoot draws in space, told by its heading.
 A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad]. Habits
 of growth are plain in these terms: a weeping shoot starts above the horizon and ends below it, a
 conifer's starts low and turns up.
-
 """
 
 from __future__ import annotations
@@ -35,18 +34,9 @@ def heading_of(direction: Floats) -> tuple[float, float]:
 
 def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
     """
-    Unit vector at an angle from an axis.
+    Unit vector (3,) at an angle from an axis, both in [rad].
 
-    Parameters
-    ----------
-    axis
-        Unit vector (3,).
-    polar
-        Angle from the axis in [rad].
-    azimuth
-        Angle about the axis in [rad]: 0 is level and to the right of someone who looks along the
-        axis, pi/2 is the side that faces up.
-
+    The azimuth about the axis is 0 level and to the right of someone who looks along it, pi/2 up.
     """
     x, y, z = axis
     across = float(np.hypot(x, y))

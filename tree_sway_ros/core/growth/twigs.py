@@ -6,7 +6,6 @@ Twigs: shoots of a single segment, in groups that are alike.
 Neighbours on the same side of a branch grow the same way and to the same length, so that a solver
 that computes one of them may reuse its motion for the others (Kanda & Ohya, 3.3). Each half of the
 parent has its own length and direction, as the parent bends.
-
 """
 
 from __future__ import annotations

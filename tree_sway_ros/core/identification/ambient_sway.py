@@ -39,15 +39,7 @@ parameters.
 
 @dataclass(frozen=True)
 class AmbientSway(SwayEstimate):
-    """
-    One resonance.
-
-    Parameters
-    ----------
-    gain
-        Log-likelihood that the resonance adds to a smooth spectrum.
-
-    """
+    """One resonance; ``gain`` is the log-likelihood that it adds to a smooth spectrum."""
 
     kind: ClassVar[str] = "ambient"
     gain: float
@@ -55,27 +47,11 @@ class AmbientSway(SwayEstimate):
 
 def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     """
-    Fit the resonance of an ambient record.
+    Fit the resonance of an ambient record along the axis that moves most around a rough frequency
+    [Hz].
 
-    Parameters
-    ----------
-    motion
-        Displacement, tilt or acceleration at even steps, (n, c).
-    dt
-        Step in [s].
-    rough
-        Frequency to look around in [Hz].
-
-    Returns
-    -------
-    AmbientSway
-        Along the axis that moves most around that frequency.
-
-    Raises
-    ------
-    FormatError
-        Fewer than 20 cycles, or no resonance.
-
+    The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c). A
+    `FormatError` tells of fewer than 20 cycles, or no resonance.
     """
     cycles = len(motion) * dt * rough
     if cycles < _MIN_CYCLES:
@@ -133,20 +109,9 @@ def _starts() -> list[Floats]:
 
 def log_spectrum(x: Floats, frequency: Floats) -> tuple[Floats, Floats]:
     """
-    Logarithm of the model's spectrum and its slopes.
+    Logarithm (m,) of the model's spectrum at frequencies [Hz], (m,), and its slopes (m, 5).
 
-    Parameters
-    ----------
-    x
-        log f0, log zeta, log a, log b, p; (5,).
-    frequency
-        In [Hz], (m,).
-
-    Returns
-    -------
-    logarithm, slopes
-        (m,) and (m, 5).
-
+    They are by x: log f0, log zeta, log a, log b, p.
     """
     centre, ratio, resonance, floor = np.exp(np.clip(x[:4], -60.0, 60.0))
     r2 = (frequency / centre) ** 2

@@ -73,23 +73,10 @@ class _Fit:
 
 def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     """
-    Fit the decay of a pull-and-release record.
+    Fit the decay of a pull-and-release record: the strongest mode near a frequency.
 
-    Parameters
-    ----------
-    motion, dt, rough
-        As of `ambient_sway`.
-
-    Returns
-    -------
-    FreeDecay
-        The strongest mode near that frequency.
-
-    Raises
-    ------
-    FormatError
-        Fewer than three cycles, or no motion that decays.
-
+    Arguments are those of `ambient_sway`. A `FormatError` tells of fewer than three cycles, or no
+    motion that decays.
     """
     slow, envelope = _filtered(motion, dt, rough)
     stride = max(1, int(1.0 / (rough * dt * _SAMPLES_PER_CYCLE)))

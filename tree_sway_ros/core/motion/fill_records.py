@@ -6,7 +6,6 @@ The one place where records are filled: what stepping and placing know of a tree
 `branch_records` writes all of a branch, `moving_records` what is left when some are frozen,
 `copy_twigs` which of them copy; `segment_records`, `head_records` and `load_records` lay the same
 out in lanes.
-
 """
 
 from __future__ import annotations
@@ -41,13 +40,8 @@ if TYPE_CHECKING:
 
 def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
     """
-    Fill what placing needs to know of each segment.
-
-    Returns
-    -------
-    ndarray
-        Of `segment_layout`, in blocks of `lanes`.
-
+    Fill what placing needs to know of each segment: records of `segment_layout`, in blocks of
+    `lanes`.
     """
     block, lane, n_records = lanes(tree, models)
     is_plain = all(len(model.fields) == 2 for model in models)
@@ -72,16 +66,8 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
 
 def turns_of_segments(branch: np.void, segments: Records) -> Floats:
     """
-    Rotation vector of each segment of a branch per unit of each coordinate, as placing draws it,
-    (m, k, 3).
-
-    Parameters
-    ----------
-    branch
-        A record of `BRANCH`.
-    segments
-        Records of `segment_layout` of its tree.
-
+    Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate, as placing
+    has it.
     """
     first, count = int(branch["block"]), int(branch["n_coordinates"])
     rows = slice(first, first + int(branch["end"] - branch["first"]))
@@ -96,11 +82,7 @@ def head_records(branches: Records, segments: Records) -> Records:
     """
     Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
 
-    Returns
-    -------
-    ndarray
-        Of `head_layout`, one a block of `lanes` and one to work in.
-
+    Records of `head_layout`, one per block of `lanes` and one to work in.
     """
     first, block = np.unique(branches["block"], return_inverse=True)
     lane, parent = branches["lane"], branches["parent"]
@@ -172,24 +154,10 @@ def branch_records(
     known: Sequence[tuple[list[BranchModel], Records]] = (),
 ) -> Records:
     """
-    All that stepping and placing know of the branches.
+    All that stepping and placing know of the branches: records of `BRANCH`, (b,), or of a layout.
 
-    Parameters
-    ----------
-    tree, models, reduction
-        The tree, its branches and their reduction.
-    speed_profile
-        Wind speed at each segment over that at the anemometer, (n,).
-    layout
-        Of the records; `branch_layout` if None.
-    known
-        Other models of the same tree and their records: what a model is there is here.
-
-    Returns
-    -------
-    ndarray
-        Of `BRANCH`, (b,).
-
+    The profile is the wind speed at each segment over that at the anemometer, (n,). What a model
+    is among other models of the same tree whose records are `known`, is taken from there.
     """
     records = np.zeros(tree.n_branches, dtype=branch_layout() if layout is None else layout)
     new = np.ones(tree.n_branches, dtype=bool)
@@ -304,7 +272,6 @@ def _cubes(squares: Floats) -> Floats:
     """
     Cubes of displacements of both axes together, from the sum of their squares: as if they were
     alike, so that it does not matter how they are laid.
-
     """
     cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
     return cubes
@@ -314,7 +281,6 @@ def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
     """
     Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
     all winds, push and couple (least squares).
-
     """
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
@@ -344,7 +310,6 @@ def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None
 
     In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
     speed of mean cube over mean square: what the flow lacks of that is the spread.
-
     """
     across = float(np.square(mean[:2]).sum())
     record["flow"] = mean
@@ -358,7 +323,6 @@ def _fill_axial_levers(records: Records) -> None:
     """
     Find how far up the parent's chord each subtree's centre of load swings: its displacement across
     per unit of rotation.
-
     """
     area = records["area"].copy()
     moment = records["centre"] * area[:, None]
@@ -376,13 +340,7 @@ def copy_twigs(records: Records, source: Ints) -> None:
     """
     Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
 
-    Parameters
-    ----------
-    records
-        Of `BRANCH`, (b,), written.
-    source
-        Branch that each copies, itself if it is solved, (b,).
-
+    The source is itself where a branch is solved, (b,).
     """
     records["source"] = source
     records["frame"] = records["frame"][source]
@@ -390,22 +348,10 @@ def copy_twigs(records: Records, source: Ints) -> None:
 
 def moving_records(pruning: Pruning, whole: Records) -> Records:
     """
-    Keep the records of the moving branches, with the load of what they now carry as part of
-    themselves.
+    Records of the moving branches, with the load of what they now carry as part of themselves,
+    (m,).
 
-    Parameters
-    ----------
-    pruning
-        What is frozen.
-    whole
-        Records of `BRANCH` of the whole tree, (b,).
-
-    Returns
-    -------
-    ndarray
-        Of `BRANCH`, (m,), for the tree of the moving branches but for their place in blocks, which
-        `segment_records` shares.
-
+    They are complete but for their place in blocks, which `segment_records` shares.
     """
     moving, place = pruning.moving, pruning.place_among_moving
     records = whole[moving].copy()
@@ -474,7 +420,6 @@ class _SlantingWinds:
 
     The first comes from the side that a direction (3,) points to, so that a tree that is turned as
     a whole has the same load from the side that is turned with it.
-
     """
 
     def __init__(self, direction: Floats) -> None:
@@ -505,7 +450,6 @@ def _drawn_turns(model: BranchModel) -> Floats:
     """
     Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3): that of
     a plain branch by one slope about the axes across its chord.
-
     """
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)
@@ -533,21 +477,10 @@ def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
     """
-    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time.
+    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time, (ceil(b / 16),).
 
-    Parameters
-    ----------
-    branches
-        The records.
-    layout
-        Of `load_fields`, or with further fields, which are left zeros; with as many rows as the
-        branches have if None.
-
-    Returns
-    -------
-    ndarray
-        Of the layout, (ceil(b / 16),), at rest and with no force so far.
-
+    At rest, with no force so far; of `load_fields` with as many rows as the branches have, or of a
+    layout with further fields, which are left zeros.
     """
     if layout is None:
         layout = load_layout(branches.dtype["push"].shape[0])

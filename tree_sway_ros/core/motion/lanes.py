@@ -5,7 +5,6 @@ Four numbers of each of four rows to four lanes and back, as vectors.
 
 A branch's pose lies in one row, sixteen branches are computed in lanes: number by number, carrying
 them over takes longer than computing them.
-
 """
 
 from __future__ import annotations
@@ -17,19 +16,10 @@ from tree_sway_ros.core.kernel import WHY_PLAIN
 
 def put_four(lanes: Any, row: int, lane: int, a: Any, b: Any, c: Any, d: Any, first: int) -> None:
     """
-    Write four rows of four lanes.
+    Write four rows of four lanes, from a first row and lane on, to a, b, c and d from an element
+    on.
 
-    Parameters
-    ----------
-    lanes
-        The lanes, (r, any), in one piece.
-    row, lane
-        First row and first lane to read.
-    a, b, c, d
-        Where each lane goes, in one piece.
-    first
-        Element of them that the first row goes to.
-
+    All lie in one piece.
     """
     for to, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
         to[first : first + 4] = lanes[row : row + 4, j]

@@ -15,7 +15,6 @@ stand, then segment after segment up the sixteen branches at once.
 
 The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
 stands at its segment's root-side node, its x axis runs along the segment (REP-103).
-
 """
 
 from __future__ import annotations
@@ -119,22 +118,10 @@ def place_standing_at(
 @fused
 def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
-    Rotation of a place on a branch.
+    Rotation of a place on a branch, as quaternion w x y z from rest.
 
-    Parameters
-    ----------
-    parent
-        Record of `BRANCH`.
-    turns
-        Rotation vector of that place per unit of each of its coordinates, (c, 3).
-    x
-        Key rotations, (N,).
-
-    Returns
-    -------
-    tuple
-        Quaternion w x y z, from rest.
-
+    ``turns`` are rotation vectors of that place per unit of each of its parent's coordinates, (c,
+    3).
     """
     i = parent.coordinate
     half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
@@ -230,7 +217,6 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
-
     """
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
@@ -279,7 +265,6 @@ def _write_bases(head: Record, scratch: Record, work: Records) -> float:
     """
     Leave for the children how their parents are turned; return a bound on the square of half the
     angle that any segment turns by.
-
     """
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
     for j in range(0, whole, 4):

@@ -15,7 +15,6 @@ branches at once too, in the order of the branches.
 
 Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations
 in [rad].
-
 """
 
 from __future__ import annotations
@@ -36,7 +35,6 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
 
     Where no branch has more than its key rotation, records have no room for more: a forest is
     solved no faster than its records come from memory.
-
     """
     return np.dtype(
         [
@@ -118,7 +116,6 @@ def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
     All that placing needs to know of one segment of each of sixteen branches; where no branch has
     more than its key rotation, there is no room for what further coordinates turn it by.
-
     """
     rows = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
     return _whole_lines(
@@ -140,7 +137,6 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     What placing needs to know of the sixteen branches of a block, and finds.
 
     All work in the last record, behind the last block's, so that it stays in the fastest cache.
-
     """
     return _whole_lines(
         [
@@ -219,7 +215,6 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
     What the wind load knows of sixteen branches that follow each other, and finds.
 
     Rows are coordinates, those that a branch does not have zeros.
-
     """
     return [
         ("n_rows", "i8"),  # the most coordinates that one of them has

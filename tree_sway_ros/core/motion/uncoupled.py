@@ -10,7 +10,6 @@ move with its parent; it still swings at a pace of its own.
 The load is found once per step, at the state half a step on (exponential midpoint rule), and held
 over the step; what depends on the branch's own angle is corrected once within the step
 (`two_axis.step_branch`).
-
 """
 
 from __future__ import annotations
@@ -50,6 +49,8 @@ class UncoupledBank:
     """
 
     is_tabled = False
+    n_outside, table_error = 0, 0.0
+    shapes = np.zeros((0, 0))
 
     def __init__(
         self,
@@ -93,20 +94,9 @@ class UncoupledBank:
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
-        Advance one step.
+        Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
 
-        Parameters
-        ----------
-        wx, wy, wz
-            Mean wind over the step in [m/s].
-        per_speed_squared
-            `drag.pressure` in [kg/m^3].
-
-        Returns
-        -------
-        int
-            How many loads were held at their limit, -1 if the motion is not finite.
-
+        Returns how many loads were held at their limit, -1 if the motion is not finite.
         """
         return int(self._compiled(wx, wy, wz, per_speed_squared))
 
@@ -119,7 +109,6 @@ class UncoupledBank:
         """
         Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
         geometry.
-
         """
         impedance = (
             self.stiffness[:, None]

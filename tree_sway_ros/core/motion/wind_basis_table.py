@@ -19,7 +19,6 @@ load turns and leans with the tree) and by their rates (aerodynamic damping):
     x = Phi eta + V {s [Y R + rest(a) + turning_r (eta - a e)] + p |U| damping_r eta'}
 
 with V the few shapes that the static rest of the modes left out takes.
-
 """
 
 from __future__ import annotations
@@ -197,7 +196,6 @@ class WindBasisTable:
         Ask the tree for its loads where it leans as a dynamic pressure [kg/m/s^2] holds it.
 
         The slopes of the rest are large, and wanted of the lowest lean alone.
-
         """
         shapes, count = self._shapes, len(_ASKED)
         n, m = shapes.shape
@@ -266,7 +264,7 @@ class WindBasisTable:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table["n_modes"]), table["stiffness"]
-        forces, room = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
+        forces, scratch = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
         values, rest, still = np.zeros(COUNT[degree]), np.zeros(N_REST), np.zeros(len(stiffness))
         wrong = right = 0.0
         for _ in range(_TRIALS):
@@ -278,8 +276,9 @@ class WindBasisTable:
             eta = np.zeros(len(stiffness))
             eta[:m] = lean * (at @ table["harmonics"][:, :m]) / stiffness[:m]
             _force(
-                self.record, wind[0], wind[1], wind[2], push, eta, still, values, room, forces, rest
-            )
+                self.record, wind[0], wind[1], wind[2], push, eta, still, values, scratch, forces,
+                rest,
+            )  # fmt: skip
             x = self._shapes @ eta[:m] + rest @ self.rest_shapes
             true = push * self._moments(x, self._still, wind) @ self._shapes
             wrong += float((np.square(forces[:m] - true) / stiffness[:m]).sum())
@@ -327,7 +326,7 @@ def _fill(directions: Floats, degree: int, out: Floats) -> None:
 @fused
 def _force(
     tables: Records, x: float, y: float, z: float, push: float, eta: Floats, rate: Floats,
-    values: Floats, room: Floats, force: Floats, rest: Floats,
+    values: Floats, scratch: Floats, force: Floats, rest: Floats,
 ) -> None:  # fmt: skip
-    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, room, force)
+    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, scratch, force)
     wind_rest(tables[0], x, y, push, 0.0, eta, rate, values, rest)

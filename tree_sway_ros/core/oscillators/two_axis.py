@@ -75,7 +75,7 @@ def _series(t: float) -> tuple[float, float, float, float]:
 @inlined
 def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[float, float]:
     """
-    Moment of a force on the two axes, at any deflection.
+    Generalised force [N m] on the two axes at any deflection; (w1, w2) at zero.
 
     Parameters
     ----------
@@ -83,11 +83,6 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
         Rotation vector in [rad].
     wb, w1, w2
         Force times lever along b, e1, e2 in [N m].
-
-    Returns
-    -------
-    fx, fy
-        Generalised force over the inertia of each direction, in [N m]; (w1, w2) at zero.
 
     """
     x, y, t = _held(x, y)
@@ -102,20 +97,10 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
 @inlined
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
-    Acceleration that the sphere itself asks for: great circles at constant speed.
+    Acceleration [rad/s^2] that the sphere itself asks for: great circles at constant speed.
 
-    Parameters
-    ----------
-    x, y
-        Rotation vector in [rad].
-    vx, vy
-        Its rate in [rad/s].
-
-    Returns
-    -------
-    ax, ay
-        Acceleration in [rad/s^2]; zero for motion in one plane.
-
+    It follows from the rotation vector [rad] and its rate [rad/s], and is zero for motion in one
+    plane.
     """
     x, y, t = _held(x, y)
     s, c, s1, c1 = _series(t)

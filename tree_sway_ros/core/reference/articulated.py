@@ -28,7 +28,7 @@ from tree_sway_ros.core.reference.articulated_modes import (
     joint_modes,
 )
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
-from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
+from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, scratch_of
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -112,7 +112,11 @@ class ArticulatedTree:
         )
         n = cut.n_segments
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
-        self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
+        self._motion, self._articulation, self._scratch = (
+            motion_of(n),
+            articulation_of(n),
+            scratch_of(n),
+        )
         self._rotation, self._nodes = np.zeros((n, 3, 3)), np.zeros((3, n, 3))
         self._rest = tree.rest_frame
         self._wind = np.zeros((n, 3))
@@ -170,11 +174,11 @@ class ArticulatedTree:
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
         np.multiply(self._wind_factor, wind, out=self._wind)
-        room = self._motion, self._articulation, self._room
+        scratch = self._motion, self._articulation, self._scratch
         before = self.state.turn.copy(), self.state.rate.copy()
         for pieces in (1, 4, 16, 64, 256):
             for _ in range(pieces):
-                advance(self.bodies, self.laws, self.state, self._wind, dt / pieces, *room)
+                advance(self.bodies, self.laws, self.state, self._wind, dt / pieces, *scratch)
                 if not np.abs(self.state.rate).max() * dt / pieces <= LARGEST_TURN:
                     break
             else:
@@ -209,13 +213,10 @@ class ArticulatedTree:
 
     def linear_modes(self, count: int) -> tuple[Floats, Floats]:
         """
-        Natural frequencies in [Hz], lowest first, and the displacement of the end nodes.
+        Natural frequencies [Hz], lowest first, (count,), and displacements of the end nodes,
+        (count, n, 3).
 
-        Returns
-        -------
-        tuple
-            Frequencies (count,) and shapes of unit modal mass, (count, n, 3).
-
+        The shapes have unit modal mass.
         """
         modes = joint_modes(self.bodies, self._gravity, count)
         shapes = end_displacements(self.bodies, modes.turn)

@@ -22,17 +22,9 @@ from tree_sway_ros.errors import TreeError
 
 class JointModes(NamedTuple):
     """
-    Modes of unit modal mass, lowest first.
+    Modes of unit modal mass, lowest first, (k,) in [Hz].
 
-    Parameters
-    ----------
-    frequency
-        In [Hz], (k,).
-    turn
-        Rotations of the joints in [rad], (k, n, 3).
-    momentum
-        Mass matrix times these, (k, n, 3).
-
+    Rotations of the joints are in [rad], (k, n, 3); momenta are the mass matrix times these.
     """
 
     frequency: Floats
@@ -41,15 +33,7 @@ class JointModes(NamedTuple):
 
 
 def joint_modes(bodies: Bodies, gravity: float, count: int) -> JointModes:
-    """
-    Lowest modes about rest.
-
-    Raises
-    ------
-    TreeError
-        If the stiffness is not positive: the tree buckles under its own weight.
-
-    """
+    """Lowest modes about rest; a `TreeError` if the tree buckles under its own weight."""
     mass, stiffness = joint_mass(bodies), joint_stiffness(bodies, gravity)
     factor = linalg.splu(
         stiffness,

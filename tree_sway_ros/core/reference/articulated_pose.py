@@ -27,19 +27,10 @@ def place_bodies(
     bodies: Bodies, turn: Floats, rotation: Floats, joint: Floats, start: Floats, end: Floats
 ) -> None:
     """
-    Carry the joints' rotations from the root out.
+    Carry the joints' rotations, quaternions wxyz (n, 4), from the root out.
 
-    Parameters
-    ----------
-    bodies
-        The tree.
-    turn
-        Quaternions wxyz of the joints, (n, 4).
-    rotation
-        Rotation of each body from rest, (n, 3, 3), written.
-    joint, start, end
-        Joint, start node and end node of each segment in [m], (n, 3), written.
-
+    Written are the rotation of each body from rest, (n, 3, 3), and joint, start node and end node
+    of each segment in [m], (n, 3).
     """
     own = np.empty((3, 3))
     for i in range(len(turn)):
@@ -84,7 +75,7 @@ def pose_block(
     rotation, start, end
         From `place_bodies`.
     pieces
-        Bodies a segment, n / m.
+        Bodies per segment, n / m.
     out
         Pose block to write.
 

@@ -96,7 +96,7 @@ class State(NamedTuple):
     rate: Floats
 
 
-class Room(NamedTuple):
+class Scratch(NamedTuple):
     """
     Scratch of a step.
 
@@ -125,9 +125,9 @@ class Room(NamedTuple):
     second: Floats
 
 
-def room_of(n: int) -> Room:
+def scratch_of(n: int) -> Scratch:
     """Make room for a step of n bodies."""
-    return Room(np.zeros((n, 3, 3)), np.zeros((n, 4)), *np.zeros((6, n, 3)))
+    return Scratch(np.zeros((n, 3, 3)), np.zeros((n, 4)), *np.zeros((6, n, 3)))
 
 
 @kernel
@@ -206,7 +206,7 @@ def respond(
     implicit: float,
     motion: Motion,
     articulation: Articulation,
-    room: Room,
+    scratch: Scratch,
     out: Floats,
 ) -> None:
     """
@@ -222,26 +222,28 @@ def respond(
         Air at each segment in [m/s], (n, 3).
     implicit
         gamma h in [s]; 0 is the plain equation of motion.
-    motion, articulation, room
-        Filled on the way; `room.pull` is read.
+    motion, articulation, scratch
+        Filled on the way; `scratch.pull` is read.
     out
         Where the accelerations go.
 
     """
     late = laws.stiffness_damping + implicit
     for i in range(len(turn)):
-        matrix_of(turn[i], room.matrix[i])
+        matrix_of(turn[i], scratch.matrix[i])
         v = logarithm(turn[i])
         twist, g = twist_of(turn[i], read(bodies.axis, i))
-        write(room.twist_axis, i, g)
+        write(scratch.twist_axis, i, g)
         torque = held_torque(v, read(bodies.rest_torque, i))
         torque = plus(torque, spring(bodies, i, v, twist, g), -1.0)
-        v = plus(read(room.pull, i), read(rate, i), -late)
-        write(room.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
-    move(bodies, room.matrix, rate, motion)
+        v = plus(read(scratch.pull, i), read(rate, i), -late)
+        write(scratch.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
+    move(bodies, scratch.matrix, rate, motion)
     load(bodies, motion, laws.gravity, laws.mass_damping, articulation)
     push_drag(bodies, motion, laws, wind, articulation)
-    accelerate(bodies, motion, room.torque, room.twist_axis, implicit * late, articulation, out)
+    accelerate(
+        bodies, motion, scratch.torque, scratch.twist_axis, implicit * late, articulation, out
+    )
     damp_modes(laws, rate, implicit * late, out)
 
 
@@ -254,28 +256,37 @@ def advance(
     dt: float,
     motion: Motion,
     articulation: Articulation,
-    room: Room,
+    scratch: Scratch,
 ) -> None:
     """Move the state on by dt in [s]."""
     turn, rate = state.turn, state.rate
-    first, second = room.first, room.second
+    first, second = scratch.first, scratch.second
     gh = GAMMA * dt
-    room.pull[:] = 0.0
-    respond(bodies, laws, turn, rate, wind, gh, motion, articulation, room, first)
+    scratch.pull[:] = 0.0
+    respond(bodies, laws, turn, rate, wind, gh, motion, articulation, scratch, first)
     beta = laws.stiffness_damping
     for i in range(len(turn)):
         k = read(first, i)
         moving = plus(read(rate, i), k, gh)
-        turn_on(turn[i], plus((0.0, 0.0, 0.0), moving, dt), room.stage_turn[i])
-        write(room.stage_rate, i, plus(read(rate, i), k, dt))
-        write(room.pull, i, plus((0.0, 0.0, 0.0), plus(moving, k, beta + gh), 2.0 * gh))
+        turn_on(turn[i], plus((0.0, 0.0, 0.0), moving, dt), scratch.stage_turn[i])
+        write(scratch.stage_rate, i, plus(read(rate, i), k, dt))
+        write(scratch.pull, i, plus((0.0, 0.0, 0.0), plus(moving, k, beta + gh), 2.0 * gh))
     respond(
-        bodies, laws, room.stage_turn, room.stage_rate, wind, gh, motion, articulation, room, second
+        bodies,
+        laws,
+        scratch.stage_turn,
+        scratch.stage_rate,
+        wind,
+        gh,
+        motion,
+        articulation,
+        scratch,
+        second,
     )
     for i in range(len(turn)):
         k, m = read(first, i), read(second, i)
         # Rates of rotation of both stages; that their axes differ is of third order.
-        both = plus(read(rate, i), read(room.stage_rate, i), 1.0)
+        both = plus(read(rate, i), read(scratch.stage_rate, i), 1.0)
         both = plus(plus(both, k, -gh), m, gh)
         turn_on(turn[i], plus((0.0, 0.0, 0.0), both, 0.5 * dt), turn[i])
         write(rate, i, plus(plus(read(rate, i), k, 0.5 * dt), m, 0.5 * dt))

@@ -116,26 +116,10 @@ class PlacedTree:
 
 def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
     """
-    Join trees to one record, to be described or drawn as one.
+    Join trees in one frame to one record, to be described or drawn as one; a `TreeError` if none.
 
-    Parameters
-    ----------
-    trees
-        In one frame.
-    name
-        Of all together.
-
-    Returns
-    -------
-    Tree
-        All segments one tree after another, names as ``tree/branch``. It has several roots, so it
-        cannot be solved.
-
-    Raises
-    ------
-    TreeError
-        If there is none.
-
+    Segments are one tree after another, names ``tree/branch``. It has several roots, so it cannot
+    be solved.
     """
     if not trees:
         raise TreeError("no trees", where=name, cure="give at least one")

@@ -90,13 +90,7 @@ def simulate(
 
 class Rig:
     """
-    A tree set up once, to be taken through one wind after the other, each from rest.
-
-    Parameters
-    ----------
-    tree, settings, **changes
-        As for `simulate`.
-
+    A tree set up once as for `simulate`, to be taken through one wind after the other from rest.
     """
 
     def __init__(
@@ -119,13 +113,8 @@ class Rig:
         progress: Callable[[float], None] | None = None,
     ) -> SwayRecord:
         """
-        Let the tree sway in a wind from rest: the same numbers, whatever it went through before.
-
-        Parameters
-        ----------
-        wind, rate, seconds, branches, progress
-            As for `simulate`.
-
+        Let the tree sway in a wind from rest, as `simulate`: the same whatever it went through
+        before.
         """
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
         simulator = self._at_rest()
@@ -151,7 +140,7 @@ class Rig:
         )
 
     def _at_rest(self) -> TreeSimulator:
-        """Return the simulator at rest; one that chooses its model by what it met is made anew."""
+        """Return the simulator at rest; one that chooses its model by its winds is made anew."""
         if self.settings.model not in MODELS:
             return make_simulator(self.tree, self.species, self.settings)
         if self._simulator is None:
@@ -167,12 +156,6 @@ class BaseMoment:
     Bending moment at the base of the stem from the curvature of its shapes there.
 
     What a strain gauge tells: the moment of wind and inertia together, as the wood carries it.
-
-    Parameters
-    ----------
-    calibrated
-        Of the simulator that is asked.
-
     """
 
     def __init__(self, calibrated: CalibratedTree) -> None:

@@ -60,6 +60,12 @@ class Oscillators(Protocol):
 
     carries: bool
     is_tabled: bool
+    n_outside: int
+    """Steps outside of its table, if it has one."""
+    table_error: float
+    """Share by which the table's static deflections are wrong [-]."""
+    shapes: Floats
+    """Of its modes, (N, m); empty where branches swing on their own."""
     branches: Records
     work: Records
 
@@ -109,6 +115,8 @@ class Frozen:
 
     carries = True
     is_tabled = False
+    n_outside, table_error = 0, 0.0
+    shapes = np.zeros((0, 0))
     loads: Records | None = None
 
     def __init__(self, branches: Records, n_coordinates: int) -> None:
@@ -155,25 +163,11 @@ class Frozen:
 @dataclass(frozen=True)
 class Bank:
     """
-    A tree ready to be stepped and placed.
+    A tree ready to be stepped and placed: its oscillators, and records of branches, segments and
+    heads.
 
-    Parameters
-    ----------
-    oscillators
-        What moves.
-    branches, segments, heads
-        Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
-    frequencies
-        Natural frequencies of the model without air in [Hz], rising.
-    n_solved
-        Branches that are solved and do not copy.
-    mass
-        Of wood and leaves in [kg].
-    frozen
-        What moves with its parent as one body, and how many branches that is.
-    plain
-        Whether nothing is compiled.
-
+    Frequencies are without air in [Hz], rising; ``mass`` is of wood and leaves in [kg]; ``frozen``
+    is what moves with its parent as one body; ``plain`` tells that nothing is compiled.
     """
 
     oscillators: Oscillators
@@ -238,17 +232,7 @@ class Layer:
 
 
 class CalibratedTree:
-    """
-    A tree calibrated once, for all models.
-
-    Parameters
-    ----------
-    tree, species, settings
-        As for `SwaySimulator`; the settings' model does not matter.
-    plain
-        Whether its models run in numpy: always where nothing can be compiled.
-
-    """
+    """A tree calibrated once, for all models; its models run in numpy if ``plain``."""
 
     def __init__(
         self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
@@ -303,15 +287,9 @@ class CalibratedTree:
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
-        Build the oscillators of a model.
+        Build the oscillators of a model, ``modes`` and ``wind_basis`` with so many modes.
 
-        Parameters
-        ----------
-        model
-            One of `MODELS`.
-        n_modes
-            How many modes ``modes`` and ``wind_basis`` step; `USUAL_MODES`, or all if there are
-            fewer, if None.
+        If None, these are `USUAL_MODES`, or all if there are fewer.
 
         Raises
         ------

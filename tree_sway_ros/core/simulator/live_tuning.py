@@ -62,11 +62,7 @@ class Tuning:
         """
         Return this with some values changed.
 
-        Raises
-        ------
-        ParameterError
-            A name that may not change, or a value out of its range.
-
+        A `ParameterError` tells of a name that may not change, or a value out of its range.
         """
         for name, value in changes.items():
             if name not in _RANGES:
@@ -105,17 +101,7 @@ class LiveTuning:
     """
     Takes the oscillators of a model from one tuning to the next.
 
-    Parameters
-    ----------
-    oscillators
-        Of one model, written.
-    reduction
-        Matrices they were made of.
-    settings, damping_ratio
-        They were made with.
-    is_tabled
-        Whether their load comes from a table, which holds for one stiffness.
-
+    ``is_tabled`` tells that their load comes from a table, which holds for one stiffness.
     """
 
     def __init__(
@@ -146,15 +132,11 @@ class LiveTuning:
 
     def check(self, goal: Tuning) -> None:
         """
-        Refuse a tuning that this tree cannot take.
+        Refuse a tuning that this tree cannot take, with a `ParameterError`.
 
-        Raises
-        ------
-        ParameterError
-            A tree that would buckle, weight on one that was made without, a value that the rule of
-            stiffness or the table in use does not know, or more stiffness than the integrator may
-            stand.
-
+        That is a tree that would buckle, weight on one that was made without, a value that the rule
+        of stiffness or the table in use does not know, or more stiffness than the integrator may
+        stand.
         """
         rule = self._settings.stiffness
         unused = _OF_BEAMS if rule == "volume_rule" else _OF_VOLUMES

@@ -4,7 +4,7 @@
 Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
 reduced tree.
 
-It is there to compare with, and for a scene that has the time: its steps are many times as dear
+It is there to compare with, and for a scene that has the time: its steps cost many times as much
 (`tree-sway chart cost`).
 """
 
@@ -47,16 +47,7 @@ class SegmentsSimulator(OneTree, KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 
-    Parameters
-    ----------
-    tree, species, settings
-        As for `SwaySimulator`; what concerns the reduction does not matter.
-
-    Raises
-    ------
-    ParameterError
-        The volume rule, which this model does not know.
-
+    A `ParameterError` tells of the volume rule, which this model does not know.
     """
 
     @property

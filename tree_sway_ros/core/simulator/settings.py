@@ -142,11 +142,7 @@ def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Sett
     """
     Return settings, the defaults if None, with some fields changed.
 
-    Raises
-    ------
-    ParameterError
-        If they are none, a field that there is not, or a value out of its range.
-
+    A `ParameterError` tells what are none, a field that there is not, or a value out of its range.
     """
     if not isinstance(settings, Settings | None):
         raise ParameterError(

@@ -39,19 +39,10 @@ OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
 @dataclass
 class Counts:
     """
-    What was refused or held, since the start.
+    Steps since the start; those whose wind was refused, so that the one before was kept; and more.
 
-    Parameters
-    ----------
-    steps
-        Steps taken.
-    refused
-        Steps whose wind was not finite or faster than the limit; the wind before was kept.
-    held
-        Loads that were held at the limit of the model.
-    restarted
-        Steps whose motion was not finite, so that the tree went on from rest.
-
+    ``held`` are loads at the limit of the model, ``restarted`` steps whose motion was not finite,
+    so that the tree went on from rest.
     """
 
     steps: int = 0
@@ -393,14 +384,6 @@ _pressure = fused(pressure)
 
 
 def refuse_time_step(dt: float) -> None:
-    """
-    Refuse a time step [s] that is none.
-
-    Raises
-    ------
-    ParameterError
-        If it is not above 0 or not finite.
-
-    """
+    """Refuse a time step [s] that is not finite and above 0."""
     if not (math.isfinite(dt) and dt > 0.0):
         raise ParameterError(f"time step of {dt} s", where="step", cure="give a finite one above 0")

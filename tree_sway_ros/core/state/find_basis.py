@@ -168,20 +168,7 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:
     """
-    Moments on the coordinates under forces on the tips: the transpose of `tip_motion`.
-
-    Parameters
-    ----------
-    joints
-        Records of `BRANCH`, (b,).
-    forces
-        (b, 3, m).
-
-    Returns
-    -------
-    Floats
-        (N, m).
-
+    Moments on the coordinates (N, m) under forces on the tips (b, 3, m): `tip_motion` transposed.
     """
     moments = np.zeros((int(joints["n_coordinates"].sum()), forces.shape[-1]))
     wrench = np.concatenate([forces, np.cross(joints["tip"][:, :, None], forces, axis=1)], axis=1)

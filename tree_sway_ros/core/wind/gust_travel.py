@@ -120,25 +120,11 @@ class GustHistory:
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """
-        Take the wind of a step at the anemometer and find that of every place.
+        Take the mean wind of a step of dt [s] at the anemometer in [m/s], (3,), and find that of
+        each place.
 
-        Parameters
-        ----------
-        wind_mean
-            Mean of the wind over the step in [m/s], (3,).
-        dt
-            Length of the step in [s].
-
-        Returns
-        -------
-        Floats
-            Mean of the wind over the step at each place in [m/s], (t, 3); the same array each time.
-
-        Raises
-        ------
-        ParameterError
-            If a number is not finite or the step not above 0.
-
+        It is (t, 3), the same array each time. A `ParameterError` tells of a number that is not
+        finite, or a step that is not above 0.
         """
         x, y, z = three_numbers("wind", wind_mean)
         if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):

@@ -6,7 +6,6 @@ For whom a parameter was meant: told to this node by its name, or to every node 
 A launch file's ``SetParameter`` and a section ``/**`` of a parameter file reach nodes that know
 nothing of the name, or take it for something else. ROS merges all before a node can look, so the
 command line is read here once more.
-
 """
 
 from __future__ import annotations

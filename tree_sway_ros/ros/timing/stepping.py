@@ -10,7 +10,6 @@ did.
 A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace
 in the motion; only where a step costs more than half a period are they joined to one long step,
 which the exact propagator takes without harm, so that a slow machine never falls further behind.
-
 """
 
 from __future__ import annotations
@@ -36,17 +35,9 @@ _NEWEST = 0.02
 
 class Stepper:
     """
-    Steps a simulator through the wind.
+    Steps a simulator through the wind on a grid of a period [ns].
 
-    Parameters
-    ----------
-    simulator
-        Of a tree or a forest.
-    make_wind
-        Makes an empty `WindAverage`; called again whenever the clock was set back.
-    period
-        Of the grid in [ns].
-
+    ``make_wind`` makes an empty `WindAverage`; it is called again whenever the clock was set back.
     """
 
     def __init__(self, simulator: Simulator, make_wind: Callable[[], Any], period: int) -> None:
@@ -67,7 +58,6 @@ class Stepper:
         """
         Have the kernels compiled or loaded before the first frame is due; return what a frame takes
         in [us].
-
         """
         wind = self._make_wind()
         wind.add(0.0, (1.0, 0.0, 0.0))
@@ -98,19 +88,9 @@ class Stepper:
 
     def advance(self, time_ns: int, periods: int, delay: float, *, may_join: bool = True) -> None:
         """
-        Solve up to a time.
+        Solve so many periods up to a time [ns], with the wind felt later by a delay [s].
 
-        Parameters
-        ----------
-        time_ns
-            End of the last period in [ns].
-        periods
-            How many periods to solve.
-        delay
-            The wind is felt so much later [s].
-        may_join
-            Whether periods may be joined to one step; a replay that is to be exact may not.
-
+        Periods may be joined to one step, unless a replay is to be exact.
         """
         while self._requests:
             self._requests.popleft()()

@@ -101,15 +101,8 @@ class StreamTotals:
 
     def add_poses(self, arrival: float, stamp: float, tip: Floats | None = None) -> None:
         """
-        Count a pose array.
-
-        Parameters
-        ----------
-        arrival, stamp
-            When it arrived and what time it shows in [s].
-        tip
-            Displacement of the highest tip from rest in [m], (3,); None if no tree is followed.
-
+        Count a pose array: its arrival, the time it shows [s], and the highest tip's displacement
+        [m].
         """
         self.arrivals.add(arrival)
         self.stamps.add(stamp)

@@ -31,27 +31,15 @@ class ComponentSpectrum(Protocol):
         across: bool,
     ) -> Floats:
         """
-        Power spectral density, one-sided, of integral ``deviation**2``.
-
-        Parameters
-        ----------
-        frequency, mean_speed, deviation, scale, across
-            As of `von_karman_spectrum`.
-
+        Power spectral density, one-sided, of integral ``deviation**2``; see `von_karman_spectrum`.
         """
 
 
 class Spectrum(NamedTuple):
     """
-    A model of turbulence.
+    A model of turbulence: the spectrum of a component, and integral scales of u, v, w, (3,).
 
-    Parameters
-    ----------
-    of_component
-        Spectrum of a component.
-    scales
-        Integral scales of u, v, w over the turbulence scale Lambda1 of IEC 61400-1 in [-], (3,).
-
+    These are over the turbulence scale Lambda1 of IEC 61400-1.
     """
 
     of_component: ComponentSpectrum

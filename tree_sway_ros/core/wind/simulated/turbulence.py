@@ -125,21 +125,8 @@ class Turbulence:
         """
         Draw one period of the turbulence; joined end to start it goes on without a seam.
 
-        Parameters
-        ----------
-        n_samples
-            Number of samples in the period, at least 4.
-        rate
-            Samples per second in [Hz].
-        rng
-            Source of the phases.
-
-        Returns
-        -------
-        Floats
-            u, v, w about their zero mean in [m/s], (n_samples, 3); each variance is that of
-            `deviations`, exactly.
-
+        At least 4 samples at a rate in [Hz], as u, v, w about their zero mean in [m/s], (n, 3);
+        each variance is that of `deviations`, exactly.
         """
         n_lines = (n_samples - 1) // 2  # without the mean, nor the line at half the rate
         frequency: Floats = np.arange(1, n_lines + 1, dtype=np.float64) * (rate / n_samples)
@@ -189,20 +176,9 @@ def turbulence_scale(height: float) -> float:
 
 def along_bearing(record: Floats, bearing_to: float) -> Floats:
     """
-    Turn u, v, w about a mean wind into east, north, up.
+    Turn velocities along a mean wind, to its left and up, (..., 3), into east, north, up.
 
-    Parameters
-    ----------
-    record
-        Velocities along the mean wind, to its left and up in [m/s], (..., 3).
-    bearing_to
-        Where the mean wind blows to, clockwise from north in [rad]: a westerly has pi/2.
-
-    Returns
-    -------
-    Floats
-        The same velocities in ENU in [m/s], (..., 3).
-
+    The mean wind blows to a bearing clockwise from north in [rad]: a westerly has pi/2.
     """
     sine, cosine = np.sin(bearing_to), np.cos(bearing_to)
     enu_from_wind = np.array([[sine, -cosine, 0.0], [cosine, sine, 0.0], [0.0, 0.0, 1.0]])
