@@ -40,22 +40,19 @@ def add_tree_arguments(
     Add TREE, which may be a forest, and what can be said of its wood; the default may not be left
     out.
     """
+    add = parser.add_argument
     kind = f"{_TREE}{' of a tree or a forest' * forests}"
     if default is None:
-        parser.add_argument("tree", metavar="TREE", help=kind)
+        add("tree", metavar="TREE", help=kind)
     else:
-        parser.add_argument(
-            "tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)"
-        )
-    parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
-    parser.add_argument(
+        add("tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)")
+    add("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
+    add(
         "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"
     )
-    parser.add_argument(
-        "--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]"
-    )
-    parser.add_argument("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
-    parser.add_argument(
+    add("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")
+    add("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
+    add(
         "--option",
         action="append",
         default=[],

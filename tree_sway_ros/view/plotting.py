@@ -32,10 +32,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(
-    figure: Figure,
-    path: str | Path,
-    dots_per_inch: float = 110.0,
-    figures: Path | None = None,
+    figure: Figure, path: str | Path, dots_per_inch: float = 110.0, figures: Path | None = None
 ) -> Path:
     """
     Write a figure to a file whose suffix names the format, ``.png`` for one.

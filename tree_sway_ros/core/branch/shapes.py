@@ -82,18 +82,9 @@ class Carried:
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
-    Two unit vectors across a chord: e1 in the vertical plane, or along x for an upright one.
+    Two unit vectors across a chord (3,): e1 in the vertical plane, or along x for an upright one.
 
-    Parameters
-    ----------
-    chord
-        Unit vector, (3,).
-
-    Returns
-    -------
-    tuple
-        e1 and e2 such that (b, e1, e2) is right-handed.
-
+    (b, e1, e2) is right-handed.
     """
     reference = np.array([1.0, 0.0, 0.0]) if abs(chord[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
     e1 = reference - (reference @ chord) * chord

@@ -259,18 +259,8 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     def review(self, *, at_best: bool = False) -> Estimate:
         """
-        Look at the choice again: call it when the tolerance has changed.
-
-        Parameters
-        ----------
-        at_best
-            Whether to choose the most accurate that the budget allows, whatever the tolerance.
-
-        Returns
-        -------
-        Estimate
-            What is chosen.
-
+        Choose again: call it when the tolerance has changed; with ``at_best`` whatever the
+        tolerance.
         """
         self._since_review, self._judged = 0.0, self._gust
         climate = self._tracker.climate

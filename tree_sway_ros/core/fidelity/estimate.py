@@ -19,21 +19,10 @@ from tree_sway_ros.errors import ParameterError
 @dataclass(frozen=True)
 class Estimate:
     """
-    What a model is worth in a wind.
+    What a model, with its number of modes, is worth in a wind, and costs per step and placing [us].
 
-    Parameters
-    ----------
-    model, n_modes
-        The model, and its number of modes if it is ``modes``.
-    error
-        Bound of the root mean square over time and tips of the error in [m].
-    motion
-        Root mean square of the motion of the tips about its mean in [m].
-    cost
-        Of one step and one placing in [us].
-    n_frozen
-        Branches that move with their parent as one body.
-
+    ``error`` bounds the root mean square over time and tips of the error, ``motion`` is that of the
+    motion of the tips about its mean, both in [m].
     """
 
     model: str
@@ -99,22 +88,8 @@ def choose(
 
 def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> float:
     """
-    Turn a tolerance on the picture into one in the scene.
-
-    Parameters
-    ----------
-    pixels
-        Tolerance in [px].
-    distance
-        From the camera to the tree in [m].
-    focal_length
-        Of the camera in [px].
-
-    Returns
-    -------
-    float
-        In [m].
-
+    Turn a tolerance [px] on a picture of a focal length [px] into one in the scene, so far away, in
+    [m].
     """
     if not (pixels > 0.0 and distance > 0.0 and focal_length > 0.0):
         raise ParameterError(
@@ -127,15 +102,7 @@ def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> 
 
 def distance_to(tree: Tree, position: Floats) -> float:
     """
-    Distance from a camera to the nearest branch tip or to the root in [m], at least 1 cm.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    position
-        Of the camera in the tree's frame in [m], (3,).
-
+    Distance from a camera (3,) to the nearest branch tip or to the root in [m], at least 1 cm.
     """
     seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
     return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)

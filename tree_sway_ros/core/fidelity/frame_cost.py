@@ -30,17 +30,7 @@ _MODE_OF_COORDINATE = 1.5e-3
 
 
 def frame_cost(bank: Bank, tree: Tree) -> float:
-    """
-    Cost of one step and one placing in [us].
-
-    Parameters
-    ----------
-    bank
-        The model.
-    tree
-        What it is a model of, whole.
-
-    """
+    """Cost of one step and one placing of a model of a whole tree in [us]."""
     branches = bank.branches
     n_moving, n_enriched = len(branches), int((branches["n_coordinates"] > 2).sum())
     n_bending = int((branches["end"] - branches["first"]).sum())

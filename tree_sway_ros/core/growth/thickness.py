@@ -49,16 +49,12 @@ def node_diameters(
     stem_taper: float | None = None,
 ) -> list[Floats]:
     """
-    Diameter of every node by the pipe model.
+    Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the first one the stem.
 
     Parameters
     ----------
-    skeleton
-        The shoots; the first one is the stem.
     diameter
-        Diameter of the stem in [m].
-    at_height
-        Height above the root where the stem has it in [m].
+        Diameter of the stem in [m], at `at_height` above the root in [m].
     tip_diameter
         Diameter of a shoot's tip in [m].
     exponent
@@ -66,11 +62,6 @@ def node_diameters(
     stem_taper
         Power of the distance from the top that the stem's diameter goes with, if it does not follow
         the pipe model.
-
-    Returns
-    -------
-    list
-        One (k + 1,) per shoot in [m], falling from base to tip.
 
     Raises
     ------

@@ -33,10 +33,7 @@ _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
 
 def estimate_sway(
-    time: ArrayLike,
-    motion: ArrayLike,
-    kind: str | None = None,
-    band: Band = None,
+    time: ArrayLike, motion: ArrayLike, kind: str | None = None, band: Band = None
 ) -> SwayEstimate:
     """
     Find frequency and damping of the slowest sway in a record.

@@ -11,6 +11,7 @@ out in lanes.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
@@ -46,20 +47,20 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
     is_plain = all(len(model.fields) == 2 for model in models)
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
     records["rest"][:, 0] = 1.0
-    rest = tree.rest_frame
-    for branch, model in enumerate(models):
-        here = tree.segments_of(branch)
-        rows = slice(block[branch], block[branch] + here.stop - here.start)
-        own = lane[branch]
-        start = tree.start[here]
-        records["chord"][rows, :, own] = np.vstack([start[1:], tree.end[here][-1:]]) - start
-        records["rest"][rows, :, own] = rest[here]
-        records["slope"][rows, own] = model.shape.segment_slope
-        if not is_plain:
+    size = np.diff(tree.branch_first)
+    rows = np.arange(tree.n_segments) + np.repeat(block - tree.branch_first[:-1], size)
+    own, following = np.repeat(lane, size), tree.end.copy()
+    within = np.ones(tree.n_segments, dtype=bool)
+    within[tree.branch_first[1:] - 1] = False
+    following[within] = tree.start[1:][within[:-1]]
+    records["chord"][rows, :, own] = following - tree.start
+    records["rest"][rows, :, own] = tree.rest_frame
+    records["slope"][rows, own], records["tip_slope"][rows, own] = _slopes(tree, models)
+    np.maximum.at(records["n_lanes"], rows, own + 1)
+    if not is_plain:
+        for branch, model in enumerate(models):
             for c, turn in enumerate(_drawn_turns(model)):
-                records["turn"][rows, c, :, own] = turn
-        records["tip_slope"][rows, own] = _tip_load_slope(model)
-        records["n_lanes"][rows] = np.maximum(records["n_lanes"][rows], own + 1)
+                records["turn"][rows[tree.segments_of(branch)], c, :, lane[branch]] = turn
     return records
 
 
@@ -150,30 +151,35 @@ def branch_records(
     reduction: Reduction,
     speed_profile: Floats,
     layout: np.dtype[np.void] | None = None,
+    known: Sequence[tuple[list[BranchModel], Records]] = (),
 ) -> Records:
     """
     All that stepping and placing know of the branches: records of `BRANCH`, (b,), or of a layout.
 
-    The profile is the wind speed at each segment over that at the anemometer, (n,).
+    The profile is the wind speed at each segment over that at the anemometer, (n,). What a model
+    is among other models of the same tree whose records are `known`, is taken from there.
     """
     records = np.zeros(tree.n_branches, dtype=branch_layout() if layout is None else layout)
-    rest = tree.rest_frame
+    new = np.ones(tree.n_branches, dtype=bool)
+    for others, filled in known:
+        same = new & [one is other for one, other in zip(models, others, strict=True)]
+        new &= ~same
+        for name in _OF_MODEL:
+            found = filled[name][same]
+            k = min(found.shape[1], records[name].shape[1]) if found.ndim > 1 else 0
+            records[name][(same, slice(k)) if k else same] = found[:, :k] if k else found
+    for branch in np.flatnonzero(new).tolist():
+        _fill_ways(models[branch], records[branch])
+        _fill_load(models[branch], speed_profile[tree.segments_of(branch)], records[branch])
+    first = tree.branch_first[:-1]
     records["block"], records["lane"], _ = lanes(tree, models)
     records["parent"], records["source"] = tree.branch_parent, np.arange(tree.n_branches)
-    records["first"], records["end"] = tree.branch_first[:-1], tree.branch_first[1:]
-    records["base_segment"] = tree.segment_parent[tree.branch_first[:-1]]
+    records["first"], records["end"] = first, tree.branch_first[1:]
+    records["base_segment"] = tree.segment_parent[first]
     records["coordinate"] = reduction.first[:-1]
     records["twist"] = reduction.twist[:, : records["twist"].shape[1]]
-    for branch, model in enumerate(models):
-        here = tree.segments_of(branch)
-        _fill_shapes(model, records[branch])
-        records["tip"][branch] = tree.end[here.stop - 1] - tree.start[0]
-        base = int(tree.segment_parent[here.start])
-        if base >= 0:
-            w, x, y, z = rest[base]
-            offset = tree.start[here.start] - tree.start[base]
-            records["offset"][branch] = _rotated(w, -x, -y, -z, *offset)
-        _fill_load(model, speed_profile[here], records[branch])
+    records["tip"] = tree.end[tree.branch_first[1:] - 1] - tree.start[0]
+    _fill_slopes(tree, models, records)
     _fill_arms(tree, records)
     _fill_axial_levers(records)
     return records
@@ -181,26 +187,44 @@ def branch_records(
 
 def _fill_arms(tree: Tree, records: Records) -> None:
     """Fill where bases are at rest."""
-    base = tree.start[tree.branch_first[:-1]] - tree.start[0]
+    first, on = tree.branch_first[:-1], records["base_segment"]
+    base = tree.start[first] - tree.start[0]
     arm = base - base[np.maximum(tree.branch_parent, 0)]
     square = np.square(arm).sum(axis=1)
     records["base"], records["arm"] = base, arm
     records["per_arm"] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
+    w, x, y, z = tree.rest_frame[on].T
+    offset = np.stack(_rotated(w, -x, -y, -z, *(tree.start[first] - tree.start[on]).T), axis=1)
+    records["offset"] = np.where(on[:, None] >= 0, offset, 0.0)
 
 
-def _fill_shapes(model: BranchModel, record: Record) -> None:
-    """Fill what bends."""
+def _fill_slopes(tree: Tree, models: list[BranchModel], records: Records) -> None:
+    """Fill how the shapes that branches are drawn by are laid and skewed."""
+    first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
+    share = tree.length / np.repeat(np.add.reduceat(tree.length, first), size)
+    slopes = _slopes(tree, models)
+    for name, slope in zip(("skew", "tip_skew"), slopes, strict=True):
+        off = slope - np.repeat(np.add.reduceat(share * slope, first), size)
+        # The third cumulant over 6: how far the chord angle lags, per angle cubed.
+        records[name] = np.add.reduceat(share * off**3, first) / 6.0
+    most = np.maximum.reduceat(slopes[1] ** 2, first)
+    records["steepest"][:, 0] = np.maximum(records["steepest"][:, 0], most)
+
+
+def _fill_ways(model: BranchModel, record: Record) -> None:
+    """Fill what a branch does by its coordinates."""
     record["n_coordinates"] = len(model.fields)
     for i, (field, turn) in enumerate(zip(model.fields, _drawn_turns(model), strict=True)):
         record["reach"][i] = field.nodes[-1]
         record["steepest"][i] = np.square(turn).sum(axis=1).max()
     record["frame"] = model.beam.chord, *across(model.beam.chord)
-    tip_load = _tip_load_slope(model)
-    record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
-    length = model.beam.segment_length
-    record["skew"] = _skew(model.shape.segment_slope, length)
-    record["tip_skew"] = _skew(tip_load, length)
 
+
+_OF_MODEL = (
+    "n_coordinates", "frame", "push", "flow", "spread", "reach", "turn", "lever", "area", "speed",
+    "centre", "couple", "projector", "steepest",
+)  # fmt: skip
+"""What of a record follows from the model of a branch alone."""
 
 _STRAIGHT = 0.03
 """Share of the wind along a branch below which this is not told apart from none."""
@@ -433,24 +457,22 @@ def _drawn_turns(model: BranchModel) -> Floats:
     return np.stack([model.beam.over_segments(one.slope) for one in model.fields])
 
 
-def _skew(slope: Floats, length: Floats) -> float:
+def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
     """
-    Third cumulant over 6 of a slope along a branch: how far its chord angle lags, per angle cubed.
-    """
-    share = length / length.sum()
-    return float(share @ (slope - share @ slope) ** 3) / 6.0
+    Slope of each segment as its branch is drawn, and under a load at the tip, both (n,).
 
+    The latter is the mean over the segment of 1.5 (2 u - u^2), u the arc length over the length.
 
-def _tip_load_slope(model: BranchModel) -> Floats:
     """
-    Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip.
-    """
-    length = model.beam.segment_length
-    u = np.concatenate([[0.0], np.cumsum(length / length.sum())])
-    primitive = 1.5 * (u * u - u**3 / 3.0)
-    mean = float(model.shape.segment_slope @ length) / float(length.sum())
-    slope: Floats = mean * np.diff(primitive) / np.diff(u)
-    return slope
+    first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
+    whole = np.repeat(np.add.reduceat(tree.length, first), size)
+    slope = np.concatenate([model.shape.segment_slope for model in models])
+    mean = np.repeat(np.add.reduceat(slope * tree.length, first), size) / whole
+    past = np.cumsum(tree.length)
+    end = (past - np.repeat(past[first] - tree.length[first], size)) / whole
+    start = end - tree.length / whole
+    steepness = end + start - (end * end + end * start + start * start) / 3.0
+    return slope, 1.5 * mean * steepness
 
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:

@@ -241,17 +241,7 @@ def wind_moments(
     """
     Find the moments of a wind on the key rotations of a tree that bends and moves.
 
-    Parameters
-    ----------
-    branches, work, loads
-        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`.
-    x, v
-        Key rotations in [rad] and their rates in [rad/s], (N,).
-    moment
-        As of `bent_loads`, written.
-    wx, wy, wz, per_speed_squared
-        As of `wind_forces`.
-
+    They are written as by `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):

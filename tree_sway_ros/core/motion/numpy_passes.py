@@ -171,21 +171,10 @@ def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
 
 def mean_wind_moments(branches: Records, n_coordinates: int) -> Floats:
     """
-    Moments of winds from all sides, as far as they are linear in the wind: those along x and y then
-    stand for any between.
+    Moments (N, 3) [N m] of winds from all sides, as far as they are linear in the wind.
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    n_coordinates
-        N.
-
-    Returns
-    -------
-    Floats
-        Per 1 m/s along x, y and z in level winds of 1 m/s and 1 kg/m^3, in [N m], (N, 3).
-
+    Those along x and y then stand for any between. Per 1 m/s along x, y and z in level winds of 1
+    m/s and 1 kg/m^3.
     """
     xx, yy, zz, xy, xz, yz = branches["projector"].T
     level, slant = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)

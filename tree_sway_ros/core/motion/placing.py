@@ -118,22 +118,10 @@ def place_standing_at(
 @fused
 def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
-    Rotation of a place on a branch.
+    Rotation of a place on a branch, as quaternion w x y z from rest.
 
-    Parameters
-    ----------
-    parent
-        Record of `BRANCH`.
-    turns
-        Rotation vector of that place per unit of each of its coordinates, (c, 3).
-    x
-        Key rotations, (N,).
-
-    Returns
-    -------
-    tuple
-        Quaternion w x y z, from rest.
-
+    ``turns`` are rotation vectors of that place per unit of each of its parent's coordinates, (c,
+    3).
     """
     i = parent.coordinate
     half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew

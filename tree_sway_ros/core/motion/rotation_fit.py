@@ -88,15 +88,8 @@ def coordinates_within(branches: Records, moving: Ints, whole: Records) -> Any:
     """
     Lay the coordinates of a part of a tree out among those of the whole, sparse (N, M).
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH` of the part, (m,), some with less shapes or other axes.
-    moving
-        Which branch of the whole each of them is, (m,).
-    whole
-        Records of `BRANCH` of the whole, (b,).
-
+    Records of `BRANCH` of the part, (m,), may have less shapes or other axes; ``moving`` tells
+    which branch of the whole each of them is, (m,).
     """
     rows, columns, values = [], [], []
     for local, b in zip(branches, moving, strict=True):

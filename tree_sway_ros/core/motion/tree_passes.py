@@ -20,16 +20,9 @@ from tree_sway_ros.core.rotation import turned
 @fused
 def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None:
     """
-    Hand rotation and velocity of every parent to the bases of its children.
+    Hand rotation [rad] and velocity [rad/s], (N,), of every parent to the bases of its children.
 
-    Parameters
-    ----------
-    branches, work
-        Records of `BRANCH` and `WORK`, (b,); how bases move and are turned is written to the
-        latter.
-    x, v
-        Key rotations in [rad] and their rates in [rad/s], (N,).
-
+    How bases move and are turned is written to records of `WORK`, (b,).
     """
     for b in range(1, len(branches)):
         branch = branches[b]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
+from tree_sway_ros.core.branch.model import BranchModel, TreeBeams, enriched_branches
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
 from tree_sway_ros.core.leaves.foliage import clad_wood
@@ -252,6 +252,7 @@ class CalibratedTree:
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
         self._tables: dict[int, WindBasisTable] = {}
+        self._known: list[tuple[list[BranchModel], Records]] = []
 
     @property
     def damping_ratio(self) -> float:
@@ -377,33 +378,39 @@ class CalibratedTree:
             carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
         )
 
-    @one_thread()
-    def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
-        tree, species, settings = self.tree, self.species, self.settings
-        speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
-        models = branch_models(
-            tree,
+    @cached_property
+    def _speed(self) -> Floats:
+        """Wind at each segment's middle over that at the anemometer, (n,)."""
+        middle = 0.5 * (self.tree.start[:, 2] + self.tree.end[:, 2])
+        return self.settings.profile.over_anemometer(middle)
+
+    @cached_property
+    def _beams(self) -> TreeBeams:
+        """What the layers share."""
+        species, settings = self.species, self.settings
+        return TreeBeams(
+            self.tree,
             species.density,
-            carries=carries,
             shear_ratio=species.shear_ratio,
-            enriched=enriched,
-            speed_profile=speed,
+            speed_profile=self._speed,
             leaf_mass=settings.leaf_mass,
             leaf_area=self.leaf_load_area,
             root_compliance=species.modulus / species.root_stiffness,
         )
+
+    @one_thread()
+    def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
+        tree, species = self.tree, self.species
+        models = self._beams.models(carries=carries, enriched=enriched)
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(
-            tree, models, species.modulus, shear, settings.gravity, carries=carries
+            tree, models, species.modulus, shear, self.settings.gravity, carries=carries
         )
         layout = branch_layout() if enriched else branch_layout(2)
-        return Layer(
-            models,
-            reduction,
-            branch_records(tree, models, reduction, speed, layout),
-            segment_records(tree, models),
-            float(sum(model.beam.integral(model.mass) for model in models)),
-        )
+        records = branch_records(tree, models, reduction, self._speed, layout, self._known)
+        self._known.append((models, records))
+        mass = float(sum(model.beam.integral(model.mass) for model in models))
+        return Layer(models, reduction, records, segment_records(tree, models), mass)
 
     def _modes(self, model: str, count: int | None) -> Modes:
         """

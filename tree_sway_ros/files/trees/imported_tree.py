@@ -67,11 +67,7 @@ class TreeFile:
         return self
 
     def simulator(
-        self,
-        settings: Settings | None = None,
-        *,
-        tolerance: float = 0.005,
-        **changes: Any,
+        self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
     ) -> TreeSimulator:
         """Make a simulator of the tree; arguments and errors are those of `make_simulator`."""
         model = settings_with(settings, changes)

@@ -67,10 +67,7 @@ def read_bag_wind(
     if n_unstamped:
         notes.append(f"{n_unstamped} messages without a stamp have the time they were recorded at")
     return rows.record(
-        epoch=epoch * 1e-9,
-        notes=tuple(notes),
-        yaw=yaw,
-        direction_convention=direction_convention,
+        epoch=epoch * 1e-9, notes=tuple(notes), yaw=yaw, direction_convention=direction_convention
     )
 
 

@@ -31,17 +31,10 @@ NODE_CLASSES = {
 
 class Composition:
     """
-    Nodes that share a process and an executor.
+    Nodes that share a process and an executor, in the order and with the values of their
+    parameters.
 
-    Parameters
-    ----------
-    parameters
-        Which nodes to start, in this order, each with the values of its parameters that differ from
-        the defaults.
-    namespace
-        Of every node.
-    domain_id
-        ROS domain; the environment's if None.
+    The ROS domain is the environment's if None.
 
     Raises
     ------

@@ -44,18 +44,10 @@ def _nobody(_message: Any) -> None:
 
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
-    A node with a table of parameters.
+    A node with a table of parameters, found under its name, whatever the node is remapped to.
 
     It is made in two stages, `configure` and `activate`: at once, or one by one by a manager where
-    the parameter `lifecycle` says so.
-
-    Parameters
-    ----------
-    name
-        Of the node; its table is found under this name, whatever the node is remapped to.
-    options
-        For `rclpy.node.Node`: context, namespace, parameter_overrides, ...
-
+    the parameter `lifecycle` says so. Options are those of `rclpy.node.Node`.
     """
 
     def __init__(self, name: str, **options: Any) -> None:

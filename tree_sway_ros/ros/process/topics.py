@@ -18,23 +18,10 @@ from typing import Any
 @dataclass(frozen=True)
 class Topic:
     """
-    One topic.
+    One topic: its relative name, remapped by launch files, and its type ``package/msg/Name``.
 
-    Parameters
-    ----------
-    name
-        Relative name, remapped by launch files.
-    type_name
-        ROS type as ``package/msg/Name``; the default where a parameter chooses.
-    description
-        One sentence for people.
-    reliable
-        Whether a sample that was lost is sent again.
-    latched
-        Whether a late subscriber receives the last sample (TRANSIENT_LOCAL).
-    depth
-        Samples kept.
-
+    ``reliable``: a sample that was lost is sent again; ``latched``: a late subscriber receives the
+    last one (TRANSIENT_LOCAL); ``depth``: samples kept.
     """
 
     name: str

@@ -62,18 +62,10 @@ class WindReport:
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
-        Report.
+        Report, by what the gate refused or found odd, and the types on the topic that are not read.
 
-        Parameters
-        ----------
-        timeout
-            Age of the last good sample from which on the wind counts as lost [s]; three periods of
-            a sensor that is slower.
-        gate
-            Which counted what was refused or odd.
-        types_not_read
-            Message types on the topic that the node is not set to read.
-
+        The wind counts as lost when its last good sample is older than a timeout [s]; three periods
+        of a sensor that is slower.
         """
         age, timeout = self.age, max(timeout, _PERIODS * self._period)
         values: dict[str, object] = {

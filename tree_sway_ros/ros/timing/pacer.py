@@ -65,21 +65,10 @@ class Pace(NamedTuple):
 
 class Pacer:
     """
-    Calls `work` at a fixed rate in a thread of its own.
+    Calls `work` with each tick at a fixed rate [Hz] in a thread of its own, by a node's clock.
 
-    Parameters
-    ----------
-    clock
-        A node's clock, wall or simulated.
-    rate
-        In [Hz].
-    work
-        Called with each tick.
-    on_error
-        Called with what `work` raised in `PATIENCE` ticks one after another; the thread then ends.
-    on_slip
-        Called with what `work` raised before that; the next tick comes as if nothing had been.
-
+    What it raised in `PATIENCE` ticks one after another goes to `on_error`, and the thread ends;
+    what it raised before that goes to `on_slip`, and the next tick comes as if nothing had been.
     """
 
     def __init__(

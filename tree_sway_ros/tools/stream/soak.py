@@ -50,22 +50,19 @@ class Health(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("--hours", type=float, default=1.0, help="how long (%(default)s)")
-    parser.add_argument("--tree", default="goldcrest", help="what sways (%(default)s)")
-    parser.add_argument(
-        "--demo", action="store_true", help="all in one process, as the demo; else one per node"
-    )
-    parser.add_argument(
-        "--every", type=float, default=20.0, help="seconds from fault to fault (%(default)s)"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--hours", type=float, default=1.0, help="how long (%(default)s)")
+    add("--tree", default="goldcrest", help="what sways (%(default)s)")
+    add("--demo", action="store_true", help="all in one process, as the demo; else one per node")
+    add("--every", type=float, default=20.0, help="seconds from fault to fault (%(default)s)")
+    add(
         "--speed",
         type=float,
         default=1.0,
         metavar="K",
         help="K times as many frames and faults (%(default)s)",
     )
-    parser.add_argument(
+    add(
         "--slope",
         type=float,
         default=1.0,

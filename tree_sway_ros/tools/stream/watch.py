@@ -30,11 +30,7 @@ def checked_seconds(seconds: float | None) -> float:
 
 
 def watch(
-    monitor: StreamMonitor,
-    seconds: float,
-    check: Callable[[], bool],
-    *,
-    patience: float = 30.0,
+    monitor: StreamMonitor, seconds: float, check: Callable[[], bool], *, patience: float = 30.0
 ) -> None:
     """
     Receive for so many seconds from when poses come, and print how it goes.

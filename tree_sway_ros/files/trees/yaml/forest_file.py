@@ -82,11 +82,7 @@ class ForestFile:
         return replace(self, trees=tuple(trees))
 
     def simulator(
-        self,
-        settings: Settings | None = None,
-        *,
-        tolerance: float = 0.005,
-        **changes: Any,
+        self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
     ) -> Forest:
         """
         Make a simulator of all trees; arguments and errors, which name the tree, as of

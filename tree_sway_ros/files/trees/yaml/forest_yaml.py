@@ -27,11 +27,7 @@ from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, refuse_same_names
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.files.yaml_document import (
-    begins_with_key,
-    packaged_schema,
-    read_yaml,
-)
+from tree_sway_ros.files.yaml_document import begins_with_key, packaged_schema, read_yaml
 
 OpenTree = Callable[[str, int], TreeFile]
 OpenSpecies = Callable[[str], Species]
