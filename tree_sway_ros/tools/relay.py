@@ -20,6 +20,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.intake import WindIntake
@@ -197,7 +198,7 @@ class _Relay:
         """How much of the wind was solved [s]."""
         return (self._last - self._first) / _SECOND
 
-    def _stepped(self, stamp: int, _wind: Any) -> None:
+    def _stepped(self, stamp: int, _wind: Floats) -> None:
         """Tell what a step has led to."""
         self._first, self._last = self._first or stamp, stamp
         if self._log is not None:

@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.page.wind_source import WindSource
 from tree_sway_ros.tools.arguments import (
     add_output_arguments,
@@ -74,8 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _swayed(
-    simulator: Any, wind: WindSource, arguments: argparse.Namespace
-) -> tuple[list[Any], Any]:
+    simulator: Simulator, wind: WindSource, arguments: argparse.Namespace
+) -> tuple[list[Floats], Floats]:
     """Poses and wind of every picture, once the start from rest is forgotten."""
     steps = max(1, round(_STEPS_PER_SECOND / arguments.rate))
     dt = 1.0 / (arguments.rate * steps)

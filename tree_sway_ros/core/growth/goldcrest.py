@@ -48,12 +48,7 @@ def grow_goldcrest(
 
 
 def _add_branch(
-    skeleton: Skeleton,
-    stem: int,
-    at: int,
-    azimuth: float,
-    here: float,
-    rng: np.random.Generator,
+    skeleton: Skeleton, stem: int, at: int, azimuth: float, here: float, rng: np.random.Generator
 ) -> None:
     """Add a branch at a relative height of the stem, reaching for the surface of the cone."""
     length = (0.26 * (1.0 - here) + 0.03) * rng.uniform(0.88, 1.08)

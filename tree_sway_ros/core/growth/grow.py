@@ -99,13 +99,7 @@ def grow(
     _check_stem(wood, height, diameter)
     called = name if name is not None else species
     if kind == "conifer":
-        return grow_conifer(
-            rng,
-            height=height,
-            diameter=diameter,
-            name=called,
-            species=species,
-        )
+        return grow_conifer(rng, height=height, diameter=diameter, name=called, species=species)
     if kind == "broadleaf":
         generator = grow_broadleaf
     else:

@@ -61,8 +61,8 @@ def add_twigs(
         along = along / np.linalg.norm(along)
         offsets = []
         for side in sides:
-            way = aim(along, polar, side) + lift * UP
-            offsets.append(ratio * length / np.linalg.norm(way) * way)
+            heading = aim(along, polar, side) + lift * UP
+            offsets.append(ratio * length / np.linalg.norm(heading) * heading)
         for node in range(max(start + 1, first_node), stop + 1):
             base = parent.nodes[node]
             for offset in offsets:

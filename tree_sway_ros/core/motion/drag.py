@@ -56,11 +56,7 @@ class DragLaw(NamedTuple):
 
 
 def crown_drag(
-    wood_area: float,
-    leaf_area: Floats,
-    clad_wood: Floats,
-    wood: float,
-    leaves: tuple[float, float],
+    wood_area: float, leaf_area: Floats, clad_wood: Floats, wood: float, leaves: tuple[float, float]
 ) -> tuple[DragLaw, Floats]:
     """
     Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.

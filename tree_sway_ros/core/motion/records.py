@@ -45,11 +45,7 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("coordinate", "i8"),  # its first coordinate
             ("n_coordinates", "i8"),  # key rotation x, y, then further ones
             ("source", "i8"),  # branch whose motion it copies, itself if solved
-            (
-                "frame",
-                "f8",
-                (3, 3),
-            ),  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
+            ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
             (
                 "twist",
                 "f8",
@@ -175,11 +171,7 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("half_turn", "f8", (3, LANES)),  # half the rotation vector per unit of slope
             ("half_key", "f8", (n_coordinates, LANES)),  # half of each coordinate, stretched
             ("square", "f8", (LANES,)),  # of the length of half_turn
-            (
-                "swing",
-                "f8",
-                (4, LANES),
-            ),  # half_turn, then the base: what a sine is multiplied by
+            ("swing", "f8", (4, LANES)),  # half_turn, then the base: what a sine is multiplied by
             (
                 "half_angle",
                 "f8",
@@ -207,7 +199,7 @@ WORK = np.dtype(
         ("base", "f8", (8,)),
     ]
 )
-"""What a step computes on the way, kept from one step to the next."""
+"""What a step computes in between, kept from one step to the next."""
 
 
 def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:

@@ -148,12 +148,12 @@ class WindBasisTable:
         )  # fmt: skip
         return moments
 
-    def _slopes(self, at: Floats, wind: Floats, ways: Floats, *, rates: bool = False) -> Floats:
-        """Slope of the moments by each way (k, N) that the tree can bend or move, (k, N)."""
-        slopes, here = np.zeros_like(ways), self._moments(at, self._still, wind)
-        for row, way in zip(slopes, ways, strict=True):
-            size = _DIFFERENCE / max(float(np.abs(way).max()), 1e-12)
-            x, v = (at, size * way) if rates else (at + size * way, self._still)
+    def _slopes(self, at: Floats, wind: Floats, shapes: Floats, *, rates: bool = False) -> Floats:
+        """Slope of the moments by shapes (k, N) that the tree is bent by, or moves by, (k, N)."""
+        slopes, here = np.zeros_like(shapes), self._moments(at, self._still, wind)
+        for row, shape in zip(slopes, shapes, strict=True):
+            size = _DIFFERENCE / max(float(np.abs(shape).max()), 1e-12)
+            x, v = (at, size * shape) if rates else (at + size * shape, self._still)
             row[:] = (self._moments(x, v, wind) - here) / size
         return slopes
 
@@ -189,8 +189,8 @@ class WindBasisTable:
         self._twice = float(twice.max())
         excess, lean = np.zeros((len(_ASKED), m)), np.zeros((len(_ASKED), m, m))
         for k, azimuth in enumerate(_ASKED):
-            way = self._along[k] @ self._rests
-            excess[k] = self._slopes(self._still, direction(azimuth, 0.0), way[None])[0] @ shapes
+            lean_shape = (self._along[k] @ self._rests)[None]
+            excess[k] = self._slopes(self._still, direction(azimuth, 0.0), lean_shape)[0] @ shapes
             for sign in (1.0, -1.0):
                 slant = direction(azimuth, sign * _SLOPE_AT)
                 slopes = self._slopes(self._still, slant, shapes.T)

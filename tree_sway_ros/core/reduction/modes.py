@@ -31,6 +31,9 @@ nothing.
 
 _DENSE_UP_TO = 400
 
+_MOST_LEFT = 0.05
+"""Of what wind drives slow modes to do, root mean square: as much may be left out."""
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -105,17 +108,21 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
-def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
+def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int, further: int = 0) -> Modes:
     """
     Keep so many of the modes by which turbulence moves the tips most, the slowest first.
 
     At its own pace a mode goes ``phi . q / (2 zeta w^2)`` under a load q, of moments (N, any);
     turbulence there has a power of ``w^(-5/3)``, over a band as wide as w. Of modes that loads do
     not reach, as branches that swing against each other, nothing is lost. ``moved`` is the sum over
-    the tips of the square of what a unit of each mode moves them, (m,).
+    the tips of the square of what a unit of each mode moves them, (m,). Up to so many ``further``
+    ones are kept where those left out would make up more than 5 % of the root mean square of all.
     """
     driven = moved * np.square(modes.shapes.T @ loads).sum(axis=1) / modes.circular ** (14.0 / 3.0)
-    kept = np.sort(np.argsort(-driven, kind="stable")[:count])
+    order = np.argsort(-driven, kind="stable")
+    left = 1.0 - np.cumsum(driven[order]) / max(float(driven.sum()), 1e-300)
+    missed = int((left[count - 1 :] > _MOST_LEFT**2).sum())
+    kept = np.sort(order[: count + min(missed, further)])
     return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
 
 

@@ -109,6 +109,13 @@ USUAL_MODES = 12
 _FEW_MODES = 6
 """To more modes than this comes what they lack of the static sway along x, y and z."""
 
+_FURTHER = 12_000
+"""
+Coordinates of all further modes together that a tree which wind drives in many modes may have: a
+frame takes up to a tenth longer by them.
+
+"""
+
 
 class Frozen:
     """Model 0: a tree that stands still, for one too far away to be seen moving."""
@@ -429,8 +436,12 @@ class CalibratedTree:
         n_static = loads.shape[1]
         if not _FEW_MODES < n_modes < n - n_static:
             return most_driven(modes, even_wind_moments(branches, n), moved, n_modes)
-        n_driven = n_modes - n_static if model == "wind_basis" else n_modes
-        return with_static(most_driven(modes, loads, moved, n_driven), reduction, loads)
+        if model == "wind_basis":
+            chosen = most_driven(modes, loads, moved, n_modes - n_static)
+        else:
+            further = min(n_modes, _FURTHER // n)
+            chosen = most_driven(modes, loads, moved, n_modes, further)
+        return with_static(chosen, reduction, loads)
 
     def _modal_bank(self) -> type[ModalBank]:
         if self.plain:

@@ -112,9 +112,7 @@ class SwaySimulator(OneTree, KeepsState):
             from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
 
             self._gusts = CrownGusts(
-                calibrated.crown_delays,
-                self.settings.crown_coherence,
-                self.bank.oscillators.loads,
+                calibrated.crown_delays, self.settings.crown_coherence, self.bank.oscillators.loads
             )
         self._calibrated = calibrated
         self._tuning: LiveTuning | None = None

@@ -10,7 +10,7 @@ strength. What the basis leaves out is told by runs in other winds.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,7 @@ from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.motion.response import tip_motion
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.state.state_basis import BasisError, StateBasis
+from tree_sway_ros.core.state.tree_state import TreeState
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
@@ -57,10 +58,10 @@ class Swaying(Protocol):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations, (n, 7)."""
 
-    def state(self) -> Any:
+    def state(self) -> TreeState:
         """All that is carried from step to step."""
 
-    def set_state(self, state: Any) -> None:
+    def set_state(self, state: TreeState) -> None:
         """Go on from a state."""
 
     def reset(self) -> None:

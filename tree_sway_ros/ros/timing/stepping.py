@@ -17,9 +17,12 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
 
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.wind.averaging import WindAverage
 
 _BLOCK = 10_000_000_000_000
 """
@@ -40,13 +43,15 @@ class Stepper:
     ``make_wind`` makes an empty `WindAverage`; it is called again whenever the clock was set back.
     """
 
-    def __init__(self, simulator: Simulator, make_wind: Callable[[], Any], period: int) -> None:
+    def __init__(
+        self, simulator: Simulator, make_wind: Callable[[], WindAverage], period: int
+    ) -> None:
         self.simulator = simulator
         self.is_paused = False
         self._make_wind = make_wind
         self._wind = make_wind()
         self._period = period
-        self._samples: deque[tuple[int, Any]] = deque(maxlen=_QUEUE)
+        self._samples: deque[tuple[int, ArrayLike]] = deque(maxlen=_QUEUE)
         self._requests: deque[Callable[[], None]] = deque(maxlen=_QUEUE)
         self._origin = 0
         self._felt = 0.0
@@ -71,7 +76,7 @@ class Stepper:
         self.simulator.reset()
         return 1e6 * min(spent)
 
-    def add_wind(self, time_ns: int, vector: Any) -> None:
+    def add_wind(self, time_ns: int, vector: ArrayLike) -> None:
         """Take a sample of the wind; any thread may call this."""
         self._samples.append((time_ns, vector))
 
@@ -107,7 +112,7 @@ class Stepper:
         # Asked for here, in the thread that changes it: reports come from another.
         self.wind_state = str(self._wind.state(self._felt))
 
-    def _mean_wind(self, end: float, dt: float) -> Any:
+    def _mean_wind(self, end: float, dt: float) -> Floats:
         samples = self._samples
         while samples and self._seconds(samples[0][0]) <= end:
             time_ns, vector = samples.popleft()
