@@ -95,7 +95,7 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     license="Apache-2.0",
     packages=find_packages(str(ROOT), include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={"": ["py.typed", "*.json", "*.yaml", "*.csv", "static/*", "static/*/*"]},
+    package_data={"": ["py.typed", "*.json", "*.yaml", "*.csv", "*.xml", "static/*", "static/*/*"]},
     data_files=data_files,
     python_requires=">=3.10",
     install_requires=[

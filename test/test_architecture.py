@@ -230,7 +230,7 @@ def test_names_say_what_is_inside() -> None:
 
 def test_the_core_is_tested_as_much_as_it_is_written() -> None:
     """
-    At least 0.7 lines of tests a line of the core.
+    At least 0.7 lines of tests per line of the core.
 
     Counted are lines of code, on both sides alike: no blank lines, no comments, no docstrings. The
     core is tree_sway_ros/core; its tests are test/core and test/golden (other solvers).

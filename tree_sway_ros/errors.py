@@ -6,7 +6,6 @@ What can go wrong, as types: every error names what, where and the cure.
 The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. An error
 carries the offending values as attributes, so that a program can act on them without reading the
 text.
-
 """
 
 from __future__ import annotations

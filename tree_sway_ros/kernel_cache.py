@@ -8,7 +8,6 @@ changed function run the old code. Here the key is a digest of a function's modu
 module of this package that it imports, directly or not, beside signature, processor, compiler
 version and flags. A kernel that cannot be read from disk is compiled again; one that cannot be
 written is kept in memory.
-
 """
 
 from __future__ import annotations

@@ -4,7 +4,6 @@
 How files of this package name their licence, for `ament_copyright`, which knows long headers alone.
 
 It finds this by the entry point ``ament_copyright.license`` of setup.py, and nobody else needs it.
-
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ def test_a_tree_sways_most_at_its_own_frequency(tmp_path: Path) -> None:
     from tree_sway_ros import make_simulator, open_tree
 
     tree = open_tree("goldcrest")
-    slowest = make_simulator(tree.tree, tree.species).frequencies(1)[0]
+    slowest = make_simulator(tree).frequencies(1)[0]
     text = output_of("response_spectra.py", "goldcrest", "spectra.png", folder=tmp_path)
     found = re.search(r"sways most at ([\d.]+) Hz, (\d+) times", text)
     assert found

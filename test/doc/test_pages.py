@@ -26,6 +26,10 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "doc").rglob("*.md"))]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(?<!`)\[[^\]\n]+\]\(([^)\s]+)\)")
+#: A path of the repository or of the package.
+NAMED = re.compile(
+    r"`((?:test|tree_sway_ros|config|doc|core|files|ros|nodes|launch|examples|\.ci)/[\w./-]*\w/?)`"
+)
 SHELL = 'set -eu; tree-sway() { "$PYTHON" -m tree_sway_ros.tools.cli "$@"; }\n'
 FOLDERS = ("config", "doc", "examples", "launch", "test")
 DEADLINE = 300.0
@@ -108,6 +112,13 @@ def test_its_links_lead_somewhere(page: Path) -> None:
             headings = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.MULTILINE)
             slugs = {re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-") for h in headings}
             assert heading in slugs, f"{link} in {name(page)}"
+
+
+def test_files_that_the_pages_name_are_there() -> None:
+    named = [(page, path) for page in PAGES for path in NAMED.findall(page.read_text("utf-8"))]
+    assert len(named) > 40
+    roots = (ROOT, ROOT / "tree_sway_ros")
+    assert not [each for each in named if not any((root / each[1]).exists() for root in roots)]
 
 
 def test_the_readme_is_short() -> None:

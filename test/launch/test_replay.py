@@ -23,7 +23,7 @@ player:
     wait_for: wind wind/filtered segment_poses /clock:2
 solver:
   ros__parameters:
-    qos_overrides./segment_poses.publisher.depth: 1000  # for who is slower than 600 frames a second
+    qos_overrides./segment_poses.publisher.depth: 1000  # for readers below 600 frames per second
 """
 _POSES = 28
 """Begin of the poses in a message: behind the header, their count and a gap that nobody fills."""

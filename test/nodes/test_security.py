@@ -51,8 +51,9 @@ def test_the_check_sees_what_it_looks_for(text):
 
 @pytest.mark.parametrize("name", ["tree", "file", "species", "certificate", "private_key"])
 def test_nobody_in_the_graph_names_a_file(name):
-    for table in NODE_PARAMETERS.values():
-        assert not any(each.live for each in table if each.name == name)
+    named = [each for table in NODE_PARAMETERS.values() for each in table if each.name == name]
+    assert named
+    assert not any(each.live for each in named)
 
 
 def test_every_node_has_an_enclave():
@@ -77,7 +78,9 @@ def test_what_nodes_say_and_hear_is_allowed(compose, tree_file):
         "publish_clock": True,
         "wait_for": "wind/filtered nobody",
     }
-    for node in compose(**parameters).nodes:
+    nodes = compose(**parameters).nodes
+    assert {node.get_name() for node in nodes} >= set(parameters)
+    for node in nodes:
         profile = next(p for p in POLICY.iter("profile") if p.get("node") == node.get_name())
         for way, made in (("publish", node.publishers), ("subscribe", node.subscriptions)):
             allowed = {t.text for topics in profile if topics.get(way) for t in topics}

@@ -23,31 +23,9 @@ def within(
     above: bool = False,
 ) -> float:
     """
-    Return a number if it lies in a closed range.
+    Return a number if it lies in a closed range; not-a-number lies in none.
 
-    Parameters
-    ----------
-    name
-        Name of the parameter, for the error.
-    value
-        The number.
-    low, high
-        The range; not-a-number lies in none.
-    unit
-        Unit of the range, for the error.
-    above
-        Refuse `low` itself too.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    ParameterError
-        If it lies outside, or is no number.
-
+    ``above`` refuses the low end itself too. A `ParameterError` tells name, value, range and unit.
     """
     try:
         number = float(value)
@@ -62,25 +40,9 @@ def within(
 
 def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     """
-    Return the components of a vector, which may be infinite or not-a-number.
+    Return the three components of a vector, which may be infinite or not-a-number.
 
-    Parameters
-    ----------
-    name
-        What it is, for the error.
-    vector
-        Anything of shape (3,).
-
-    Returns
-    -------
-    tuple of float
-        Its three components.
-
-    Raises
-    ------
-    ParameterError
-        If it is not three numbers.
-
+    A `ParameterError` tells what is not three numbers, by its name.
     """
     try:
         x, y, z = np.asarray(vector, dtype=np.float64).tolist()
@@ -94,23 +56,9 @@ def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[n
     """
     Return an array if a kernel can write all of a shape into it.
 
-    A kernel knows no bounds: what is too short would be written past its end.
-
-    Parameters
-    ----------
-    name
-        Name of the argument, for the error.
-    array
-        To be written.
-    shape
-        That it must have.
-
-    Raises
-    ------
-    ParameterError
-        If it is no array of float64 in the machine's own order, of that shape, whole in one piece
-        of memory, row after row, and free to be written.
-
+    A kernel knows no bounds: what is too short would be written past its end. A `ParameterError`
+    tells of no array of float64 in the machine's own order, of that shape, whole in one piece of
+    memory, row after row, and free to be written.
     """
     if not isinstance(array, np.ndarray):
         wrong = f"a {type(array).__name__}"
@@ -133,20 +81,7 @@ def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArr
     """
     Return numbers as a kernel reads them: float64, in one piece, and as many as it will read.
 
-    Parameters
-    ----------
-    name
-        Name of the argument, for the error.
-    values
-        Anything of the shape.
-    shape
-        That it must have.
-
-    Raises
-    ------
-    ParameterError
-        Another shape, or what are no numbers.
-
+    A `ParameterError` tells of another shape, or what are no numbers.
     """
     try:
         numbers = np.ascontiguousarray(values, dtype=np.float64)
@@ -161,27 +96,9 @@ def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArr
 
 def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[np.float64]:
     """
-    Return numbers, one for each thing, none of them negative.
+    Return so many numbers, one for each thing, (count,), none of them negative.
 
-    Parameters
-    ----------
-    name
-        Name of the argument, for the error.
-    values
-        Anything of shape (count,).
-    count, what
-        How many there must be, and of what they are, for the error.
-
-    Returns
-    -------
-    NDArray[np.float64]
-        Shape (count,).
-
-    Raises
-    ------
-    ParameterError
-        Another shape, or a number that is negative or not finite.
-
+    A `ParameterError` tells of another shape, or a number that is negative or not finite.
     """
     numbers = array_to_read(name, values, (count,))
     bad = np.flatnonzero(~(np.isfinite(numbers) & (numbers >= 0.0)))

@@ -5,7 +5,6 @@ The one way a hot function is compiled: cached on disk, IEEE division, types kep
 
 Where numba is missing (`WHY_PLAIN`) functions stay as they are: those of numbers run as plain
 Python, and `motion` takes the numpy form of what runs over a tree.
-
 """
 
 from __future__ import annotations
@@ -32,7 +31,6 @@ def kernel(function: _F) -> _F:
 
     Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released;
     the code is kept on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
-
     """
     return _compiled(function)
 
@@ -44,7 +42,6 @@ def fused(function: _F) -> _F:
     For what is placed and summed, where the last bit does not matter. The result is still the same
     bit for bit on one machine, for a callee becomes part of each caller: were it called, a caller
     would run whichever copy of it was loaded first. Not for code that counts on rounding.
-
     """
     return _compiled(function, fastmath=_LOOSE, forceinline=True)
 
@@ -54,7 +51,6 @@ def inlined(function: _F) -> _F:
     Compile like `fused` and paste the body into each caller, so that a loop of calls vectorises.
 
     For short functions of numbers in the innermost loop; callers compile longer.
-
     """
     return _compiled(function, fastmath=_LOOSE, inline="always")
 
@@ -73,19 +69,11 @@ def _compiled(function: _F, **options: Any) -> _F:
 
 def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
     """
-    Return the machine code of a kernel for arguments of these types, to be called many times.
+    Return the machine code of a kernel for arguments such as these, to be called many times.
 
     A call of the kernel itself looks at the type of each argument first, which for a small tree
     takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types and
     layouts may be passed.
-
-    Parameters
-    ----------
-    function
-        The kernel.
-    *arguments
-        Such as it will be called with.
-
     """
     find = getattr(function, "get_overload", None)
     if find is None:
@@ -98,20 +86,7 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
 
 
 def need_compiler(what: str) -> None:
-    """
-    Refuse what has no form but the compiled one.
-
-    Parameters
-    ----------
-    what
-        What is asked for, for the error.
-
-    Raises
-    ------
-    MissingDependencyError
-        If kernels are not compiled here.
-
-    """
+    """Refuse what has no form but the compiled one, with a `MissingDependencyError`."""
     if WHY_PLAIN:
         raise MissingDependencyError(
             f"{what} needs compiled kernels, and {WHY_PLAIN}",
@@ -126,7 +101,6 @@ def like(value: float, model: Any) -> Any:
     float64.
 
     Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
-
     """
     return value
 

@@ -4,7 +4,6 @@
 Rotations of the hot path, as scalars: quaternions w x y z and rotation vectors.
 
 Compiled into their callers, so nothing is allocated and no array is made.
-
 """
 
 from __future__ import annotations
@@ -55,19 +54,9 @@ def half_angle_near(t: float) -> tuple[float, float]:
 @fused
 def half_angle(t: float) -> tuple[float, float]:
     """
-    Cosine of ``sqrt(t)`` and sine over ``sqrt(t)``: by series up to 1.5 rad (error below 3e-13),
-    exact beyond.
+    Cosine of ``sqrt(t)`` and sine over it, t the square of half the angle in [rad^2].
 
-    Parameters
-    ----------
-    t
-        Square of half the rotation angle in [rad^2].
-
-    Returns
-    -------
-    tuple
-        cos and sinc of half the angle.
-
+    By series up to 1.5 rad (error below 3e-13), exact beyond.
     """
     if t > SERIES_LIMIT:
         root = math.sqrt(t)
@@ -120,7 +109,6 @@ def turned(
 
     That is the angle itself to r^3 / 12, enough to tell which way a branch faces the wind, at no
     root, sine or cosine. The opposite rotation vector undoes it to rounding.
-
     """
     hx, hy, hz = 0.5 * rx, 0.5 * ry, 0.5 * rz
     f = 2.0 / (1.0 + hx * hx + hy * hy + hz * hz)

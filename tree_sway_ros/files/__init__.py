@@ -5,5 +5,4 @@ Files to trees and winds, and back.
 
 Text, tables and schemas that several formats share live in this folder itself.
 No ROS, no arithmetic of motion.
-
 """

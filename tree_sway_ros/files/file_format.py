@@ -19,17 +19,9 @@ class FileFormat:
     """
     A format of files.
 
-    Parameters
-    ----------
-    name
-        Its name for people and for the ``format`` option.
-    suffixes
-        Its usual suffixes, lower case.
-    recognise
-        Whether the beginning of a file, as text with all else replaced, looks like it.
-    read
-        Reader of such a file. Its arguments after the path are the format's own options.
-
+    ``name`` is also the value of the option ``format``; suffixes are in lower case. ``recognise``
+    tells by the beginning of a file, as text with all else replaced; arguments of ``read`` after
+    the path are the format's own options.
     """
 
     name: str
@@ -80,18 +72,8 @@ def format_of(
     """
     Return the format of a file: the one that is named; else its content decides, then its suffix.
 
-    Parameters
-    ----------
-    path
-        The file.
-    name
-        Name of its format, if that is known.
-    formats
-        Those there are; of several that recognise the content, the first is taken.
-    kind
-        What the files hold, for the errors.
-    folder
-        Name of the format that is a folder, if there is one.
+    Of several that recognise the content the first is taken; ``kind`` (what the files hold) is for
+    the errors, ``folder`` the name of the format that is a folder, if there is one.
 
     Raises
     ------

@@ -13,18 +13,10 @@ Option = bool | float | str | tuple[str, ...]
 
 def reader_options(words: Iterable[str]) -> dict[str, Option]:
     """
-    Read options for `read_wind`, `read_trees` and `open_tree`.
+    Read options for `read_wind`, `read_trees` and `open_tree` from words ``NAME=VALUE``.
 
-    Parameters
-    ----------
-    words
-        ``NAME=VALUE`` each: a number or a truth as such, words parted by commas as a tuple.
-
-    Raises
-    ------
-    ParameterError
-        If a word is none.
-
+    A number or a truth is read as such, words parted by commas as a tuple. A `ParameterError` tells
+    of a word that is none.
     """
     options: dict[str, Option] = {}
     for word in words:

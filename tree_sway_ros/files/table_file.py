@@ -6,7 +6,6 @@ Tables in text: one mapper from columns to arrays for every format of the family
 Comma, semicolon or tab between cells, white space where a format has no header; a unit may stand
 behind a column's name in brackets, or in a row of its own. Cells are read when they are asked for,
 a block at a time, as a day of wind has millions of rows.
-
 """
 
 from __future__ import annotations
@@ -39,23 +38,10 @@ class Column:
 @dataclass(frozen=True)
 class TextTable:
     """
-    A table whose columns have names.
+    A table whose columns have names: number and text of each line, and what splits it into cells.
 
-    Parameters
-    ----------
-    columns
-        Names of the columns.
-    numbers, texts
-        Line number and text of each row.
-    split
-        Splits a row into stripped cells.
-    source
-        The file, for the errors.
-    header_line, unit_line
-        Where the names and the units stand.
-    units
-        Unit of each column, if they have a row of their own.
-
+    ``header_line`` and ``unit_line`` say where names and units stand; ``units`` are those of the
+    columns, if they have a row of their own.
     """
 
     columns: tuple[str, ...]
@@ -72,15 +58,7 @@ class TextTable:
         return f"{self.source}:{self.header_line if row is None else self.numbers[row]}"
 
     def index_of(self, name: str) -> int:
-        """
-        Position of a column, whatever the case of its name.
-
-        Raises
-        ------
-        FormatError
-            If there is none of that name.
-
-        """
+        """Position of a column, whatever the case of its name; a `FormatError` if there is none."""
         for index, column in enumerate(self.columns):
             if column.lower() == name.lower():
                 return index
@@ -104,15 +82,7 @@ class TextTable:
         return column[:begin].strip().lower().replace(" ", "_"), unit.strip()
 
     def factor(self, unit: str, units: Mapping[str, float], default: float) -> float:
-        """
-        Factor of a unit by its name.
-
-        Raises
-        ------
-        FormatError
-            If it is none of these units.
-
-        """
+        """Factor of a unit by its name; a `FormatError` if it is none of these units."""
         if not unit:
             return default
         if unit.lower() not in units:
@@ -151,11 +121,7 @@ class TextTable:
         """
         Numbers in the columns of these names, (n, k).
 
-        Raises
-        ------
-        FormatError
-            At the first row that is short or holds something that is not a finite number.
-
+        A `FormatError` tells of the first row that is short or holds no finite number.
         """
         indices = [self.index_of(name) for name in names]
         values = self.values(indices)
@@ -179,13 +145,8 @@ class TextTable:
 
     def whole(self, values: Floats, name: str) -> Ints:
         """
-        Return a column of whole numbers.
-
-        Raises
-        ------
-        FormatError
-            If one has a fraction or is out of any table's reach.
-
+        Return a column of whole numbers; a `FormatError` for a fraction, or out of any table's
+        reach.
         """
         for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
             raise FormatError(
@@ -210,24 +171,11 @@ class TextTable:
         self, number: str, parent: str, none: Sequence[int], what: str
     ) -> tuple[list[str], Ints]:
         """
-        Return what an error calls each row, and the row of each one's parent, -1 for none.
+        Return what an error calls each row (``what`` and number), and the row of its parent, -1 for
+        none.
 
-        Parameters
-        ----------
-        number, parent
-            Columns of each one's number and of its parent's.
-        none
-            Parent numbers that mean there is none.
-        what
-            What a row is: a cylinder, a segment, a node.
-
-        Raises
-        ------
-        FormatError
-            A number that stands twice.
-        TreeError
-            A parent that is not there.
-
+        ``none`` are the parent numbers that mean there is none. A number that stands twice is a
+        `FormatError`, a parent that is not there a `TreeError`.
         """
         values = self.strict([number, parent])
         numbers = self.whole(values[:, 0], number).tolist()
@@ -277,11 +225,7 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     """
     Parse a table whose first line that is neither blank nor a comment is the header.
 
-    Raises
-    ------
-    FormatError
-        If there is no header or no row, or most rows have more cells than the header.
-
+    A `FormatError` tells of no header, no row, or most rows with more cells than the header.
     """
     numbers, texts = filled_lines(lines)
     if len(texts) < 2:

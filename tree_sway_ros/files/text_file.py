@@ -5,7 +5,6 @@ Text of a file, or one error that says why not.
 
 Every importer reads through here, so that a missing file, a folder, a binary file or a huge one
 gives the same short answer for each format.
-
 """
 
 from __future__ import annotations
@@ -29,11 +28,7 @@ def path_of(name: str | Path) -> Path:
     """
     Return a path as a person names it: ``~`` is the home folder.
 
-    Raises
-    ------
-    FormatError
-        If it begins with a user that does not exist, or can be no path.
-
+    A `FormatError` tells of a user that does not exist, or what can be no path.
     """
     text = str(name)
     try:
@@ -53,20 +48,9 @@ def path_of(name: str | Path) -> Path:
 
 def read_bytes(path: Path, at_most: int = -1) -> bytes:
     """
-    Read a file.
+    Read a file, or so many bytes from its beginning.
 
-    Parameters
-    ----------
-    path
-        The file.
-    at_most
-        Number of bytes wanted from its beginning; all of them if negative.
-
-    Raises
-    ------
-    FormatError
-        If it is missing, not a file, not readable or larger than `MAX_BYTES`.
-
+    A `FormatError` tells that it is missing, not a file, not readable or larger than `MAX_BYTES`.
     """
     try:
         is_there = path.exists()
@@ -93,15 +77,7 @@ def read_head(path: Path) -> str:
 
 
 def read_text(path: Path) -> str:
-    """
-    Read a text file in UTF-8, with or without a byte order mark.
-
-    Raises
-    ------
-    FormatError
-        As `read_bytes`, and if it is not UTF-8 text.
-
-    """
+    """Read a text file in UTF-8, with or without a byte order mark; else a `FormatError`."""
     try:
         return read_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -23,11 +23,8 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
     """
     Seconds of each stamp after the first good one, to the microsecond; NaN where it is none.
 
-    Parameters
-    ----------
-    stamps
-        Such as ``2012-06-07 12:45:00.05`` or ``2012-06-07T12:45:00Z``; a stamp without a zone is
-        taken as it is. (n,).
+    Stamps are such as ``2012-06-07 12:45:00.05`` or ``2012-06-07T12:45:00Z``; one without a zone is
+    taken as it is.
 
     Returns
     -------

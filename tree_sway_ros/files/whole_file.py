@@ -19,23 +19,9 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     """
     Give a path to write to, which takes the place of the file when the block ends without an error.
 
-    A link is followed. A device or a pipe is written to directly.
-
-    Parameters
-    ----------
-    path
-        The file to write.
-
-    Yields
-    ------
-    Path
-        A new, empty file of the same suffix in the same folder.
-
-    Raises
-    ------
-    FormatError
-        If the file cannot be written, or an `OSError` ends the block.
-
+    It is a new, empty file of the same suffix in the same folder. A link is followed; a device or a
+    pipe is written to directly. A `FormatError` tells that the file cannot be written, or that an
+    `OSError` ended the block.
     """
     target = path_of(path).resolve()
     partial: Path | None = None

@@ -7,7 +7,6 @@ PyYAML composes the nodes and jsonschema holds their values against the schema t
 read. Before that, a pass over the events refuses what could blow a small file up, or end the
 process: anchors, tags, depth. A ``oneOf`` of required keys is left to the reader, which says it
 better.
-
 """
 
 from __future__ import annotations
@@ -59,21 +58,7 @@ def tree_schema() -> Schema:
 
 @dataclass(frozen=True)
 class YamlDocument:
-    """
-    Checked values of a YAML text.
-
-    Parameters
-    ----------
-    values
-        Its values: whole numbers and numbers where the schema has them, texts as they stand.
-    source
-        The file.
-    root
-        Its nodes.
-    schema
-        What they are held against.
-
-    """
+    """Checked values of a YAML text: numbers where the schema has them, texts as they stand."""
 
     values: dict[str, Any]
     source: str

@@ -18,15 +18,7 @@ from tree_sway_ros.ros.wire.wind_messages import WindWriter
 
 
 class AnemometerNode(TreeSwayNode):
-    """
-    Publishes `wind` at a fixed rate.
-
-    Parameters
-    ----------
-    options
-        For `rclpy.node.Node`.
-
-    """
+    """Publishes `wind` at a fixed rate."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("anemometer", **options)

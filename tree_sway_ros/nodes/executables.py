@@ -5,7 +5,6 @@ The executables that ``ros2 run tree_sway_ros`` starts; they can be imported wit
 
 Each takes a command line without the program's name (that of the process if it is left out) and
 returns the exit code.
-
 """
 
 from __future__ import annotations

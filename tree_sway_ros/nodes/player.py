@@ -42,15 +42,7 @@ _MEETING = 2.0
 
 
 class PlayerNode(TreeSwayNode):
-    """
-    Publishes `wind` or the state of a tree from a record, and `/clock` if asked to.
-
-    Parameters
-    ----------
-    options
-        For `rclpy.node.Node`.
-
-    """
+    """Publishes `wind` or the state of a tree from a record, and `/clock` if asked to."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("player", **options)

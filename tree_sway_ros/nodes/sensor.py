@@ -18,15 +18,7 @@ from tree_sway_ros.ros.wire.wind_messages import WindWriter
 
 
 class SensorNode(TreeSwayNode):
-    """
-    Publishes `wind` as an instrument says it, stamped with the time of arrival.
-
-    Parameters
-    ----------
-    options
-        For `rclpy.node.Node`.
-
-    """
+    """Publishes `wind` as an instrument says it, stamped with the time of arrival."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("sensor", **options)

@@ -42,14 +42,8 @@ _FARTHEST_CAMERA = 1e6
 
 class SolverNode(TreeSwayNode):
     """
-    Subscribes `wind/filtered`; publishes `segment_poses`, `markers`, `tree_state` and
+    Subscribes `wind/filtered`; publishes `segment_poses`, `markers`, `tree_state`,
     `tree_description`.
-
-    Parameters
-    ----------
-    options
-        For `rclpy.node.Node`.
-
     """
 
     def __init__(self, **options: Any) -> None:

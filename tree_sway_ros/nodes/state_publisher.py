@@ -21,16 +21,6 @@ class StatePublisher:
     Publishes `tree_state`, and has `tree_description` tell how to read it.
 
     The basis takes some seconds to find: it is found on a thread of its own, once somebody listens.
-
-    Parameters
-    ----------
-    node
-        A `TreeSwayNode` with the solver's parameters and a `stream`.
-    simulator
-        Of the trees.
-    n_leaves
-        Clusters of leaves that are drawn on each kind of tree.
-
     """
 
     def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:

@@ -42,15 +42,7 @@ _LIVE = {
 
 
 class ViewerNode(TreeSwayNode):
-    """
-    Serves the page; subscribes `tree_state` from when a page is first connected.
-
-    Parameters
-    ----------
-    options
-        For `rclpy.node.Node`.
-
-    """
+    """Serves the page; subscribes `tree_state` from when a page is first connected."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("viewer", **options)

@@ -33,15 +33,7 @@ _BACK = 100_000_000
 
 
 class WindNode(TreeSwayNode):
-    """
-    Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`.
-
-    Parameters
-    ----------
-    options
-        For `rclpy.node.Node`.
-
-    """
+    """Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("wind", **options)

@@ -5,7 +5,6 @@ Who may connect: the token, the Origin of a page, the Host that a browser believ
 
 A server on this machine's own address needs no token, but a page from elsewhere must not reach it
 through the visitor's browser: its Origin, or its Host after a change of DNS, tells.
-
 """
 
 from __future__ import annotations

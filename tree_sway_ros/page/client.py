@@ -163,7 +163,6 @@ class StreamClient:
         Poses of all segments at a time, (n, 7): x y z in [m] and the quaternion's x y z w.
 
         None before the first state.
-
         """
         moment, placer = self.sample(now), self._placer
         if moment is None or placer is None:

@@ -6,7 +6,6 @@ how its branches bend, and the basis of its state; of each tree its kind, and wh
 
 A branch that moves with its parent as one body has no coordinate, and slopes of 0. A kind stands
 with its root node at the origin.
-
 """
 
 from __future__ import annotations
@@ -125,12 +124,10 @@ def _branches(simulator: TreeSimulator) -> dict[str, Array]:
         parent = int(tree.branch_parent[branch])
         carrier = record_at.get(int(tree.branch_first[parent])) if parent >= 0 else None
         if carrier is not None:
-            moving = first in record_at
-            base = (
-                bank.branches[record_at[first]]["twist"][:, 3:]
-                if moving
-                else bank.frozen.base_turn[top_at[first]]
-            )
+            if first in record_at or bank.frozen is None:
+                base = bank.branches[record_at[first]]["twist"][:, 3:]
+            else:
+                base = bank.frozen.base_turn[top_at[first]]
             turns.append(base[: bank.branches[carrier]["n_coordinates"]])
             arrays["branch_base_turn"][branch] = count
             count += len(turns[-1])

@@ -5,7 +5,6 @@ Sockets before they are clients: how many may be open, and how long one may take
 
 An HTTP server waits for a request as long as it takes; a thousand sockets that send a byte now and
 then would hold it forever.
-
 """
 
 from __future__ import annotations

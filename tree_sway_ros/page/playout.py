@@ -4,7 +4,6 @@
 From frames that arrive when they will to a smooth motion, as ``static/playout.js`` does it.
 
 Shown a little late, on a curve through the states (Catmull & Rom 1974), never extrapolated.
-
 """
 
 from __future__ import annotations
@@ -57,7 +56,6 @@ class ClockOffset:
 
     Arrival less stamp is offset plus travel, so that the least of the last half minute is the
     offset and the quickest travel.
-
     """
 
     def __init__(self) -> None:

@@ -6,7 +6,6 @@ The binary form of a swaying tree: a description sent once, then frames that sta
 `doc/streaming.md` is the specification; ``static/protocol.js`` reads the same bytes. Everything is
 little-endian. A frame holds the state and the wind, no more: some 60 bytes whatever the tree's
 size.
-
 """
 
 from __future__ import annotations

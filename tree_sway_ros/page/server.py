@@ -6,7 +6,6 @@ The page's server: files, a description once, the newest frame to whoever has as
 It runs on a thread and loop of its own. The solver's thread hands a frame over by storing it and
 waking the loop, and never waits. A client gets a frame only for a credit that it gave, and always
 the newest one, so that a slow client sees fewer frames, not old ones.
-
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ A live tree without ROS: a thread that steps it in real time and hands each stat
 
 What a viewer asks for that takes long (another tree, another model) is built on a second thread,
 while the first goes on, and taken over between two steps.
-
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ The kinds of a scene as they are told: trees of one shape share geometry and bas
 
 A stand says which trees are of a kind. Of other scenes those are that are the same but for where
 they stand and how they are turned; a tree that is like no other is a kind of its own.
-
 """
 
 from __future__ import annotations
@@ -126,7 +125,6 @@ def _turned(kind: ToldKind, simulator: TreeSimulator) -> tuple[float, Floats] | 
 
     Each branch has axes e1, e2 and further key rotations of its own choice: what the solver says is
     turned into those of the first tree.
-
     """
     first, joints = kind.simulator, simulator.joints
     frames = first.joints["frame"]
@@ -180,7 +178,6 @@ def _runner(simulator: TreeSimulator, is_running: bool) -> SwaySimulator:
     """
     Simulator to find the basis on: itself, unless it runs or another has the same key rotations at
     less cost.
-
     """
     is_cheap = isinstance(simulator, SwaySimulator) and simulator.model != "coupled"
     if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:

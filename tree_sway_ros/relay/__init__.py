@@ -4,5 +4,4 @@
 One tree at several sites: the wind goes over the line, and each site solves, or plays the state.
 
 `tree_site` steps a tree along samples of wind, `line` is the session of Zenoh between sites.
-
 """

@@ -10,7 +10,6 @@ The line between sites: keys of Zenoh, whose payloads are messages of ROS, JSON,
 ``PREFIX/description``     answers the description of doc/streaming.md
 ``PREFIX/frame``           its frames
 ========================= ====================================================
-
 """
 
 from __future__ import annotations
@@ -26,14 +25,9 @@ _PATIENCE = 5.0
 
 class Line:
     """
-    A session of Zenoh.
+    A session of Zenoh; who is on one line under one prefix has one tree.
 
-    Parameters
-    ----------
-    prefix
-        Of all keys: who is on one line under one prefix has one tree.
-    listen, connect
-        Endpoints, as ``tcp/0.0.0.0:7447``; with neither, peers find each other in the local net.
+    Endpoints are such as ``tcp/0.0.0.0:7447``; with none, peers find each other in the local net.
 
     Raises
     ------

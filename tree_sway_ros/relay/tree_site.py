@@ -5,7 +5,6 @@ A site: a tree that is solved on a grid of absolute time, as far as its wind is 
 
 Sites that have the same samples take the same steps and agree bit for bit, whenever the samples
 come. One that joins later sets a snapshot of another, or waits until damping has made them alike.
-
 """
 
 from __future__ import annotations
@@ -32,17 +31,10 @@ _SECOND = 1_000_000_000
 
 class Site:
     """
-    Steps a tree along samples of wind; any thread may call it.
+    Steps a tree along samples of wind, at a whole rate [Hz] that every site has; any thread may
+    call it.
 
-    Parameters
-    ----------
-    simulator
-        Of the tree.
-    rate
-        Steps per second, a whole number [Hz]; the same at every site.
-    stepped
-        Called after each step with its end [ns] and its mean wind [m/s].
-
+    ``stepped`` is called after each step with its end [ns] and its mean wind [m/s].
     """
 
     def __init__(
@@ -66,15 +58,7 @@ class Site:
         return json.dumps({**told, "model": simulator.model})
 
     def check(self, identity: str) -> None:
-        """
-        Compare with the identity of another site.
-
-        Raises
-        ------
-        StateError
-            Another tree, model, settings or rate.
-
-        """
+        """Raise a `StateError` if another site has another tree, model, settings or rate."""
         theirs, own = json.loads(identity), json.loads(self.identity())
         different = [f"{key} {theirs.get(key)}, not {own[key]}" for key in own
                      if theirs.get(key) != own[key]]  # fmt: skip
@@ -108,13 +92,8 @@ class Site:
 
     def join(self, snapshot: str) -> None:
         """
-        Go on from where another site is.
-
-        Raises
-        ------
-        StateError
-            A snapshot of another tree, or none at all.
-
+        Go on from where another site is; a `StateError` for a snapshot of another tree, or none at
+        all.
         """
         try:
             told = json.loads(snapshot)

@@ -4,7 +4,6 @@
 A sample of wind as the CDR bytes of ``geometry_msgs/Vector3Stamped``, written and read without ROS.
 
 The bytes are those that a Zenoh bridge of ROS 2 carries, so that it may stand at either end.
-
 """
 
 from __future__ import annotations
@@ -29,13 +28,7 @@ def encode_wind(stamp: int, vector: tuple[float, float, float], frame_id: str = 
 
 def decode_wind(data: bytes) -> tuple[int, tuple[float, float, float]]:
     """
-    Read a sample: its time [ns] and the vector [m/s].
-
-    Raises
-    ------
-    FormatError
-        Bytes that hold none, or numbers that are not finite.
-
+    Read a sample, its time [ns] and the vector [m/s]; a `FormatError` for bytes that hold none.
     """
     try:
         second, nanosecond, length = _STAMP.unpack_from(data, len(_HEAD))

@@ -5,5 +5,4 @@ Arrays to messages and back, parameters, timing, reports.
 
 What nodes share, in one room per concern.
 Nothing here solves anything.
-
 """

@@ -37,34 +37,22 @@ def add_tree_arguments(
     parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
 ) -> None:
     """
-    Add TREE and what can be said of its wood.
-
-    Parameters
-    ----------
-    parser
-        Of the command.
-    forests
-        TREE may be a forest.
-    default
-        TREE where it is left out; it may not be if None.
-
+    Add TREE, which may be a forest, and what can be said of its wood; the default may not be left
+    out.
     """
+    add = parser.add_argument
     kind = f"{_TREE}{' of a tree or a forest' * forests}"
     if default is None:
-        parser.add_argument("tree", metavar="TREE", help=kind)
+        add("tree", metavar="TREE", help=kind)
     else:
-        parser.add_argument(
-            "tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)"
-        )
-    parser.add_argument("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
-    parser.add_argument(
+        add("tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)")
+    add("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
+    add(
         "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"
     )
-    parser.add_argument(
-        "--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]"
-    )
-    parser.add_argument("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
-    parser.add_argument(
+    add("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")
+    add("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
+    add(
         "--option",
         action="append",
         default=[],
@@ -78,12 +66,8 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     """
     Open the tree that the arguments name, with the wood they give it.
 
-    Raises
-    ------
-    TreeSwayError
-        No such tree or species, a file that cannot be read, a modulus or density that is not
-        positive.
-
+    Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
+    density that is not positive.
     """
     with waiting(f"opening {arguments.tree}"):
         opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
@@ -94,11 +78,7 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
     """
     Open the tree or the forest that the arguments name, with the wood they give it.
 
-    Raises
-    ------
-    TreeSwayError
-        As `opened_tree`; values for one tree where there are several.
-
+    Raises as `opened_tree`, and for values of one tree where there are several.
     """
     with waiting(f"opening {arguments.tree}"):
         scene = open_scene(arguments.tree, arguments.seed, **_options(arguments))
@@ -187,12 +167,6 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
 def opened_wind(arguments: argparse.Namespace) -> WindSource:
     """
     Open the record that the arguments name, over and over, or the simulated wind of their speed.
-
-    Raises
-    ------
-    TreeSwayError
-        A record that cannot be read, or a speed out of the range of the simulated anemometer.
-
     """
     if arguments.wind is not None:
         record = opened_record(arguments)
@@ -233,11 +207,7 @@ def output_path(arguments: argparse.Namespace, default: str = "") -> str:
     """
     File to write: the one asked for, or the first of the default's names that is free.
 
-    Raises
-    ------
-    ParameterError
-        If the file asked for is there already and ``--force`` is not given.
-
+    A `ParameterError` if the one asked for is there already and ``--force`` is not given.
     """
     if arguments.output is not None:
         if not arguments.force:

@@ -36,22 +36,23 @@ _FAR = 2.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    add = parser.add_argument
     add_tree_arguments(parser)
     add_leaves_argument(parser)
-    parser.add_argument("--frequency", type=float, metavar="HZ", help="measured slowest sway [Hz]")
-    parser.add_argument(
+    add("--frequency", type=float, metavar="HZ", help="measured slowest sway [Hz]")
+    add(
         "--damping",
         type=float,
         metavar="Z",
         help="measured damping ratio [-]; wins over the record's",
     )
-    parser.add_argument(
+    add(
         "--record",
         metavar="FILE",
         help="CSV of the sway instead: time and x, y or tilt_x or ax ...",
     )
-    parser.add_argument("--kind", choices=KINDS, help="of the record; found from it if left out")
-    parser.add_argument(
+    add("--kind", choices=KINDS, help="of the record; found from it if left out")
+    add(
         "--band",
         type=float,
         nargs=2,

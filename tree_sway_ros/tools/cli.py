@@ -6,7 +6,6 @@ The command line ``tree-sway``: one module per command, imported when it is aske
 
 A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the user
 can mend ends as one line on standard error and exit code 2.
-
 """
 
 from __future__ import annotations
@@ -124,18 +123,9 @@ class _OneLineParser(argparse.ArgumentParser):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """
-    Run a command.
+    Run a command by its arguments, `sys.argv` if None.
 
-    Parameters
-    ----------
-    argv
-        Arguments without the program's name; `sys.argv` if None.
-
-    Returns
-    -------
-    int
-        Exit code: 0, or 2 if the user can mend it, with one line that says how.
-
+    The exit code is 0, or 2 if the user can mend it, with one line that says how.
     """
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning  # type: ignore[assignment]
@@ -209,7 +199,6 @@ def _module(command: str) -> Any:
 def _parser(chosen: str) -> _OneLineParser:
     """
     Parser of all commands; only the chosen one's arguments, as the others' modules may be slow.
-
     """
     parser = _OneLineParser(prog="tree-sway", description="Trees that sway in measured wind.")
     version = importlib.import_module("tree_sway_ros").__version__

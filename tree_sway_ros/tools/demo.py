@@ -4,7 +4,6 @@
 ``tree-sway demo``: a tree sways in wind, all nodes in one process, over real DDS.
 
 What it prints is what a subscriber receives, not what the solver believes to have sent.
-
 """
 
 from __future__ import annotations
@@ -33,26 +32,19 @@ from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    add = parser.add_argument
     add_sway_arguments(parser)
-    parser.add_argument(
-        "--start", type=float, default=0.0, metavar="T", help="skip so much of the record [s]"
-    )
-    parser.add_argument(
+    add("--start", type=float, default=0.0, metavar="T", help="skip so much of the record [s]")
+    add(
         "--sensor",
         metavar="ADDRESS",
         help="of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, "
         "udp://:port",
     )
-    parser.add_argument(
-        "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
-    )
-    parser.add_argument(
-        "--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)"
-    )
-    parser.add_argument(
-        "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
-    )
-    parser.add_argument("--no-page", action="store_true", help="serve no page")
+    add("--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C")
+    add("--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)")
+    add("--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)")
+    add("--no-page", action="store_true", help="serve no page")
     add_page_arguments(parser)
 
 

@@ -26,20 +26,17 @@ from tree_sway_ros.tools.arguments import (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument(
-        "--species", required=True, help=f"{', '.join(species_keys())}, or a species file"
-    )
-    parser.add_argument("--height", type=float, required=True, metavar="M", help="height [m]")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--species", required=True, help=f"{', '.join(species_keys())}, or a species file")
+    add("--height", type=float, required=True, metavar="M", help="height [m]")
+    add(
         "--diameter",
         type=float,
         metavar="M",
         help="at breast height [m]; from the height if left out",
     )
-    parser.add_argument("--habit", choices=HABITS, help="the species' own if left out")
-    parser.add_argument(
-        "--seed", type=int, default=0, help="another seed, another tree (%(default)s)"
-    )
+    add("--habit", choices=HABITS, help="the species' own if left out")
+    add("--seed", type=int, default=0, help="another seed, another tree (%(default)s)")
     add_output_arguments(parser, OUTPUT_HELP)
 
 

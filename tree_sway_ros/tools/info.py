@@ -37,22 +37,19 @@ _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    add = parser.add_argument
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    parser.add_argument("--model", choices=MODELS, default="modes", help="model (%(default)s)")
-    parser.add_argument(
-        "--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)"
-    )
-    parser.add_argument(
+    add("--model", choices=MODELS, default="modes", help="model (%(default)s)")
+    add("--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)")
+    add(
         "--root-stiffness",
         type=float,
         metavar="K",
         help="of its roots against tilting [N m/rad], inf for rigid ones; its own if left out",
     )
-    parser.add_argument(
-        "--count", type=int, default=10, metavar="N", help="how many frequencies (%(default)s)"
-    )
-    parser.add_argument("--json", action="store_true", help="for programs, SI units")
+    add("--count", type=int, default=10, metavar="N", help="how many frequencies (%(default)s)")
+    add("--json", action="store_true", help="for programs, SI units")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -18,22 +18,8 @@ def forest_facts(
     forest: ForestFile, facts_of: Callable[[TreeFile, bool], dict[str, Any]], told: bool | None
 ) -> dict[str, Any]:
     """
-    Gather what there is to say about a forest.
-
-    Parameters
-    ----------
-    forest
-        The forest.
-    facts_of
-        Says the same of one tree, with or without leaves.
-    told
-        Whether trees that do not say bear leaves; None leaves it to their species.
-
-    Returns
-    -------
-    dict
-        SI units throughout; fit for JSON.
-
+    Gather what there is to say about a forest, in SI units, fit for JSON; ``facts_of`` says it of a
+    tree.
     """
     trees = []
     for each in forest.trees:

@@ -3,7 +3,6 @@
 """
 Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that
 bends most.
-
 """
 
 from __future__ import annotations
@@ -25,20 +24,10 @@ _SMALL_ANGLE = 1e-4
 @dataclass(frozen=True)
 class ModeRow:
     """
-    One natural mode.
+    A natural mode: frequency [Hz] and damping ratio of wood and leaves, both without air.
 
-    Parameters
-    ----------
-    frequency
-        Without air in [Hz].
-    damping_ratio
-        Of the wood and leaves, without air, in [-].
-    axis
-        Direction that most of the moving mass sways in, a unit vector whose sign means nothing,
-        (3,).
-    branch
-        Name of the branch that bends most.
-
+    ``axis`` is the unit vector (its sign means nothing) that most of the moving mass sways along,
+    ``branch`` the one that bends most.
     """
 
     frequency: float
@@ -61,23 +50,9 @@ class ModeRow:
 
 def mode_table(tree: Tree, bank: Bank, count: int) -> list[ModeRow]:
     """
-    List the slowest modes.
+    List so many of the slowest modes of one model of a tree; none of a frozen one.
 
-    Parameters
-    ----------
-    tree
-        The tree.
-    bank
-        The tree as one model of the ladder models it. Where branches swing on their own, each has a
-        mode per branch and axis.
-    count
-        How many modes at most.
-
-    Returns
-    -------
-    list of ModeRow
-        The slowest first; empty for a frozen tree.
-
+    Where branches swing on their own, each has a mode per branch and axis.
     """
     frequencies, ratios, shapes = _modes(bank, count)
     owner = np.repeat(np.arange(tree.n_branches), bank.branches["n_coordinates"])

@@ -15,36 +15,29 @@ _PORT = 8765
 
 def add_page_arguments(parser: argparse.ArgumentParser) -> None:
     """Add where and to whom a page is served."""
-    parser.add_argument("--open", action="store_true", help="open the page in the browser")
-    parser.add_argument(
-        "--port", type=int, help=f"of the page ({_PORT}, or a free one if that is taken)"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--open", action="store_true", help="open the page in the browser")
+    add("--port", type=int, help=f"of the page ({_PORT}, or a free one if that is taken)")
+    add(
         "--address",
         default="127.0.0.1",
         help="to bind to; any other than this machine's own needs a token (%(default)s)",
     )
-    parser.add_argument("--token", default="", help="what viewers must know")
-    parser.add_argument("--certificate", default="", metavar="PEM", help="for https")
-    parser.add_argument(
+    add("--token", default="", help="what viewers must know")
+    add("--certificate", default="", metavar="PEM", help="for https")
+    add(
         "--origin",
         action="append",
         default=[],
         metavar="URL",
         help="of other pages that may follow the stream, as http://127.0.0.1:8000",
     )
-    parser.add_argument("--private-key", default="", metavar="PEM", help="of the certificate")
+    add("--private-key", default="", metavar="PEM", help="of the certificate")
 
 
 def page_settings(arguments: argparse.Namespace) -> PageSettings:
     """
-    Settings of the page's server from the arguments.
-
-    Raises
-    ------
-    ParameterError
-        A port that is none.
-
+    Settings of the page's server from the arguments; a `ParameterError` for a port that is none.
     """
     port = arguments.port
     if port is None:

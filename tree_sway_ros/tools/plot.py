@@ -3,7 +3,6 @@
 """
 ``tree-sway plot``: the wind and the motion of the tip over time, or with ``--portrait`` the tree
 itself.
-
 """
 
 from __future__ import annotations

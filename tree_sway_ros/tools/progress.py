@@ -5,7 +5,6 @@ What a command shows while it works: a bar for what is counted, a line for what 
 
 Everything goes to standard error. Bars are tqdm's and stand on terminals alone; without tqdm, and
 where there is no terminal, a line says now and then how far the work is.
-
 """
 
 from __future__ import annotations
@@ -26,17 +25,7 @@ _LINES_EVERY = 10.0
 
 
 def bar(items: Collection[T], what: str) -> Iterator[T]:
-    """
-    Yield the items, and show how many of them are done.
-
-    Parameters
-    ----------
-    items
-        What is worked on, one after the other.
-    what
-        What is done, for the bar: "MuJoCo", "settling".
-
-    """
+    """Yield the items, and show how many of them are done, and of what: "MuJoCo", "settling"."""
     if sys.stderr is not None and sys.stderr.isatty():
         try:
             from tqdm import tqdm

@@ -5,7 +5,6 @@
 
 One site sends the wind, and a snapshot to whoever joins; the others solve the same tree in it, or
 play the state. Where ROS runs, the wind comes from `wind/filtered` and goes to it.
-
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.simulator.settings import FIDELITIES, Settings
 from tree_sway_ros.core.wind.intake import WindIntake
@@ -49,29 +49,24 @@ _EVERY = 2  # steps per frame
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("role", choices=("send", "receive"), help="the wind")
+    add = parser.add_argument
+    add("role", choices=("send", "receive"), help="the wind")
     add_tree_arguments(parser, default="benjamina")
-    parser.add_argument("--listen", action="append", default=[], metavar="tcp/HOST:PORT")
-    parser.add_argument("--connect", action="append", default=[], metavar="tcp/HOST:PORT")
-    parser.add_argument("--key", default="tree_sway", help="of this tree's line (%(default)s)")
-    parser.add_argument(
-        "--model", choices=_MODELS, default=Settings().model, help="of the sway (%(default)s)"
-    )
-    parser.add_argument("--rate", type=int, default=60, help="steps per second (%(default)s)")
-    parser.add_argument("--ros", action="store_true", help="wind from, or to, `wind/filtered`")
+    add("--listen", action="append", default=[], metavar="tcp/HOST:PORT")
+    add("--connect", action="append", default=[], metavar="tcp/HOST:PORT")
+    add("--key", default="tree_sway", help="of this tree's line (%(default)s)")
+    add("--model", choices=_MODELS, default=Settings().model, help="of the sway (%(default)s)")
+    add("--rate", type=int, default=60, help="steps per second (%(default)s)")
+    add("--ros", action="store_true", help="wind from, or to, `wind/filtered`")
     add_wind_arguments(parser, "the record to send, over and over; simulated if left out")
-    parser.add_argument("--state", action="store_true", help="send the state as well, to be played")
-    parser.add_argument("--play", action="store_true", help="play the state, solve nothing")
-    parser.add_argument("--no-snapshot", action="store_true", help="receive from rest")
-    parser.add_argument(
-        "--lose", type=float, default=0.0, metavar="SHARE", help="of the received wind, as a trial"
-    )
-    parser.add_argument("-o", "--output", metavar="CSV", help="time and tip of every step")
-    parser.add_argument("--seconds", type=float, metavar="N", help="end after so much of the wind")
-    parser.add_argument(
-        "--pace", type=float, default=1.0, help="send so many times as fast (%(default)s)"
-    )
-    parser.add_argument("--page", action="store_true", help="serve the page of what is received")
+    add("--state", action="store_true", help="send the state as well, to be played")
+    add("--play", action="store_true", help="play the state, solve nothing")
+    add("--no-snapshot", action="store_true", help="receive from rest")
+    add("--lose", type=float, default=0.0, metavar="SHARE", help="of the received wind, as a trial")
+    add("-o", "--output", metavar="CSV", help="time and tip of every step")
+    add("--seconds", type=float, metavar="N", help="end after so much of the wind")
+    add("--pace", type=float, default=1.0, help="send so many times as fast (%(default)s)")
+    add("--page", action="store_true", help="serve the page of what is received")
     add_page_arguments(parser)
 
 
@@ -203,7 +198,7 @@ class _Relay:
         """How much of the wind was solved [s]."""
         return (self._last - self._first) / _SECOND
 
-    def _stepped(self, stamp: int, _wind: Any) -> None:
+    def _stepped(self, stamp: int, _wind: Floats) -> None:
         """Tell what a step has led to."""
         self._first, self._last = self._first or stamp, stamp
         if self._log is not None:

@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
+from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.page.wind_source import WindSource
 from tree_sway_ros.tools.arguments import (
     add_output_arguments,
@@ -31,17 +33,12 @@ _BLADES = 2800
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    add = parser.add_argument
     add_sway_arguments(parser)
-    parser.add_argument(
-        "--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)"
-    )
-    parser.add_argument("--start", type=float, default=0.0, help="of the wind [s] (%(default)s)")
-    parser.add_argument(
-        "--rate", type=float, default=20.0, help="pictures per second [Hz] (%(default)s)"
-    )
-    parser.add_argument(
-        "--pixels", type=int, default=480, help="height of the picture (%(default)s)"
-    )
+    add("--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)")
+    add("--start", type=float, default=0.0, help="of the wind [s] (%(default)s)")
+    add("--rate", type=float, default=20.0, help="pictures per second [Hz] (%(default)s)")
+    add("--pixels", type=int, default=480, help="height of the picture (%(default)s)")
     add_output_arguments(parser, "file to write: .gif, .png, .mp4, or a folder for its frames")
 
 
@@ -79,8 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _swayed(
-    simulator: Any, wind: WindSource, arguments: argparse.Namespace
-) -> tuple[list[Any], Any]:
+    simulator: Simulator, wind: WindSource, arguments: argparse.Namespace
+) -> tuple[list[Floats], Floats]:
     """Poses and wind of every picture, once the start from rest is forgotten."""
     steps = max(1, round(_STEPS_PER_SECOND / arguments.rate))
     dt = 1.0 / (arguments.rate * steps)

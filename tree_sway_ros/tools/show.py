@@ -27,12 +27,7 @@ from tree_sway_ros.page.session import Choices, Session
 from tree_sway_ros.page.wind_source import SimulatedWind, WindSource
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Parameter
-from tree_sway_ros.tools.arguments import (
-    add_sway_arguments,
-    opened_scene,
-    opened_wind,
-    told_leaves,
-)
+from tree_sway_ros.tools.arguments import add_sway_arguments, opened_scene, opened_wind, told_leaves
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 
 _SPACING = 1.2

@@ -45,8 +45,6 @@ def animate_poses(
 
     Parameters
     ----------
-    tree
-        At rest.
     frames
         Pose block of each frame, (n, 7).
     winds
@@ -56,19 +54,12 @@ def animate_poses(
         folder of frames.
     rate
         Frames per second in [Hz].
-    leaves
-        Its leaves; none are drawn if None.
     camera
         From where; from the south if None.
     pixels
         Height in [px].
     watched
         Given the images and how many there will be, gives them on; to show how far the work is.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------

@@ -19,15 +19,8 @@ class _Spray:
     """
     How a cluster is drawn: a short spray of blades that together show the area of a disc as wide.
 
-    Parameters
-    ----------
-    places
-        Place of each blade along the spray in lengths of a blade.
-    fans, tilts
-        How each fans out in the plane of the cluster, and turns about itself, in [rad].
-    length, width
-        Of a blade over the size of the cluster, and over those of `_BLADE`.
-
+    Places along the spray are in lengths of a blade; each fans out and turns about itself, in
+    [rad].
     """
 
     places: Floats
@@ -68,16 +61,8 @@ def _spray_of(species: str) -> _Spray:
 
 def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floats]:
     """
-    Blades of every cluster.
-
-    Parameters
-    ----------
-    species
-        Key in the species table; blades of conifers are narrow and more.
-    poses
-        Pose block of the clusters, (m, 7), as of `leaf_poses`.
-    size
-        Diameter of each in [m], (m,).
+    Blades of clusters at poses (m, 7) of diameters [m], (m,); those of conifers are narrow and
+    more.
 
     Returns
     -------
@@ -100,19 +85,10 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
 
 def leaf_colors(species: str, normal: Floats, depth: Floats, camera: Camera) -> Floats:
     """
-    Colour of each blade, (k, 3).
+    Colour of each blade, (k, 3), by the unit vector across it, (k, 3), and how far back it stands,
+    0 to 1.
 
-    Parameters
-    ----------
-    species
-        Key in the species table.
-    normal
-        Unit vector across each, (k, 3).
-    depth
-        How far back each stands, 0 to 1, (k,).
-    camera
-        The light comes from above and over the viewer's left shoulder.
-
+    The light comes from above and over the viewer's left shoulder.
     """
     green = np.array(leaf_traits(species).green)
     turn = camera.azimuth - 0.5 * np.pi

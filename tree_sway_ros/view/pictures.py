@@ -49,12 +49,10 @@ def picture_in_wind(
     title: str | None = None,
 ) -> Path:
     """
-    Draw a tree at rest and, beside it, in wind; there with its shape at rest behind it.
+    Draw a tree, or several, at rest and beside it in wind, there with the shape at rest behind it.
 
     Parameters
     ----------
-    tree
-        At rest; or several, each where it stands.
     poses
         Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
     wind
@@ -67,11 +65,6 @@ def picture_in_wind(
         From where; from the south, east to the right, if None.
     title
         Above the picture; the trees' name and counts if None.
-
-    Returns
-    -------
-    Path
-        The file.
 
     """
     camera = camera or Camera()

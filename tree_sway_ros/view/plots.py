@@ -38,13 +38,6 @@ def plot_wind_and_tip(
         Displacement of the tip from rest in [m], (n, 3).
     path
         File to write; the suffix names the format.
-    title
-        Above the plot.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------

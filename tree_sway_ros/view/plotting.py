@@ -17,18 +17,7 @@ if TYPE_CHECKING:
 
 def new_figure(width: float, height: float) -> Figure:
     """
-    Make an empty figure.
-
-    Parameters
-    ----------
-    width, height
-        Size in [inch].
-
-    Raises
-    ------
-    MissingDependencyError
-        If matplotlib is not there.
-
+    Make an empty figure of a size in [inch]; a `MissingDependencyError` if matplotlib is not there.
     """
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -43,31 +32,14 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(
-    figure: Figure,
-    path: str | Path,
-    dots_per_inch: float = 110.0,
-    figures: Path | None = None,
+    figure: Figure, path: str | Path, dots_per_inch: float = 110.0, figures: Path | None = None
 ) -> Path:
     """
     Write a figure to a file whose suffix names the format, ``.png`` for one.
 
-    Parameters
-    ----------
-    figure
-        The figure.
-    path
-        The file.
-    dots_per_inch
-        Resolution.
-    figures
-        File of the numbers that it shows; a PNG carries their digest, so that a picture older than
-        its numbers can be told.
-
-    Raises
-    ------
-    FormatError
-        If the suffix names no picture format, or the file cannot be written.
-
+    Where a file of the numbers that it shows is named, a PNG carries their digest, so that a
+    picture older than its numbers can be told. A `FormatError` tells of no picture format, or a
+    file that cannot be written.
     """
     target = Path(path)
     known = figure.canvas.get_supported_filetypes()

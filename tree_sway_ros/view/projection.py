@@ -5,7 +5,6 @@ From points to a picture plane.
 
 A camera without perspective looks level or from above; what it sees to the right and up are two
 coordinates, what is away from it is the third.
-
 """
 
 from __future__ import annotations
@@ -21,16 +20,10 @@ from tree_sway_ros.core.arrays import Floats
 @dataclass(frozen=True)
 class Camera:
     """
-    Where a picture is taken from.
+    Where a picture is taken from: heading of the line of sight, from x towards y, in [rad].
 
-    Parameters
-    ----------
-    azimuth
-        Heading of the line of sight in [rad], from x towards y: pi/2 looks north, and east (+x) is
-        to the right.
-    elevation
-        How far the camera looks down in [rad].
-
+    At pi/2 it looks north, and east (+x) is to the right; ``elevation`` [rad] is how far it looks
+    down.
     """
 
     azimuth: float = np.pi / 2.0

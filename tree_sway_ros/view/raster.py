@@ -22,22 +22,8 @@ _SHADOW = "#e2e2e0"
 
 class Raster:
     """
-    Paints a tree, frame by frame.
-
-    Parameters
-    ----------
-    tree
-        For the thickness, and what it stands in.
-    camera, frame
-        From where, and which part.
-    pixels
-        Height in [px].
-
-    Raises
-    ------
-    MissingDependencyError
-        If pillow is not there.
-
+    Paints a tree, frame by frame, ``pixels`` high; a `MissingDependencyError` if pillow is not
+    there.
     """
 
     def __init__(self, tree: Tree, camera: Camera, frame: Frame, pixels: int) -> None:
@@ -67,7 +53,7 @@ class Raster:
         self, start: Floats, end: Floats, wind: Floats, leaves: tuple[Floats, Floats] | None
     ) -> Any:
         """
-        Paint one frame.
+        Paint one frame as an RGB image of Pillow.
 
         Parameters
         ----------
@@ -77,11 +63,6 @@ class Raster:
             In [m/s], (3,), for the arrow.
         leaves
             Pose block of the leaf clusters, (m, 7), and their diameters in [m], (m,).
-
-        Returns
-        -------
-        Image
-            Of Pillow, RGB.
 
         """
         image = self._back.copy()

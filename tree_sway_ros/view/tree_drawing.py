@@ -33,15 +33,7 @@ _GHOST = "#dedad6"
 
 @dataclass(frozen=True)
 class Frame:
-    """
-    What part of the picture plane is shown.
-
-    Parameters
-    ----------
-    left, right, bottom, top
-        Limits in [m].
-
-    """
+    """What part of the picture plane is shown: its limits in [m]."""
 
     left: float
     right: float
@@ -58,17 +50,9 @@ def frame_around(
     points: Floats, camera: Camera, margin: float = 0.06, headroom: float = 0.0
 ) -> Frame:
     """
-    Frame what is to be seen.
+    Frame all points [m], (..., 3), that must be in it, with a margin round them and headroom above.
 
-    Parameters
-    ----------
-    points
-        All that must be in it in [m], (..., 3).
-    camera
-        From where.
-    margin, headroom
-        Space round it, and more above it, over its height, or what is much wider than high.
-
+    Both are over its height, or over what is much wider than high.
     """
     seen = camera.project(points).reshape(-1, 3)
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
@@ -89,18 +73,12 @@ def draw_tree(
     leaves: tuple[Floats, Floats] | None = None,
 ) -> None:
     """
-    Draw a tree, at rest or deflected.
+    Draw a tree, at rest or deflected, on axes whose limits are set to the frame.
 
     Parameters
     ----------
-    axes
-        Where to draw; its limits are set to the frame.
-    tree
-        For the thickness, and what it stands in.
     start, end
         Nodes of its segments as they are now in [m], (n, 3) each.
-    camera, frame
-        From where, and which part.
     leaves
         Pose block of the leaf clusters, (m, 7), and their diameters in [m], (m,).
 
@@ -130,12 +108,7 @@ def painted_shapes(
     leaves: tuple[Floats, Floats] | None = None,
 ) -> tuple[list[Floats], Floats, Floats]:
     """
-    Shapes of a tree on the picture plane, the far ones first.
-
-    Parameters
-    ----------
-    tree, start, end, camera, frame, leaves
-        As of `draw_tree`.
+    Shapes of a tree on the picture plane, the far ones first; arguments as of `draw_tree`.
 
     Returns
     -------
@@ -174,7 +147,6 @@ def painted_shapes(
 def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
     """
     Draw the tree at rest as a pale shape behind whatever else is drawn, to see how far it moved.
-
     """
     from matplotlib.collections import PolyCollection
 
@@ -253,12 +225,8 @@ def ground_shapes(
     """
     What a tree stands in or on, on the picture plane in [m].
 
-    Returns
-    -------
-    tuple
-        Corners and colour of each part of the pot of a pot plant, and the ellipse of the shadow of
-        any other: its middle, width and height.
-
+    Corners and colour of each part of the pot of a pot plant; the ellipse of the shadow of any
+    other: its middle, width and height.
     """
     frame = frame_around(np.vstack([tree.start, tree.end]), camera)
     x, y = camera.project(tree.start[0])[:2].tolist()

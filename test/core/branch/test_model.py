@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.branch.model import branch_models, enriched_branches
+from tree_sway_ros.core.branch.model import TreeBeams, branch_models, enriched_branches
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.study.example_trees import forked_tree
 
@@ -87,3 +87,13 @@ def test_what_is_enriched():
     for branch in carriers:
         carried = np.flatnonzero(tree.branch_parent == branch)
         assert (branch in limbs) == (branch == 0 or bool(carriers & set(carried.tolist())))
+
+
+def test_a_branch_that_two_ways_do_not_tell_apart_is_modelled_once(fork):
+    beams = TreeBeams(fork(), 900.0)
+    carried, alone = beams.models(carries=True), beams.models(carries=False)
+    rich = beams.models(carries=True, enriched=frozenset([0]))
+    bears = [len(model.children) > 0 for model in carried]
+    assert [one is not other for one, other in zip(carried, alone, strict=True)] == bears
+    assert [b for b in range(len(rich)) if rich[b] is not carried[b]] == [0]
+    assert all(one.beam is other.beam for one, other in zip(carried, alone, strict=True))

@@ -11,7 +11,7 @@ import pytest
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
 from tree_sway_ros.core.reference.articulated_modes import joint_mass, joint_modes, joint_stiffness
-from tree_sway_ros.core.reference.articulated_step import respond, room_of
+from tree_sway_ros.core.reference.articulated_step import respond, scratch_of
 from tree_sway_ros.core.reference.measure import frame_means, tips_of_poses
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.building import tree_from_segments
@@ -219,12 +219,12 @@ def test_mass_matrix_is_that_of_the_algorithm():
     )
     n = bush().n_segments
     mass = joint_mass(model.bodies).toarray()
-    room = room_of(n)
+    scratch = scratch_of(n)
     out, torque = np.zeros((n, 3)), np.linspace(-1.0, 1.0, 3 * n).reshape(n, 3)
     model.bodies.rest_torque[:] = torque
     respond(
         model.bodies, model.laws, model.state.turn, model.state.rate, np.zeros((n, 3)), 0.0,
-        motion_of(n), articulation_of(n), room, out,
+        motion_of(n), articulation_of(n), scratch, out,
     )  # fmt: skip
     assert mass @ out.ravel() == pytest.approx(torque.ravel(), abs=1e-9)
     assert mass == pytest.approx(mass.T)

@@ -22,7 +22,7 @@ from tree_sway_ros.core.reference.articulated_modes import (
     joint_modes,
     joint_stiffness,
 )
-from tree_sway_ros.core.reference.articulated_step import respond, room_of
+from tree_sway_ros.core.reference.articulated_step import respond, scratch_of
 from tree_sway_ros.core.reference.rotation_kernel import turn_on
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.study.example_trees import tapered_stem
@@ -57,7 +57,7 @@ def accelerations(m, turn, rate):
         0.0,
         motion_of(n),
         articulation_of(n),
-        room_of(n),
+        scratch_of(n),
         out,
     )
     return out
@@ -146,21 +146,21 @@ def test_a_push_is_felt_by_every_joint_below_it():
     m = model(gravity=0.0)
     n, force, body = tree().n_segments, (3.0, -2.0, 1.0), 3
     place = tuple(m.bodies.reach[body, 1] * m.bodies.axis[body])
-    motion, room = motion_of(n), articulation_of(n)
+    motion, scratch = motion_of(n), articulation_of(n)
     move(m.bodies, np.tile(np.eye(3), (n, 1, 1)), np.zeros((n, 3)), motion)
-    load(m.bodies, motion, 0.0, 0.0, room)
-    push(body, place, force, 0.5, room)
+    load(m.bodies, motion, 0.0, 0.0, scratch)
+    push(body, place, force, 0.5, scratch)
     unit = np.eye(3 * n).reshape(3 * n, n, 3)
     generalised = 0.5 * end_displacements(m.bodies, unit)[:, body] @ np.array(force)
     # Force and moment, passed on from joint to joint.
     total = np.zeros((n, 3))
     for i in range(n - 1, -1, -1):
-        total[i] -= room.moment[i]
+        total[i] -= scratch.moment[i]
         p = m.bodies.carrier[i]
         if p >= 0:
             total[p] += total[i]
-            room.force[p] += room.force[i]
-            total[p] -= np.cross(m.bodies.arm[i], room.force[i])
+            scratch.force[p] += scratch.force[i]
+            total[p] -= np.cross(m.bodies.arm[i], scratch.force[i])
     assert total.ravel() == pytest.approx(generalised, abs=1e-12)
 
 

@@ -228,7 +228,7 @@ def test_errors_of_a_simulator(fork):
         SwaySimulator(plastic(fork()))
     with pytest.raises(ParameterError, match="100 modes of a tree that has"):
         SwaySimulator(fork(), model="modes", n_modes=100)
-    with pytest.raises(TypeError, match="no_such_setting"):
+    with pytest.raises(ParameterError, match="no_such_setting"):
         SwaySimulator(fork(), no_such_setting=1)
 
 

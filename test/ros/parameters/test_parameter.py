@@ -134,7 +134,9 @@ def test_every_node_has_a_file_in_config():
 
 @pytest.mark.parametrize("path", PARAMETER_FILES, ids=lambda p: p.stem)
 def test_the_files_in_config_are_good_and_repeat_no_default(path):
-    for node, body in yaml.safe_load(path.read_text()).items():
+    document = yaml.safe_load(path.read_text())
+    assert document
+    for node, body in document.items():
         assert set(body) == {"ros__parameters"}
         table = NODE_PARAMETERS[node.rsplit("/", 1)[-1]]
         by_name = {each.name: each for each in table}

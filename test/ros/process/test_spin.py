@@ -1,9 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import os
 import signal
 import sys
 import time
 import types
+from xml.etree import ElementTree
 
 import pytest
 
@@ -130,6 +132,24 @@ def test_what_a_thread_died_of_ends_the_node(rclpy, node, capsys):
 def test_an_error_of_ours_is_one_line(rclpy, node, capsys):
     assert spin.run("fake_nodes", "Broken") == 2
     assert capsys.readouterr().err == "fake_nodes: a bad value; mend it\n"
+
+
+@pytest.mark.parametrize("own", [(), ("FASTRTPS_DEFAULT_PROFILES_FILE",)])
+def test_processes_announce_themselves_often_unless_a_profile_is_named(
+    rclpy, node, monkeypatch, own
+):
+    names = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+    for name in names:
+        monkeypatch.setenv(name, "of_my_own.xml" if name in own else "")
+    rclpy.on_spin = lambda: setattr(node, "is_done", True)
+    assert spin.run("fake_nodes", "Node") == 0
+    if own:
+        assert [os.environ[name] for name in names] == ["of_my_own.xml", ""]
+        return
+    (file,) = {os.environ[name] for name in names}
+    space = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
+    period = ElementTree.parse(file).getroot().find(f".//{space}leaseAnnouncement")
+    assert [each.text for each in period] == ["0", "300000000"]
 
 
 def test_no_ros_is_one_line(monkeypatch, capsys):

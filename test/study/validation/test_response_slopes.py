@@ -44,4 +44,5 @@ def test_the_tip_of_a_broadleaf_falls_more_steeply_than_the_strain_of_its_stem()
 @pytest.mark.parametrize("species", ["spruce", "pine", "birch", "walnut"])
 def test_the_strain_falls_as_on_real_trees_with_gusts_limb_by_limb(species, in_leaf):
     slopes = response_slopes(species, coherence=USUAL_COHERENCE, in_leaf=in_leaf)
+    assert len(slopes.strain)
     assert all(-6.2 <= each <= -2.0 for each in slopes.strain)

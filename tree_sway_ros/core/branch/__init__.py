@@ -5,5 +5,4 @@ One branch as a beam: bending, twist, the shapes it takes and the model made fro
 
 Closed forms and quadratures along one branch.
 What several branches do together lives in ``reduction``.
-
 """

@@ -25,6 +25,7 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
 from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.kernel import kernel
 
 N_POINTS = 5
 
@@ -150,10 +151,9 @@ class BranchBeam:
             ...).
 
         """
-        flat = values.reshape(*values.shape[:2], -1)
-        nodes = np.zeros((len(flat) + 1, flat.shape[2]))
-        np.cumsum((self.weight[:, None, :] @ flat)[:, 0], axis=0, out=nodes[1:])
-        points = nodes[:-1, None] + self.length[:, None, None] * (_TO_POINTS @ flat)
+        flat = np.ascontiguousarray(values.reshape(*values.shape[:2], -1))
+        points, nodes = np.empty(flat.shape), np.empty((len(flat) + 1, flat.shape[2]))
+        _integrate(flat, self.length, self.weight, _TO_POINTS, points, nodes)
         at_nodes = nodes.reshape(-1, *values.shape[2:])
         return points.reshape(values.shape), at_nodes, at_nodes[self.foot]
 
@@ -264,7 +264,7 @@ class BranchBeam:
 
 class SlopeShape:
     """
-    A way for a branch to bend: slope psi(s) per unit of its coordinate.
+    A shape in which a branch bends: slope psi(s) per unit of its coordinate.
 
     Parameters
     ----------
@@ -320,7 +320,7 @@ class SlopeShape:
 
 class RotationField:
     """
-    A way for a branch to bend and twist in space: rotation phi(s) per unit of its coordinate.
+    A field by which a branch bends and twists in space: rotation phi(s) per unit of its coordinate.
 
     Parameters
     ----------
@@ -347,6 +347,26 @@ class RotationField:
         return cls(shape.beam, shape.curvature[..., None] * axis)
 
 
+@kernel
+def _integrate(
+    values: Floats, length: Floats, weight: Floats, to_points: Floats, points: Floats, nodes: Floats
+) -> None:
+    """Integrate values (p, 5, k) from the base up to points, of the same shape, and nodes."""
+    n_panels, n_points, n = values.shape
+    for i in range(n):
+        nodes[0, i] = 0.0
+    for p in range(n_panels):
+        for i in range(n):
+            whole = 0.0
+            for g in range(n_points):
+                whole += weight[p, g] * values[p, g, i]
+                up_to = 0.0
+                for h in range(n_points):
+                    up_to += to_points[g, h] * values[p, h, i]
+                points[p, g, i] = nodes[p, i] + length[p] * up_to
+            nodes[p + 1, i] = nodes[p, i] + whole
+
+
 def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:
     """
     Energy between fields of one branch in [N m/rad], (k, k): E I of bending, across the branch as
@@ -367,7 +387,9 @@ def cross(a: Floats, b: Floats) -> Floats:
     """Cross product along the last axis, (..., 3); numpy's own costs eight times as much."""
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    out: Floats = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    x = ay * bz - az * by
+    out = np.empty((*x.shape, 3))
+    out[..., 0], out[..., 1], out[..., 2] = x, az * bx - ax * bz, ax * by - ay * bx
     return out
 
 

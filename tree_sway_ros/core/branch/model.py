@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Every branch as a bending body: its axes, its mass and load along it, the ways it bends and twists.
+Every branch as a bending body: its axes, its mass and load along it, the fields it bends by.
 
 A branch turns about two fixed axes across its chord. Its coordinates are the components of a
 rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What a
@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from tree_sway_ros.core.branch.shapes import (
     N_PAIRS,
     N_TURNS,
     Carried,
-    ways_to_move,
+    shape_fields,
     wind_loads,
 )
 from tree_sway_ros.core.checks import one_of_each
@@ -63,7 +64,7 @@ class BranchModel:
     fields: tuple[RotationField, ...]
     children: Ints
 
-    @property
+    @cached_property
     def inertia_share(self) -> float:
         """
         Inertia that gives the branch alone its beam's first frequency, over that of its static
@@ -94,7 +95,24 @@ def branch_models(
     root_compliance: float = 0.0,
 ) -> list[BranchModel]:
     """
-    Model each branch of a tree.
+    Model each branch of a tree for one model; parameters are those of `TreeBeams` and its `models`.
+
+    """
+    beams = TreeBeams(
+        tree,
+        density,
+        shear_ratio=shear_ratio,
+        speed_profile=speed_profile,
+        leaf_mass=leaf_mass,
+        leaf_area=leaf_area,
+        root_compliance=root_compliance,
+    )
+    return beams.models(carries=carries, enriched=enriched)
+
+
+class TreeBeams:
+    """
+    Every branch of a tree as a beam, and what it hands down: the same for every model.
 
     Parameters
     ----------
@@ -102,12 +120,8 @@ def branch_models(
         The tree.
     density
         Of green wood in [kg/m^3].
-    carries
-        Whether children load and shape their parents; if not, every branch is alone (the paper).
     shear_ratio
         Shear modulus over Young's in [-].
-    enriched
-        Branches that get further shapes and twists.
     speed_profile
         Wind speed over that at the anemometer at each segment's middle [-], (n,); 1 if None.
     leaf_mass, leaf_area
@@ -115,70 +129,109 @@ def branch_models(
     root_compliance
         Of the stem, as of `BranchBeam`.
 
-    Returns
-    -------
-    list of BranchModel
-        In the order of the tree's branches.
-
     """
-    n = tree.n_branches
-    if leaf_mass is not None:
-        leaf_mass = one_of_each("leaf_mass", leaf_mass, n, "branch")
-    if leaf_area is not None:
-        leaf_area = one_of_each("leaf_area", leaf_area, n, "branch")
-    models: list[BranchModel] = []
-    area, area_moment = np.zeros(n), np.zeros((n, 3))
-    weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
-    force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
-    sums = Carried(area, area_moment, force, torque, weight, weight_moment, weight_second)
-    children_of: list[list[int]] = [[] for _ in range(n)]
-    for branch in range(1, n):
-        children_of[tree.branch_parent[branch]].append(branch)
-    for branch in range(n - 1, -1, -1):
-        here = tree.segments_of(branch)
-        children = np.array(children_of[branch], dtype=np.int64)
-        beam = BranchBeam(
-            tree.start[here] - tree.start[0],
-            tree.end[here] - tree.start[0],
-            tree.base_diameter[here],
-            tree.tip_diameter[here],
-            _places(tree, branch, children),
-            root_compliance if branch == 0 else 0.0,
-        )
-        length = float(beam.node[-1])
-        mass = density * beam.area
-        drag_area = beam.diameter.copy()
+
+    def __init__(
+        self,
+        tree: Tree,
+        density: float,
+        *,
+        shear_ratio: float = 1.0 / 14.0,
+        speed_profile: Floats | None = None,
+        leaf_mass: Floats | None = None,
+        leaf_area: Floats | None = None,
+        root_compliance: float = 0.0,
+    ) -> None:
+        """Sum up what hangs on each branch."""
+        n = tree.n_branches
         if leaf_mass is not None:
-            mass += leaf_mass[branch] / length
+            leaf_mass = one_of_each("leaf_mass", leaf_mass, n, "branch")
         if leaf_area is not None:
-            drag_area += leaf_area[branch] / length
-        if speed_profile is not None:
-            drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
-        carried = sums[children if carries else children[:0]]
-        richness = _richness(tree, branch, enriched)
-        shape, fields = ways_to_move(beam, drag_area, mass, carried, shear_ratio, *richness)
-        models.append(BranchModel(beam, drag_area, mass, shape, fields, children))
-        point, dm = beam.point, beam.weight * mass
-        area[branch] = (beam.weight * drag_area).sum() + area[children].sum()
-        area_moment[branch] = np.einsum("sg,sgk->k", beam.weight * drag_area, point)
-        area_moment[branch] += area_moment[children].sum(axis=0)
-        loads = wind_loads(beam, drag_area)
-        force[branch] = beam.integral(loads) + force[children].sum(axis=0)
-        torque[branch] = beam.integral(cross(point[:, :, None], loads))
-        torque[branch] += torque[children].sum(axis=0)
-        weight[branch] = dm.sum() + weight[children].sum()
-        weight_moment[branch] = np.einsum("sg,sgk->k", dm, point)
-        weight_moment[branch] += weight_moment[children].sum(axis=0)
-        weight_second[branch] = np.einsum("sg,sgi,sgj->ij", dm, point, point)
-        weight_second[branch] += weight_second[children].sum(axis=0)
-    return models[::-1]
+            leaf_area = one_of_each("leaf_area", leaf_area, n, "branch")
+        self._tree, self._shear_ratio = tree, shear_ratio
+        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints]] = []
+        self._known: dict[tuple[int, ...], BranchModel] = {}
+        area, area_moment = np.zeros(n), np.zeros((n, 3))
+        weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
+        force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
+        self._sums = Carried(area, area_moment, force, torque, weight, weight_moment, weight_second)
+        children_of: list[list[int]] = [[] for _ in range(n)]
+        for branch in range(1, n):
+            children_of[tree.branch_parent[branch]].append(branch)
+        for branch in range(n - 1, -1, -1):
+            here = tree.segments_of(branch)
+            children = np.array(children_of[branch], dtype=np.int64)
+            beam = BranchBeam(
+                tree.start[here] - tree.start[0],
+                tree.end[here] - tree.start[0],
+                tree.base_diameter[here],
+                tree.tip_diameter[here],
+                _places(tree, branch, children),
+                root_compliance if branch == 0 else 0.0,
+            )
+            length = float(beam.node[-1])
+            mass = density * beam.area
+            drag_area = beam.diameter.copy()
+            if leaf_mass is not None:
+                mass += leaf_mass[branch] / length
+            if leaf_area is not None:
+                drag_area += leaf_area[branch] / length
+            if speed_profile is not None:
+                drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
+            self._bare.append((beam, drag_area, mass, children))
+            point, dm, load = beam.point.reshape(-1, 3), beam.weight * mass, beam.weight * drag_area
+            area[branch] = load.sum() + area[children].sum()
+            area_moment[branch] = load.ravel() @ point + area_moment[children].sum(axis=0)
+            loads = wind_loads(beam, drag_area)
+            force[branch] = beam.integral(loads) + force[children].sum(axis=0)
+            torque[branch] = beam.integral(cross(beam.point[:, :, None], loads))
+            torque[branch] += torque[children].sum(axis=0)
+            weight[branch] = dm.sum() + weight[children].sum()
+            weight_moment[branch] = dm.ravel() @ point + weight_moment[children].sum(axis=0)
+            weight_second[branch] = (dm.reshape(-1, 1) * point).T @ point
+            weight_second[branch] += weight_second[children].sum(axis=0)
+        self._bare.reverse()
 
+    def models(self, *, carries: bool, enriched: frozenset[int] = frozenset()) -> list[BranchModel]:
+        """
+        Model each branch; where two models of the sway do not differ, it is the same.
 
-def _richness(tree: Tree, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
-    """Pairs of a branch, and further ways by what turns about its chord."""
-    if branch not in enriched:
-        return 1, 0
-    return N_PAIRS, N_TURNS if tree.branch_parent[branch] < 0 else FEWER_TURNS
+        Parameters
+        ----------
+        carries
+            Whether children load and shape their parents; if not, every branch is alone (the
+            paper).
+        enriched
+            Branches that get further shapes and twists.
+
+        Returns
+        -------
+        list of BranchModel
+            In the order of the tree's branches.
+
+        """
+        return [
+            self._model(branch, len(bare[3]) if carries else 0, *self._richness(branch, enriched))
+            for branch, bare in enumerate(self._bare)
+        ]
+
+    def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
+        """Model a branch, unless that is done."""
+        key = branch, n_carried, n_pairs, n_turns
+        if key not in self._known:
+            beam, drag_area, mass, children = self._bare[branch]
+            carried = self._sums[children[:n_carried]]
+            shape, fields = shape_fields(
+                beam, drag_area, mass, carried, self._shear_ratio, n_pairs, n_turns
+            )
+            self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
+        return self._known[key]
+
+    def _richness(self, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
+        """Pairs of a branch, and further fields by what turns about its chord."""
+        if branch not in enriched:
+            return 1, 0
+        return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

@@ -5,5 +5,4 @@ No more model than a scene needs: error and cost of every model, and the choice 
 
 Estimates are made before a step is taken.
 The models themselves live lower.
-
 """

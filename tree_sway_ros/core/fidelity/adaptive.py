@@ -15,7 +15,6 @@ one by one; what the two still differ by fades within 0.4 s.
 **Down slowly.** A lesser model first sways along unseen until it has forgotten that it started at
 rest, then the picture goes over to it within a second. It is taken only when it would do with a
 third to spare, so that a wind on the border does not flicker.
-
 """
 
 from __future__ import annotations
@@ -260,18 +259,8 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     def review(self, *, at_best: bool = False) -> Estimate:
         """
-        Look at the choice again: call it when the tolerance has changed.
-
-        Parameters
-        ----------
-        at_best
-            Whether to choose the most accurate that the budget allows, whatever the tolerance.
-
-        Returns
-        -------
-        Estimate
-            What is chosen.
-
+        Choose again: call it when the tolerance has changed; with ``at_best`` whatever the
+        tolerance.
         """
         self._since_review, self._judged = 0.0, self._gust
         climate = self._tracker.climate
@@ -301,7 +290,6 @@ class AdaptiveSimulator(OneTree, KeepsState):
     def reset(self) -> None:
         """
         Go back to rest and to the wind that was expected, at once on the model that it asks for.
-
         """
         self.choice = self._expect()
         self._shown, self._next, self._left = self._simulator(self.choice), None, None

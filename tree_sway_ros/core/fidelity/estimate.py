@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 How much model a scene needs: what is known of a model before it runs, and the least that will do.
-
 """
 
 from __future__ import annotations
@@ -20,21 +19,10 @@ from tree_sway_ros.errors import ParameterError
 @dataclass(frozen=True)
 class Estimate:
     """
-    What a model is worth in a wind.
+    What a model, with its number of modes, is worth in a wind, and costs per step and placing [us].
 
-    Parameters
-    ----------
-    model, n_modes
-        The model, and its number of modes if it is ``modes``.
-    error
-        Bound of the root mean square over time and tips of the error in [m].
-    motion
-        Root mean square of the motion of the tips about its mean in [m].
-    cost
-        Of one step and one placing in [us].
-    n_frozen
-        Branches that move with their parent as one body.
-
+    ``error`` bounds the root mean square over time and tips of the error, ``motion`` is that of the
+    motion of the tips about its mean, both in [m].
     """
 
     model: str
@@ -54,28 +42,11 @@ def choose(
     estimates: Sequence[Estimate], *, tolerance: float | None = None, budget: float | None = None
 ) -> Estimate:
     """
-    Choose the least model that a scene needs.
+    Choose the least model that a scene needs: the cheapest within the tolerance in [m].
 
-    Parameters
-    ----------
-    estimates
-        Of all models.
-    tolerance
-        Largest error in [m]; the cheapest model within it is chosen.
-    budget
-        Largest cost of a step in [us]; the most accurate model within it is chosen. With both, the
-        cheapest within the tolerance among those within the budget.
-
-    Returns
-    -------
-    Estimate
-        The choice.
-
-    Raises
-    ------
-    ParameterError
-        A tolerance or budget that no model meets; the error names the nearest.
-
+    With a budget alone, in [us] per step, the most accurate within it; with both, the cheapest
+    within the tolerance among those within the budget. A `ParameterError` names the nearest model
+    if none is.
     """
     within = [e for e in estimates if budget is None or e.cost <= budget]
     if not within:
@@ -100,22 +71,8 @@ def choose(
 
 def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> float:
     """
-    Turn a tolerance on the picture into one in the scene.
-
-    Parameters
-    ----------
-    pixels
-        Tolerance in [px].
-    distance
-        From the camera to the tree in [m].
-    focal_length
-        Of the camera in [px].
-
-    Returns
-    -------
-    float
-        In [m].
-
+    Turn a tolerance [px] on a picture of a focal length [px] into one in the scene, so far away, in
+    [m].
     """
     if not (pixels > 0.0 and distance > 0.0 and focal_length > 0.0):
         raise ParameterError(
@@ -128,15 +85,7 @@ def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> 
 
 def distance_to(tree: Tree, position: Floats) -> float:
     """
-    Distance from a camera to the nearest branch tip or to the root in [m], at least 1 cm.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    position
-        Of the camera in the tree's frame in [m], (3,).
-
+    Distance from a camera (3,) to the nearest branch tip or to the root in [m], at least 1 cm.
     """
     seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
     return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)

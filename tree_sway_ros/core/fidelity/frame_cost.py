@@ -6,12 +6,9 @@ models.
 
 Prices are fits to trees of 31 to 261 branches in 3 to 12 segments each, timed on one core of a
 server of 2020; `pace` scales them to the machine at hand.
-
 """
 
 from __future__ import annotations
-
-import numpy as np
 
 from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.tree.tree import Tree
@@ -33,17 +30,7 @@ _MODE_OF_COORDINATE = 1.5e-3
 
 
 def frame_cost(bank: Bank, tree: Tree) -> float:
-    """
-    Cost of one step and one placing in [us].
-
-    Parameters
-    ----------
-    bank
-        The model.
-    tree
-        What it is a model of, whole.
-
-    """
+    """Cost of one step and one placing of a model of a whole tree in [us]."""
     branches = bank.branches
     n_moving, n_enriched = len(branches), int((branches["n_coordinates"] > 2).sum())
     n_bending = int((branches["end"] - branches["first"]).sum())
@@ -52,8 +39,7 @@ def frame_cost(bank: Bank, tree: Tree) -> float:
     if not bank.frequencies.size:
         return place
     each = _STEP_CARRIED if bank.oscillators.carries else _STEP_ALONE
-    shapes = getattr(bank.oscillators, "shapes", np.zeros(0))
     step = _CALL + each * n_moving + _STEP_ENRICHED * n_enriched
     if bank.oscillators.is_tabled:
         step = _CALL + _STEP_TABLED
-    return place + step + _MODE_OF_COORDINATE * shapes.size
+    return place + step + _MODE_OF_COORDINATE * bank.oscillators.shapes.size

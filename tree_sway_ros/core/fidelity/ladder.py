@@ -185,8 +185,8 @@ class FidelityLadder:
         rotations[moving] = self._response(calibrated, bank)
         error = _gram(tip_motion(whole.branches, rotations) - self._truth)
         cost = frame_cost(bank, self.tree)
-        table = getattr(bank.oscillators, "table", None)
-        told = 0.0 if table is None else TABLE_FLOOR + TABLE_MARGIN * table.error
+        of = bank.oscillators
+        told = TABLE_FLOOR + TABLE_MARGIN * of.table_error if of.is_tabled else 0.0
         self._models[name] = _Model(model, n_modes, share, bank.n_frozen, cost, error, told)
 
     def _response(self, calibrated: CalibratedTree, bank: Bank) -> Complexes:

@@ -6,7 +6,6 @@ Which branches hardly move on their parents: those that may be frozen.
 A branch is judged with all it carries: by how far the tips of its subtree go in a turbulent wind
 from any side, less what they would go as one body with its base. Sets of branches are nested; each
 is the largest whose freezing costs no more than a given share of the motion of the whole tree.
-
 """
 
 from __future__ import annotations
@@ -30,26 +29,11 @@ def quiet_sets(
     shares: Sequence[float],
 ) -> list[Bools]:
     """
-    Find the branches to freeze.
+    Find the branches to freeze for each share of the motion of the tips that the error may be,
+    (b,).
 
-    Parameters
-    ----------
-    tree
-        The tree.
-    branches
-        Records of `BRANCH`, (b,).
-    rotations
-        `key_response` of the tree, (N, 2, f).
-    frequencies
-        In [Hz], (f,), the first of them 0.
-    shares
-        Error that freezing may make, over the motion of the tips, both root mean square, in [-].
-
-    Returns
-    -------
-    list of Bools
-        For each share, the branches that may be frozen, (b,); with each, all that it carries.
-
+    With each branch goes all that it carries. Rotations are the `key_response` (N, 2, f) at
+    frequencies in [Hz], (f,), the first of them 0.
     """
     swing, motion = _swings(tree, branches, rotations * np.sqrt(_weights(frequencies)))
     per_tip = swing / (tree.subtree_end - np.arange(tree.n_branches))
@@ -61,7 +45,6 @@ def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed:
     """
     Bisect for the highest threshold per tip at which what the frozen subtrees swing is still
     allowed.
-
     """
     low, high = 0, len(order)  # so many of the quietest may surely, may perhaps be frozen
     quiet = np.zeros(tree.n_branches, dtype=np.bool_)
@@ -79,7 +62,6 @@ def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats
     """
     Sum over the tips of each subtree of the squared displacement from its base, (b,), and that of
     all tips from the ground.
-
     """
     base, tips = base_motion(branches, rotations), tip_motion(branches, rotations)
     swing = np.zeros(tree.n_branches)

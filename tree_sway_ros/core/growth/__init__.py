@@ -5,5 +5,4 @@ Trees grown from a species, a height and a seed.
 
 Habits, thickness, twigs; the built-in trees by name.
 Nothing here knows of wind or files.
-
 """

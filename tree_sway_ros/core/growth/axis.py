@@ -6,7 +6,6 @@ The line a growing shoot draws in space, told by its heading.
 A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad]. Habits
 of growth are plain in these terms: a weeping shoot starts above the horizon and ends below it, a
 conifer's starts low and turns up.
-
 """
 
 from __future__ import annotations
@@ -35,18 +34,9 @@ def heading_of(direction: Floats) -> tuple[float, float]:
 
 def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
     """
-    Unit vector at an angle from an axis.
+    Unit vector (3,) at an angle from an axis, both in [rad].
 
-    Parameters
-    ----------
-    axis
-        Unit vector (3,).
-    polar
-        Angle from the axis in [rad].
-    azimuth
-        Angle about the axis in [rad]: 0 is level and to the right of someone who looks along the
-        axis, pi/2 is the side that faces up.
-
+    The azimuth about the axis is 0 level and to the right of someone who looks along it, pi/2 up.
     """
     x, y, z = axis
     across = float(np.hypot(x, y))
@@ -70,31 +60,20 @@ def grow_axis(
     floor: float = -np.inf,
 ) -> Floats:
     """
-    Draw the nodes of a shoot whose elevation turns evenly from one angle to another.
+    Draw the nodes (n_segments + 1, 3) [m] of a shoot whose elevation turns evenly.
 
     Parameters
     ----------
-    origin
-        First node in [m], (3,).
     azimuth, elevation
         Heading of the first segment, and elevation of the first and the last one, in [rad].
     length
         Length along the nodes in [m].
-    n_segments
-        How many segments.
-    rng
-        Source of randomness.
     wander
         Standard deviation of the change of heading per segment in [rad].
     unevenness
         Largest relative deviation of a segment's length from the mean.
     floor
         The shoot ends before it would sink below this height in [m]; it keeps one segment.
-
-    Returns
-    -------
-    array
-        Nodes in [m], (n_segments + 1, 3) or fewer.
 
     """
     steps = 1.0 + unevenness * rng.uniform(-1.0, 1.0, n_segments)

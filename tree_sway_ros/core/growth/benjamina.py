@@ -5,7 +5,6 @@
 
 Several slender stems from a short stock, upright and leaning apart; branches that rise, arch over
 and hang; thin pendulous twigs, left and right in turn.
-
 """
 
 from __future__ import annotations
@@ -31,13 +30,7 @@ def grow_benjamina(
     species: str = "benjamina",
 ) -> Tree:
     """
-    Grow a weeping pot plant with several stems.
-
-    Parameters
-    ----------
-    rng, height, diameter, name, species
-        As of `grow_broadleaf`; the diameter is that of the stock at its base.
-
+    Grow a weeping pot plant with several stems; the diameter is that of the stock at its base.
     """
     skeleton = Skeleton()
     stock = skeleton.add(grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 0.07, 2, rng))

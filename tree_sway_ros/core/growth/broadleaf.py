@@ -5,7 +5,6 @@ A broadleaf that stands alone: a trunk that loses itself in limbs, and a crown o
 
 Limbs and their branches grow towards the outline of the crown and stop short of it; that alone
 shapes it.
-
 """
 
 from __future__ import annotations
@@ -32,19 +31,10 @@ def grow_broadleaf(
     species: str = "broadleaf",
 ) -> Tree:
     """
-    Grow a tree with a trunk, limbs, branches and twigs.
+    Grow a tree with a trunk, limbs, branches and twigs, of a height and a diameter in [m].
 
-    Parameters
-    ----------
-    rng
-        Source of randomness; the same state gives the same tree.
-    height
-        Height in [m].
-    diameter
-        Diameter in [m] at breast height, or at the base of a tree below twice that height.
-    name, species
-        What the tree is called, and the key of its wood and of its form.
-
+    The diameter is at breast height, or at the base of a tree below twice that height. The same
+    state of the source of randomness gives the same tree.
     """
     form, skeleton = broadleaf_form(species), Skeleton()
     facing = rng.uniform(0.0, 2.0 * np.pi)

@@ -25,20 +25,9 @@ BUILTIN_TREES: tuple[str, ...] = tuple(_GENERATORS)
 
 def builtin_tree(name: str, seed: int = 0) -> Tree:
     """
-    Grow a tree of the package by its name.
+    Grow a tree of `BUILTIN_TREES`; the same seed, not negative, gives the same tree.
 
-    Parameters
-    ----------
-    name
-        One of `BUILTIN_TREES`.
-    seed
-        The same seed gives the same tree; not negative.
-
-    Raises
-    ------
-    ParameterError
-        If there is no tree of that name, or the seed is negative.
-
+    A `ParameterError` tells of no tree of that name, or a negative seed.
     """
     if name not in _GENERATORS:
         guess = nearest(name.lower(), BUILTIN_TREES)

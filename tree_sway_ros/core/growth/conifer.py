@@ -7,7 +7,6 @@ Branches near the ground are the oldest and longest; those near the top are shor
 Twigs stand left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between a cone
 and a paraboloid, whatever its branches: its volume is 0.44 to 0.50 of the cylinder of its height
 and diameter at breast height, as yield tables have it.
-
 """
 
 from __future__ import annotations
@@ -34,15 +33,7 @@ def grow_conifer(
     name: str = "conifer",
     species: str = "spruce",
 ) -> Tree:
-    """
-    Grow whorls on a straight stem.
-
-    Parameters
-    ----------
-    rng, height, diameter, name, species
-        As of `grow_broadleaf`.
-
-    """
+    """Grow whorls on a straight stem; arguments as of `grow_broadleaf`."""
     form, skeleton = conifer_form(species), Skeleton()
     bole = form.outline.base
     # As many segments below the crown as go with the whorls above it.

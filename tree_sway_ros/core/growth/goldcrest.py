@@ -5,7 +5,6 @@
 
 One straight stem; many short branches close together, steeply ascending, that shorten to the top,
 so that the whole is a narrow cone; short twigs all round them.
-
 """
 
 from __future__ import annotations
@@ -29,15 +28,7 @@ def grow_goldcrest(
     name: str = "goldcrest",
     species: str = "goldcrest",
 ) -> Tree:
-    """
-    Grow a narrow cone of steep short branches.
-
-    Parameters
-    ----------
-    rng, height, diameter, name, species
-        As of `grow_broadleaf`; the diameter is that of the stem at its base.
-
-    """
+    """Grow a narrow cone of steep short branches; the diameter is that of the stem at its base."""
     skeleton = Skeleton()
     n_nodes = 28
     stem = skeleton.add(
@@ -57,12 +48,7 @@ def grow_goldcrest(
 
 
 def _add_branch(
-    skeleton: Skeleton,
-    stem: int,
-    at: int,
-    azimuth: float,
-    here: float,
-    rng: np.random.Generator,
+    skeleton: Skeleton, stem: int, at: int, azimuth: float, here: float, rng: np.random.Generator
 ) -> None:
     """Add a branch at a relative height of the stem, reaching for the surface of the cone."""
     length = (0.26 * (1.0 - here) + 0.03) * rng.uniform(0.88, 1.08)

@@ -8,7 +8,6 @@ trees (allometry of 4,824 branches). The diameter of a conifer goes with the hei
 1.5, so that trees of all sizes keep the same reserve against bending over (elastic similarity:
 McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters hold for a stable stem
 (Wang, Titus & LeMay 1998), and never more than 90.
-
 """
 
 from __future__ import annotations
@@ -100,13 +99,7 @@ def grow(
     _check_stem(wood, height, diameter)
     called = name if name is not None else species
     if kind == "conifer":
-        return grow_conifer(
-            rng,
-            height=height,
-            diameter=diameter,
-            name=called,
-            species=species,
-        )
+        return grow_conifer(rng, height=height, diameter=diameter, name=called, species=species)
     if kind == "broadleaf":
         generator = grow_broadleaf
     else:
@@ -135,7 +128,6 @@ def _check_stem(wood: Species, height: float, diameter: float) -> None:
 def _thinnest(wood: Species, height: float) -> float:
     """
     Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve.
-
     """
     # EI and the weight per length of a rod of 1 m; the length goes with the diameter to 2/3.
     area = math.pi / 4.0

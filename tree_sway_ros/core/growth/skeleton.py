@@ -5,7 +5,6 @@ A tree while it grows: shoots as lines of nodes, each on a node of an older one.
 
 Shoots are added parents first, so that a backward pass over them sums from the tips to the root and
 a forward pass goes the other way.
-
 """
 
 from __future__ import annotations
@@ -23,17 +22,10 @@ from tree_sway_ros.core.tree.tree import Tree
 @dataclass
 class Shoot:
     """
-    One branch to be.
+    One branch to be: nodes from base to tip in [m], (k + 1, 3), and the node of its parent it sits
+    on.
 
-    Parameters
-    ----------
-    nodes
-        From base to tip in [m], (k + 1, 3).
-    parent
-        Shoot it sits on, -1 for the stem.
-    at
-        Node of the parent where it sits, 1 .. k of the parent.
-
+    The parent is -1 for the stem; ``at`` is 1 .. k of the parent.
     """
 
     nodes: Floats
@@ -78,15 +70,7 @@ class Skeleton:
 
     def to_tree(self, diameters: Sequence[Floats], name: str, species: str) -> Tree:
         """
-        Turn it into a `Tree`.
-
-        Parameters
-        ----------
-        diameters
-            Diameter at the nodes of each shoot in [m], one (k + 1,) a shoot.
-        name, species
-            What the tree is called, and the key of its wood.
-
+        Turn it into a `Tree`, with diameters at the nodes of each shoot in [m], (k + 1,) each.
         """
         first = np.cumsum([0] + [shoot.n_segments for shoot in self.shoots])
         parents: list[int] = []

@@ -8,7 +8,6 @@ length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p
 where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as ours,
 lie between. The length w follows from the one diameter that is given, at the base or at breast
 height.
-
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ INSERTION_RATIO = 0.76
 
 
 def carried_length(skeleton: Skeleton) -> list[Floats]:
-    """Length of all shoots beyond each node in [m], one (k + 1,) a shoot."""
+    """Length of all shoots beyond each node in [m], one (k + 1,) per shoot."""
     shoots = skeleton.shoots
     added = [np.zeros(len(shoot.nodes)) for shoot in shoots]
     beyond: list[Floats] = [np.empty(0)] * len(shoots)
@@ -50,16 +49,12 @@ def node_diameters(
     stem_taper: float | None = None,
 ) -> list[Floats]:
     """
-    Diameter of every node by the pipe model.
+    Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the first one the stem.
 
     Parameters
     ----------
-    skeleton
-        The shoots; the first one is the stem.
     diameter
-        Diameter of the stem in [m].
-    at_height
-        Height above the root where the stem has it in [m].
+        Diameter of the stem in [m], at `at_height` above the root in [m].
     tip_diameter
         Diameter of a shoot's tip in [m].
     exponent
@@ -67,11 +62,6 @@ def node_diameters(
     stem_taper
         Power of the distance from the top that the stem's diameter goes with, if it does not follow
         the pipe model.
-
-    Returns
-    -------
-    list
-        One (k + 1,) a shoot in [m], falling from base to tip.
 
     Raises
     ------

@@ -6,7 +6,6 @@ Twigs: shoots of a single segment, in groups that are alike.
 Neighbours on the same side of a branch grow the same way and to the same length, so that a solver
 that computes one of them may reuse its motion for the others (Kanda & Ohya, 3.3). Each half of the
 parent has its own length and direction, as the parent bends.
-
 """
 
 from __future__ import annotations
@@ -31,24 +30,18 @@ def add_twigs(
     outer_ratio: float = 0.75,
 ) -> None:
     """
-    Put twigs on the nodes of a shoot.
+    Put twigs on the nodes of a shoot, from a first one on.
 
     Parameters
     ----------
-    skeleton, shoot
-        The tree, and the number of the shoot that gets them.
     length
-        Length of those on the inner half in [m].
+        Length of those on the inner half in [m]; on the outer half `outer_ratio` times that.
     polar
         Angle from the shoot in [rad].
     sides
         Angles about the shoot in [rad], as `aim` takes them: two for a flat spray.
-    first_node
-        First node that carries any.
     lift
         How much they turn up (positive) or hang (negative), in [-]; 1 is half-way.
-    outer_ratio
-        Length on the outer half over that on the inner half in [-].
 
     """
     parent = skeleton.shoots[shoot]
@@ -62,8 +55,8 @@ def add_twigs(
         along = along / np.linalg.norm(along)
         offsets = []
         for side in sides:
-            way = aim(along, polar, side) + lift * UP
-            offsets.append(ratio * length / np.linalg.norm(way) * way)
+            heading = aim(along, polar, side) + lift * UP
+            offsets.append(ratio * length / np.linalg.norm(heading) * heading)
         for node in range(max(start + 1, first_node), stop + 1):
             base = parent.nodes[node]
             for offset in offsets:

@@ -11,7 +11,6 @@ each bin on its own (Whittle, 1953). The likelihood of a resonance on a smooth l
 is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the resolution
 of the spectrum, and p takes up the slope of the turbulence and whether displacement, tilt or
 acceleration was measured. Standard errors are those of Fisher's information (Brillinger, 1981).
-
 """
 
 from __future__ import annotations
@@ -40,15 +39,7 @@ parameters.
 
 @dataclass(frozen=True)
 class AmbientSway(SwayEstimate):
-    """
-    One resonance.
-
-    Parameters
-    ----------
-    gain
-        Log-likelihood that the resonance adds to a smooth spectrum.
-
-    """
+    """One resonance; ``gain`` is the log-likelihood that it adds to a smooth spectrum."""
 
     kind: ClassVar[str] = "ambient"
     gain: float
@@ -56,27 +47,11 @@ class AmbientSway(SwayEstimate):
 
 def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     """
-    Fit the resonance of an ambient record.
+    Fit the resonance of an ambient record along the axis that moves most around a rough frequency
+    [Hz].
 
-    Parameters
-    ----------
-    motion
-        Displacement, tilt or acceleration at even steps, (n, c).
-    dt
-        Step in [s].
-    rough
-        Frequency to look around in [Hz].
-
-    Returns
-    -------
-    AmbientSway
-        Along the axis that moves most around that frequency.
-
-    Raises
-    ------
-    FormatError
-        Fewer than 20 cycles, or no resonance.
-
+    The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c). A
+    `FormatError` tells of fewer than 20 cycles, or no resonance.
     """
     cycles = len(motion) * dt * rough
     if cycles < _MIN_CYCLES:
@@ -108,7 +83,6 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
     """
     Frequencies, power of mean 1 along the axis that moves most there, and of how many bins each is
     the mean.
-
     """
     taper = signal.windows.tukey(len(motion), 0.1)
     spectrum = np.fft.rfft(taper[:, None] * motion, axis=0)
@@ -127,7 +101,6 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
 def _starts() -> list[Floats]:
     """
     Shifts of the first guess: the surface has side valleys where damping and floor trade places.
-
     """
     return [
         np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)
@@ -136,20 +109,9 @@ def _starts() -> list[Floats]:
 
 def log_spectrum(x: Floats, frequency: Floats) -> tuple[Floats, Floats]:
     """
-    Logarithm of the model's spectrum and its slopes.
+    Logarithm (m,) of the model's spectrum at frequencies [Hz], (m,), and its slopes (m, 5).
 
-    Parameters
-    ----------
-    x
-        log f0, log zeta, log a, log b, p; (5,).
-    frequency
-        In [Hz], (m,).
-
-    Returns
-    -------
-    logarithm, slopes
-        (m,) and (m, 5).
-
+    They are by x: log f0, log zeta, log a, log b, p.
     """
     centre, ratio, resonance, floor = np.exp(np.clip(x[:4], -60.0, 60.0))
     r2 = (frequency / centre) ** 2

@@ -8,7 +8,6 @@ stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so
 once. The lowest w^2 rises with s and bends down, being the least of functions linear in s, with the
 slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a bracket
 keeps it off the buckling load, where w is 0.
-
 """
 
 from __future__ import annotations
@@ -25,6 +24,7 @@ from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TreeError
@@ -66,8 +66,8 @@ class Calibration:
 
 
 def calibrate(
-    tree: Tree,
-    species: Species,
+    tree: Tree | GrownTree,
+    species: Species | None,
     frequency: float,
     damping_ratio: float | None = None,
     settings: Settings | None = None,
@@ -78,7 +78,7 @@ def calibrate(
     Parameters
     ----------
     tree, species
-        The tree and its wood so far.
+        The tree and its wood so far; the tree's own if None.
     frequency
         Measured natural frequency in [Hz].
     damping_ratio
@@ -102,6 +102,7 @@ def calibrate(
 
     """
     within("frequency", frequency, 0.0, 1e3, "Hz", above=True)
+    tree, species = tree_and_species(tree, species)
     settings = in_season(tree, species, settings or Settings())
     model = _ScaledTree(tree, species, settings)
     found = model.swaying_at((2.0 * math.pi * frequency) ** 2)
@@ -135,7 +136,6 @@ class _Sway:
     """
     Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns
     most.
-
     """
 
     scale: float

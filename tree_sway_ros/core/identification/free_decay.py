@@ -10,7 +10,6 @@ from how much the answer changes as the decay goes on, for the damping of a real
 amplitude.
 
 Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping ratio.
-
 """
 
 from __future__ import annotations
@@ -37,21 +36,11 @@ _LATER_STARTS = (0.5, 1.0, 1.5)
 @dataclass(frozen=True)
 class FreeDecay(SwayEstimate):
     """
-    One decaying mode.
+    One decaying mode, fitted from a time ``start`` [s] after the record's beginning on.
 
-    Parameters
-    ----------
-    start
-        Time from the record's beginning to where the fit starts in [s].
-    explained
-        Share of all motion's energy, within the fit, that decaying modes explain in [-].
-    quiet
-        Largest amplitude around the frequency before and after the decay, over the largest of all,
-        in [-].
-    speed
-        Largest amplitude around the frequency times that frequency, in the unit of the motion per
-        second.
-
+    ``explained`` is the share of all motion's energy within the fit that decaying modes explain;
+    ``quiet`` the largest amplitude around the frequency before and after the decay, over the
+    largest of all; ``speed`` the largest amplitude around the frequency times that, per second.
     """
 
     kind: ClassVar[str] = "release"
@@ -65,7 +54,6 @@ class FreeDecay(SwayEstimate):
 class _Fit:
     """
     Dominant pole of a stretch of motion, its standard error, and the share of energy explained.
-
     """
 
     pole: complex
@@ -75,23 +63,10 @@ class _Fit:
 
 def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     """
-    Fit the decay of a pull-and-release record.
+    Fit the decay of a pull-and-release record: the strongest mode near a frequency.
 
-    Parameters
-    ----------
-    motion, dt, rough
-        As of `ambient_sway`.
-
-    Returns
-    -------
-    FreeDecay
-        The strongest mode near that frequency.
-
-    Raises
-    ------
-    FormatError
-        Fewer than three cycles, or no motion that decays.
-
+    Arguments are those of `ambient_sway`. A `FormatError` tells of fewer than three cycles, or no
+    motion that decays.
     """
     slow, envelope = _filtered(motion, dt, rough)
     stride = max(1, int(1.0 / (rough * dt * _SAMPLES_PER_CYCLE)))
@@ -193,7 +168,6 @@ def _standard_error(
 
     A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s
     t)`` can replace.
-
     """
     moved = dt * np.arange(len(decay)) * decay
     moved -= decay * np.vdot(decay, moved) / np.vdot(decay, decay)

@@ -6,7 +6,6 @@ From a record of a swaying tree to its natural frequency and damping ratio.
 A record is a pull-and-release (one large swing that dies away, quiet before and after) or ambient
 (the tree in natural wind). Both are scale-free: displacement, tilt and acceleration give the same
 answer.
-
 """
 
 from __future__ import annotations
@@ -34,10 +33,7 @@ _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
 
 def estimate_sway(
-    time: ArrayLike,
-    motion: ArrayLike,
-    kind: str | None = None,
-    band: Band = None,
+    time: ArrayLike, motion: ArrayLike, kind: str | None = None, band: Band = None
 ) -> SwayEstimate:
     """
     Find frequency and damping of the slowest sway in a record.
@@ -98,7 +94,6 @@ def estimate_sway(
 def _is_release(decay: FreeDecay) -> bool:
     """
     Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it.
-
     """
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
@@ -179,7 +174,6 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     """
     Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest
     does not hide.
-
     """
     padded = 4 * len(motion)
     frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)

@@ -22,17 +22,8 @@ _PROMINENCE = 1.5
 @dataclass(frozen=True)
 class Spectrum:
     """
-    Power of a record.
-
-    Parameters
-    ----------
-    frequency
-        Even steps from 0 in [Hz], (m,).
-    power
-        Of any unit, (m,).
-    duration
-        Of the record in [s].
-
+    Power (m,), of any unit, of a record of a duration [s], at even frequencies from 0 in [Hz],
+    (m,).
     """
 
     frequency: Floats
@@ -41,28 +32,11 @@ class Spectrum:
 
     def peaks(self, band: Band, width: float, min_bins: int = 0) -> tuple[Floats, Floats]:
         """
-        Find the peaks.
+        Find the peaks within a band, rising, and the averaged power there.
 
-        Parameters
-        ----------
-        band
-            Where to look.
-        width
-            Half width to average over, over the frequency, in [-].
-        min_bins
-            Bins to average over at least.
-
-        Returns
-        -------
-        frequencies, levels
-            Of the peaks, rising, and the averaged power there; within a given band its strongest
-            point if it has no peak.
-
-        Raises
-        ------
-        FormatError
-            No peak, or a band that the record does not reach.
-
+        Averaged is over a half ``width`` relative to the frequency, of ``min_bins`` at least.
+        Within a given band without a peak it is its strongest point; a `FormatError` tells of no
+        peak, or a band that the record does not reach.
         """
         low, high = band or (0.0, np.inf)
         low, high = max(low, 0.8 / self.duration), min(high, 0.9 * float(self.frequency[-1]))

@@ -11,19 +11,10 @@ from typing import ClassVar
 @dataclass(frozen=True)
 class SwayEstimate:
     """
-    One sway; `kind` is that of the record, ``release`` or ``ambient``.
+    One sway: undamped natural frequency [Hz], damping ratio with that of the air, standard errors
+    of both.
 
-    Parameters
-    ----------
-    frequency
-        Natural frequency, undamped, in [Hz].
-    damping_ratio
-        Share of critical damping in [-], that of the air included.
-    frequency_error, damping_error
-        Their standard errors.
-    cycles
-        How many cycles the answer rests on.
-
+    `kind` is that of the record, ``release`` or ``ambient``; the answer rests on so many cycles.
     """
 
     kind: ClassVar[str] = ""

@@ -5,5 +5,4 @@ Leaves: traits of a species, mass and area per branch, where they sit, how they 
 
 Arrays per branch or per leaf.
 Drag of leaves in wind is in ``motion/drag``.
-
 """

@@ -12,7 +12,6 @@ pi f) U^2``. In strong wind leaves fold together and flutter grows no more (Tadr
 the amplitude levels off at `LARGEST_ANGLE`, which is an estimate.
 
 The law is two constants and one line, so that it can be computed where leaves are drawn.
-
 """
 
 from __future__ import annotations
@@ -35,15 +34,7 @@ LARGEST_ANGLE = 0.7
 
 def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
     """
-    Amplitude of the flutter in [rad].
-
-    Parameters
-    ----------
-    speed
-        Speed of the air past the leaf in [m/s].
-    frequency
-        Of the leaf about its stalk in [Hz].
-
+    Amplitude of the flutter [rad] in air at a speed [m/s], for a frequency about the stalk [Hz].
     """
     u = np.asarray(speed, dtype=np.float64)
     free = FLUTTER_GAIN * u * u / np.asarray(frequency, dtype=np.float64)
@@ -52,17 +43,7 @@ def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
 
 def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floats:
     """
-    Angle of each cluster about its stalk in [rad], (m,).
-
-    Parameters
-    ----------
-    clusters
-        The leaves.
-    speed
-        Speed of the air past each in [m/s], (m,) or one for all.
-    time
-        In [s].
-
+    Angle of each cluster about its stalk [rad], (m,), at a time [s] in air past each [m/s], (m,).
     """
     swing = np.sin(2.0 * np.pi * clusters.frequency * time + clusters.phase)
     return np.asarray(flutter_amplitude(speed, clusters.frequency) * swing)
@@ -70,22 +51,8 @@ def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floa
 
 def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) -> Floats:
     """
-    Where the leaves are.
-
-    Parameters
-    ----------
-    clusters
-        The leaves.
-    poses
-        Pose block of the segments, (n, 7): x y z [m], and the quaternion's x y z w.
-    angle
-        Flutter about the stalk in [rad], (m,) or one for all.
-
-    Returns
-    -------
-    Floats
-        Pose block of the clusters' centres, (m, 7), in the same order.
-
+    Pose block (m, 7) of the clusters' centres, from that of the segments, (n, 7), and angles [rad],
+    (m,).
     """
     from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
 
@@ -102,17 +69,9 @@ def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) ->
 
 def air_speed(positions: Floats, before: Floats, interval: float, wind: ArrayLike) -> Floats:
     """
-    Speed of the air past each leaf in [m/s], (m,).
+    Speed of the air past each leaf in [m/s], (m,), in a wind [m/s], (m, 3) or (3,).
 
-    Parameters
-    ----------
-    positions, before
-        Centres of the clusters now and one interval ago in [m], (m, 3).
-    interval
-        In [s].
-    wind
-        Wind where each is in [m/s], (m, 3), or one for all, (3,).
-
+    Positions are the centres of the clusters now and one interval [s] before in [m], (m, 3).
     """
     own = (positions - before) / interval
     return np.asarray(np.linalg.norm(np.asarray(wind, dtype=np.float64) - own, axis=1))
@@ -120,20 +79,10 @@ def air_speed(positions: Floats, before: Floats, interval: float, wind: ArrayLik
 
 def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     """
-    Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them with
-    the poses.
+    Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them.
 
-    Parameters
-    ----------
-    clusters
-        The leaves.
-
-    Returns
-    -------
-    dict
-        One list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with
-        the law and its two constants.
-
+    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law and
+    its two constants.
     """
     columns = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}
     law = "largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)"

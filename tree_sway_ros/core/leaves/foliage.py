@@ -8,7 +8,6 @@ has as much leaf area as its stem can supply, but no more than six times the gro
 stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun would:
 leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in a crown
 of outline F (Monsi & Saeki 1953).
-
 """
 
 from __future__ import annotations
@@ -33,17 +32,8 @@ _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 @dataclass(frozen=True)
 class Foliage:
     """
-    What leaves add to each branch.
-
-    Parameters
-    ----------
-    mass
-        Fresh mass in [kg], (b,).
-    area
-        Leaf area, one side, in [m^2], (b,).
-    drag_area
-        Area that the wind meets in [m^2], (b,).
-
+    What leaves add to each branch: fresh mass [kg], leaf area of one side and drag area [m^2],
+    (b,).
     """
 
     mass: Floats
@@ -83,7 +73,6 @@ class LeafClusters:
 def leafy_length(tree: Tree) -> Floats:
     """
     Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood, or 0.
-
     """
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
@@ -97,15 +86,7 @@ def leafy_length(tree: Tree) -> Floats:
 
 def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
     """
-    Find mass and area of the leaves on each branch, when there are any.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    traits
-        Its leaves; those of its species if None.
-
+    Mass and area of the leaves on each branch, when there are any; traits of its species if None.
     """
     leaf = traits if traits is not None else leaf_traits(tree.species)
     points = np.vstack([tree.start, tree.end])
@@ -126,7 +107,6 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
     """
     Area of wood on each branch that is clad in needles, which stand all round it, in [m^2], (b,).
-
     """
     if not traits.are_needles:
         return np.zeros(tree.n_branches)
@@ -135,31 +115,13 @@ def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
 
 
 def leaf_clusters(
-    tree: Tree,
-    rng: np.random.Generator,
-    *,
-    count: int = 1500,
-    traits: LeafTraits | None = None,
+    tree: Tree, rng: np.random.Generator, *, count: int = 1500, traits: LeafTraits | None = None
 ) -> LeafClusters:
     """
-    Place clusters of leaves on the outer wood, evenly by its length.
+    Place so many clusters of leaves on the outer wood of a tree at rest, evenly by its length.
 
-    Parameters
-    ----------
-    tree
-        At rest.
-    rng
-        Source of randomness; the same state gives the same leaves.
-    count
-        How many clusters; together they show the tree's leaf area.
-    traits
-        Its leaves; those of its species if None.
-
-    Raises
-    ------
-    ParameterError
-        If the count is not positive.
-
+    Together they show the tree's leaf area, with traits of its species if None. A `ParameterError`
+    tells of a count that is not positive.
     """
     if count < 1:
         raise ParameterError(f"{count} leaf clusters", where="count", cure="ask for 1 or more")
@@ -190,17 +152,7 @@ def leaf_clusters(
 
 
 def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int]) -> LeafClusters:
-    """
-    Join the leaves of trees that are joined to one record.
-
-    Parameters
-    ----------
-    clusters
-        Leaves of each tree.
-    n_segments
-        Segments of each tree.
-
-    """
+    """Join the leaves of trees, with so many segments each, that are joined to one record."""
     first = np.concatenate([[0], np.cumsum(n_segments)[:-1]])
     carriers = [each.segment + at for each, at in zip(clusters, first, strict=True)]
     columns = {
@@ -221,7 +173,6 @@ def no_clusters() -> LeafClusters:
 def _facing_up(away: Floats, rest: Floats) -> Floats:
     """
     Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
-
     """
     from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
 

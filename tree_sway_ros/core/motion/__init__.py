@@ -5,5 +5,4 @@ The per-step path: load, oscillators, key rotations, placing of every segment.
 
 Structure-of-arrays records and kernels; no allocation per step.
 What decides which model runs lives higher.
-
 """

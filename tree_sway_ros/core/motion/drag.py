@@ -22,7 +22,6 @@ where an explicit drag would shake it to pieces. With u the velocity the branch 
 step on without the force, and beta the velocity that a unit of force adds by then, the relative
 speed s solves ``s + beta c s^2 = |U - u|`` in closed form: stable for any wind and step, second
 order in the step.
-
 """
 
 from __future__ import annotations
@@ -47,15 +46,8 @@ SHARED_AT = 8.0
 
 class DragLaw(NamedTuple):
     """
-    Drag coefficient of a tree, ``Cd = C U^-N + C0``.
-
-    Parameters
-    ----------
-    coefficient, exponent
-        C and N of what streamlines.
-    steady
-        C0 of what does not.
-
+    Drag coefficient of a tree, ``Cd = C U^-N + C0``: C and N of what streamlines, C0 of what does
+    not.
     """
 
     coefficient: float
@@ -64,11 +56,7 @@ class DragLaw(NamedTuple):
 
 
 def crown_drag(
-    wood_area: float,
-    leaf_area: Floats,
-    clad_wood: Floats,
-    wood: float,
-    leaves: tuple[float, float],
+    wood_area: float, leaf_area: Floats, clad_wood: Floats, wood: float, leaves: tuple[float, float]
 ) -> tuple[DragLaw, Floats]:
     """
     Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.
@@ -103,17 +91,7 @@ def crown_drag(
 
 
 def pressure(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:
-    """
-    Drag per area and speed squared, ``1/2 rho (C U^-N + C0)``, in [kg/m^3].
-
-    Parameters
-    ----------
-    speed
-        U of the wind in [m/s].
-    coefficient, exponent, steady
-        C, N and C0 of a `DragLaw`.
-
-    """
+    """Drag per area and speed squared, ``1/2 rho (C U^-N + C0)``, in [kg/m^3], U in [m/s]."""
     if exponent == 0.0:
         return 0.5 * AIR_DENSITY * (coefficient + steady)
     streamlined = min(max(speed, STREAMLINING_FROM), STREAMLINING_TO)

@@ -6,12 +6,12 @@ The one place where records are filled: what stepping and placing know of a tree
 `branch_records` writes all of a branch, `moving_records` what is left when some are frozen,
 `copy_twigs` which of them copy; `segment_records`, `head_records` and `load_records` lay the same
 out in lanes.
-
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
@@ -40,47 +40,34 @@ if TYPE_CHECKING:
 
 def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
     """
-    Fill what placing needs to know of each segment.
-
-    Returns
-    -------
-    ndarray
-        Of `segment_layout`, in blocks of `lanes`.
-
+    Fill what placing needs to know of each segment: records of `segment_layout`, in blocks of
+    `lanes`.
     """
     block, lane, n_records = lanes(tree, models)
     is_plain = all(len(model.fields) == 2 for model in models)
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
     records["rest"][:, 0] = 1.0
-    rest = tree.rest_frame
-    for branch, model in enumerate(models):
-        here = tree.segments_of(branch)
-        rows = slice(block[branch], block[branch] + here.stop - here.start)
-        own = lane[branch]
-        start = tree.start[here]
-        records["chord"][rows, :, own] = np.vstack([start[1:], tree.end[here][-1:]]) - start
-        records["rest"][rows, :, own] = rest[here]
-        records["slope"][rows, own] = model.shape.segment_slope
-        if not is_plain:
+    size = np.diff(tree.branch_first)
+    rows = np.arange(tree.n_segments) + np.repeat(block - tree.branch_first[:-1], size)
+    own, following = np.repeat(lane, size), tree.end.copy()
+    within = np.ones(tree.n_segments, dtype=bool)
+    within[tree.branch_first[1:] - 1] = False
+    following[within] = tree.start[1:][within[:-1]]
+    records["chord"][rows, :, own] = following - tree.start
+    records["rest"][rows, :, own] = tree.rest_frame
+    records["slope"][rows, own], records["tip_slope"][rows, own] = _slopes(tree, models)
+    np.maximum.at(records["n_lanes"], rows, own + 1)
+    if not is_plain:
+        for branch, model in enumerate(models):
             for c, turn in enumerate(_drawn_turns(model)):
-                records["turn"][rows, c, :, own] = turn
-        records["tip_slope"][rows, own] = _tip_load_slope(model)
-        records["n_lanes"][rows] = np.maximum(records["n_lanes"][rows], own + 1)
+                records["turn"][rows[tree.segments_of(branch)], c, :, lane[branch]] = turn
     return records
 
 
 def turns_of_segments(branch: np.void, segments: Records) -> Floats:
     """
-    Rotation vector of each segment of a branch per unit of each coordinate, as placing draws it,
-    (m, k, 3).
-
-    Parameters
-    ----------
-    branch
-        A record of `BRANCH`.
-    segments
-        Records of `segment_layout` of its tree.
-
+    Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate, as placing
+    has it.
     """
     first, count = int(branch["block"]), int(branch["n_coordinates"])
     rows = slice(first, first + int(branch["end"] - branch["first"]))
@@ -95,11 +82,7 @@ def head_records(branches: Records, segments: Records) -> Records:
     """
     Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
 
-    Returns
-    -------
-    ndarray
-        Of `head_layout`, one a block of `lanes` and one to work in.
-
+    Records of `head_layout`, one per block of `lanes` and one to work in.
     """
     first, block = np.unique(branches["block"], return_inverse=True)
     lane, parent = branches["lane"], branches["parent"]
@@ -168,43 +151,35 @@ def branch_records(
     reduction: Reduction,
     speed_profile: Floats,
     layout: np.dtype[np.void] | None = None,
+    known: Sequence[tuple[list[BranchModel], Records]] = (),
 ) -> Records:
     """
-    All that stepping and placing know of the branches.
+    All that stepping and placing know of the branches: records of `BRANCH`, (b,), or of a layout.
 
-    Parameters
-    ----------
-    tree, models, reduction
-        The tree, its branches and their reduction.
-    speed_profile
-        Wind speed at each segment over that at the anemometer, (n,).
-    layout
-        Of the records; `branch_layout` if None.
-
-    Returns
-    -------
-    ndarray
-        Of `BRANCH`, (b,).
-
+    The profile is the wind speed at each segment over that at the anemometer, (n,). What a model
+    is among other models of the same tree whose records are `known`, is taken from there.
     """
     records = np.zeros(tree.n_branches, dtype=branch_layout() if layout is None else layout)
-    rest = tree.rest_frame
+    new = np.ones(tree.n_branches, dtype=bool)
+    for others, filled in known:
+        same = new & [one is other for one, other in zip(models, others, strict=True)]
+        new &= ~same
+        for name in _OF_MODEL:
+            found = filled[name][same]
+            k = min(found.shape[1], records[name].shape[1]) if found.ndim > 1 else 0
+            records[name][(same, slice(k)) if k else same] = found[:, :k] if k else found
+    for branch in np.flatnonzero(new).tolist():
+        _fill_ways(models[branch], records[branch])
+        _fill_load(models[branch], speed_profile[tree.segments_of(branch)], records[branch])
+    first = tree.branch_first[:-1]
     records["block"], records["lane"], _ = lanes(tree, models)
     records["parent"], records["source"] = tree.branch_parent, np.arange(tree.n_branches)
-    records["first"], records["end"] = tree.branch_first[:-1], tree.branch_first[1:]
-    records["base_segment"] = tree.segment_parent[tree.branch_first[:-1]]
+    records["first"], records["end"] = first, tree.branch_first[1:]
+    records["base_segment"] = tree.segment_parent[first]
     records["coordinate"] = reduction.first[:-1]
     records["twist"] = reduction.twist[:, : records["twist"].shape[1]]
-    for branch, model in enumerate(models):
-        here = tree.segments_of(branch)
-        _fill_shapes(model, records[branch])
-        records["tip"][branch] = tree.end[here.stop - 1] - tree.start[0]
-        base = int(tree.segment_parent[here.start])
-        if base >= 0:
-            w, x, y, z = rest[base]
-            offset = tree.start[here.start] - tree.start[base]
-            records["offset"][branch] = _rotated(w, -x, -y, -z, *offset)
-        _fill_load(model, speed_profile[here], records[branch])
+    records["tip"] = tree.end[tree.branch_first[1:] - 1] - tree.start[0]
+    _fill_slopes(tree, models, records)
     _fill_arms(tree, records)
     _fill_axial_levers(records)
     return records
@@ -212,26 +187,44 @@ def branch_records(
 
 def _fill_arms(tree: Tree, records: Records) -> None:
     """Fill where bases are at rest."""
-    base = tree.start[tree.branch_first[:-1]] - tree.start[0]
+    first, on = tree.branch_first[:-1], records["base_segment"]
+    base = tree.start[first] - tree.start[0]
     arm = base - base[np.maximum(tree.branch_parent, 0)]
     square = np.square(arm).sum(axis=1)
     records["base"], records["arm"] = base, arm
     records["per_arm"] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
+    w, x, y, z = tree.rest_frame[on].T
+    offset = np.stack(_rotated(w, -x, -y, -z, *(tree.start[first] - tree.start[on]).T), axis=1)
+    records["offset"] = np.where(on[:, None] >= 0, offset, 0.0)
 
 
-def _fill_shapes(model: BranchModel, record: Record) -> None:
-    """Fill what bends."""
+def _fill_slopes(tree: Tree, models: list[BranchModel], records: Records) -> None:
+    """Fill how the shapes that branches are drawn by are laid and skewed."""
+    first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
+    share = tree.length / np.repeat(np.add.reduceat(tree.length, first), size)
+    slopes = _slopes(tree, models)
+    for name, slope in zip(("skew", "tip_skew"), slopes, strict=True):
+        off = slope - np.repeat(np.add.reduceat(share * slope, first), size)
+        # The third cumulant over 6: how far the chord angle lags, per angle cubed.
+        records[name] = np.add.reduceat(share * off**3, first) / 6.0
+    most = np.maximum.reduceat(slopes[1] ** 2, first)
+    records["steepest"][:, 0] = np.maximum(records["steepest"][:, 0], most)
+
+
+def _fill_ways(model: BranchModel, record: Record) -> None:
+    """Fill what a branch does by its coordinates."""
     record["n_coordinates"] = len(model.fields)
     for i, (field, turn) in enumerate(zip(model.fields, _drawn_turns(model), strict=True)):
         record["reach"][i] = field.nodes[-1]
         record["steepest"][i] = np.square(turn).sum(axis=1).max()
     record["frame"] = model.beam.chord, *across(model.beam.chord)
-    tip_load = _tip_load_slope(model)
-    record["steepest"][0] = max(record["steepest"][0], np.square(tip_load).max())
-    length = model.beam.segment_length
-    record["skew"] = _skew(model.shape.segment_slope, length)
-    record["tip_skew"] = _skew(tip_load, length)
 
+
+_OF_MODEL = (
+    "n_coordinates", "frame", "push", "flow", "spread", "reach", "turn", "lever", "area", "speed",
+    "centre", "couple", "projector", "steepest",
+)  # fmt: skip
+"""What of a record follows from the model of a branch alone."""
 
 _STRAIGHT = 0.03
 """Share of the wind along a branch below which this is not told apart from none."""
@@ -253,9 +246,9 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> Non
     record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     exposed = exposure(beam)
     exposed /= float(share.sum(axis=1) @ exposed)
-    amounts, ways = np.linalg.eigh(across)
+    amounts, axes = np.linalg.eigh(across)
     kept = amounts > _STRAIGHT * amounts[-1]
-    into_push = ways[:, kept] / amounts[kept] @ ways[:, kept].T
+    into_push = axes[:, kept] / amounts[kept] @ axes[:, kept].T
     n = len(model.fields)
     fields = np.stack([one.points for one in model.fields])
     own = exposed[:, None] * (share[..., None] * fields).sum(axis=2)
@@ -279,7 +272,6 @@ def _cubes(squares: Floats) -> Floats:
     """
     Cubes of displacements of both axes together, from the sum of their squares: as if they were
     alike, so that it does not matter how they are laid.
-
     """
     cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
     return cubes
@@ -289,7 +281,6 @@ def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
     """
     Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
     all winds, push and couple (least squares).
-
     """
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
@@ -319,7 +310,6 @@ def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None
 
     In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
     speed of mean cube over mean square: what the flow lacks of that is the spread.
-
     """
     across = float(np.square(mean[:2]).sum())
     record["flow"] = mean
@@ -333,7 +323,6 @@ def _fill_axial_levers(records: Records) -> None:
     """
     Find how far up the parent's chord each subtree's centre of load swings: its displacement across
     per unit of rotation.
-
     """
     area = records["area"].copy()
     moment = records["centre"] * area[:, None]
@@ -351,13 +340,7 @@ def copy_twigs(records: Records, source: Ints) -> None:
     """
     Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
 
-    Parameters
-    ----------
-    records
-        Of `BRANCH`, (b,), written.
-    source
-        Branch that each copies, itself if it is solved, (b,).
-
+    The source is itself where a branch is solved, (b,).
     """
     records["source"] = source
     records["frame"] = records["frame"][source]
@@ -365,22 +348,10 @@ def copy_twigs(records: Records, source: Ints) -> None:
 
 def moving_records(pruning: Pruning, whole: Records) -> Records:
     """
-    Keep the records of the moving branches, with the load of what they now carry as part of
-    themselves.
+    Records of the moving branches, with the load of what they now carry as part of themselves,
+    (m,).
 
-    Parameters
-    ----------
-    pruning
-        What is frozen.
-    whole
-        Records of `BRANCH` of the whole tree, (b,).
-
-    Returns
-    -------
-    ndarray
-        Of `BRANCH`, (m,), for the tree of the moving branches but for their place in blocks, which
-        `segment_records` shares.
-
+    They are complete but for their place in blocks, which `segment_records` shares.
     """
     moving, place = pruning.moving, pruning.place_among_moving
     records = whole[moving].copy()
@@ -449,7 +420,6 @@ class _SlantingWinds:
 
     The first comes from the side that a direction (3,) points to, so that a tree that is turned as
     a whole has the same load from the side that is turned with it.
-
     """
 
     def __init__(self, direction: Floats) -> None:
@@ -480,7 +450,6 @@ def _drawn_turns(model: BranchModel) -> Floats:
     """
     Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3): that of
     a plain branch by one slope about the axes across its chord.
-
     """
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)
@@ -488,45 +457,30 @@ def _drawn_turns(model: BranchModel) -> Floats:
     return np.stack([model.beam.over_segments(one.slope) for one in model.fields])
 
 
-def _skew(slope: Floats, length: Floats) -> float:
+def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
     """
-    Third cumulant over 6 of a slope along a branch: how far its chord angle lags, per angle cubed.
+    Slope of each segment as its branch is drawn, and under a load at the tip, both (n,).
+
+    The latter is the mean over the segment of 1.5 (2 u - u^2), u the arc length over the length.
 
     """
-    share = length / length.sum()
-    return float(share @ (slope - share @ slope) ** 3) / 6.0
-
-
-def _tip_load_slope(model: BranchModel) -> Floats:
-    """
-    Mean over each segment of 1.5 (2 u - u^2), u the arc length over the length: a load at the tip.
-
-    """
-    length = model.beam.segment_length
-    u = np.concatenate([[0.0], np.cumsum(length / length.sum())])
-    primitive = 1.5 * (u * u - u**3 / 3.0)
-    mean = float(model.shape.segment_slope @ length) / float(length.sum())
-    slope: Floats = mean * np.diff(primitive) / np.diff(u)
-    return slope
+    first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
+    whole = np.repeat(np.add.reduceat(tree.length, first), size)
+    slope = np.concatenate([model.shape.segment_slope for model in models])
+    mean = np.repeat(np.add.reduceat(slope * tree.length, first), size) / whole
+    past = np.cumsum(tree.length)
+    end = (past - np.repeat(past[first] - tree.length[first], size)) / whole
+    start = end - tree.length / whole
+    steepness = end + start - (end * end + end * start + start * start) / 3.0
+    return slope, 1.5 * mean * steepness
 
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
     """
-    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time.
+    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time, (ceil(b / 16),).
 
-    Parameters
-    ----------
-    branches
-        The records.
-    layout
-        Of `load_fields`, or with further fields, which are left zeros; with as many rows as the
-        branches have if None.
-
-    Returns
-    -------
-    ndarray
-        Of the layout, (ceil(b / 16),), at rest and with no force so far.
-
+    At rest, with no force so far; of `load_fields` with as many rows as the branches have, or of a
+    layout with further fields, which are left zeros.
     """
     if layout is None:
         layout = load_layout(branches.dtype["push"].shape[0])

@@ -6,7 +6,6 @@ Real spherical harmonics of odd degree: what a wind's load on a tree is a sum of
 The opposite wind bears the opposite load, so that even degrees have no part in it. The functions
 are written as harmonic polynomials of the direction (Condon & Shortley's order, no sine or root),
 each scaled to a mean square of 1 over the sphere.
-
 """
 
 from __future__ import annotations
@@ -28,19 +27,7 @@ _A5, _B5, _C5, _D5, _E5, _F5 = (
 
 @inlined
 def fill_harmonics(x: float, y: float, z: float, degree: int, out: Floats) -> None:
-    """
-    Write the functions up to an odd degree at a direction.
-
-    Parameters
-    ----------
-    x, y, z
-        Unit vector.
-    degree
-        1, 3 or 5.
-    out
-        Written, (`COUNT`,).
-
-    """
+    """Write the functions up to a degree of 1, 3 or 5 at a direction, a unit vector, (`COUNT`,)."""
     out[0], out[1], out[2] = 3.0**0.5 * y, 3.0**0.5 * z, 3.0**0.5 * x
     if degree >= 3:
         xx, yy, zz, xy = x * x, y * y, z * z, x * y

@@ -10,7 +10,6 @@ the load is found once per step, at the state half a step on.
 
 Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
-
 """
 
 from __future__ import annotations
@@ -56,6 +55,7 @@ class ModalBank:
 
     carries = True
     is_tabled = False
+    n_outside, table_error = 0, 0.0
 
     def __init__(
         self,
@@ -107,20 +107,9 @@ class ModalBank:
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
-        Advance one step.
+        Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
 
-        Parameters
-        ----------
-        wx, wy, wz
-            Mean wind over the step in [m/s].
-        per_speed_squared
-            `drag.pressure` in [kg/m^3].
-
-        Returns
-        -------
-        int
-            How many loads were held at their limit, -1 if the motion is not finite.
-
+        Returns how many loads were held at their limit, -1 if the motion is not finite.
         """
         return int(self._compiled(wx, wy, wz, per_speed_squared))
 
@@ -141,7 +130,6 @@ class ModalBank:
         """
         Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
         geometry.
-
         """
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
@@ -158,7 +146,6 @@ class ModalBank:
         """
         Go on from modes, their rates and forces (m,) and from key rotations (N,) with the static
         rest in them.
-
         """
         self.modal[0], self.modal[1], self.modal[2], self.modal[3] = eta, rate, 0.0, force
         rest = rotations - self.shapes @ eta
@@ -254,17 +241,7 @@ def wind_moments(
     """
     Find the moments of a wind on the key rotations of a tree that bends and moves.
 
-    Parameters
-    ----------
-    branches, work, loads
-        Records of `BRANCH` and `WORK`, (b,), and of `load_fields`.
-    x, v
-        Key rotations in [rad] and their rates in [rad/s], (N,).
-    moment
-        As of `bent_loads`, written.
-    wx, wy, wz, per_speed_squared
-        As of `wind_forces`.
-
+    They are written as by `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):

@@ -5,7 +5,6 @@ Banks of oscillators stepped in plain numpy, for machines without a compiler: so
 
 Each keeps the state of its compiled counterpart, in the same arrays, so that a state kept by one is
 taken by the other; they agree to rounding. They are the oracle of the kernels as well.
-
 """
 
 from __future__ import annotations

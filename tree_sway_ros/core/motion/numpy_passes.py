@@ -5,7 +5,6 @@ The load step on whole levels of a tree at a time, in plain numpy: `tree_passes`
 compiled.
 
 The same formulas on the same records; subtree sums are differences of one cumulative sum.
-
 """
 
 from __future__ import annotations
@@ -22,13 +21,8 @@ from tree_sway_ros.core.motion.records import LANES
 
 class NumpyPasses:
     """
-    Outward pass, wind and inward pass over `BRANCH` records.
-
-    Parameters
-    ----------
-    branches
-        The records, (b,), parents before children and every subtree in one run.
-
+    Outward pass, wind and inward pass over `BRANCH` records, parents before children, subtrees in
+    runs.
     """
 
     def __init__(self, branches: Records) -> None:
@@ -133,22 +127,9 @@ class NumpyPasses:
 
 def even_wind_moments(branches: Records, n_coordinates: int, *, carries: bool = True) -> Floats:
     """
-    Moments of an even wind of 1 m/s and 1 kg/m^3, along x and along y, on the tree at rest.
+    Moments [N m], (N, 2), of an even wind of 1 m/s and 1 kg/m^3, along x and along y, at rest.
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    n_coordinates
-        N.
-    carries
-        Whether what a branch carries pushes on it.
-
-    Returns
-    -------
-    Floats
-        In [N m], (N, 2).
-
+    ``carries`` tells whether what a branch carries pushes on it.
     """
     passes, n = NumpyPasses(branches), len(branches)
     moments, still, none = np.zeros((2, n_coordinates)), np.zeros((n, 9)), np.zeros(n)
@@ -190,21 +171,10 @@ def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
 
 def mean_wind_moments(branches: Records, n_coordinates: int) -> Floats:
     """
-    Moments of winds from all sides, as far as they are linear in the wind: those along x and y then
-    stand for any between.
+    Moments (N, 3) [N m] of winds from all sides, as far as they are linear in the wind.
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    n_coordinates
-        N.
-
-    Returns
-    -------
-    Floats
-        Per 1 m/s along x, y and z in level winds of 1 m/s and 1 kg/m^3, in [N m], (N, 3).
-
+    Those along x and y then stand for any between. Per 1 m/s along x, y and z in level winds of 1
+    m/s and 1 kg/m^3.
     """
     xx, yy, zz, xy, xz, yz = branches["projector"].T
     level, slant = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)

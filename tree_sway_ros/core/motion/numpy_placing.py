@@ -5,7 +5,6 @@ Key rotations to poses in plain numpy: `placing` and `rigid_placing` where nothi
 
 The same formulas on the same records, whole levels of the tree at a time, with sines and cosines in
 place of series.
-
 """
 
 from __future__ import annotations
@@ -29,15 +28,8 @@ _BLEND_FROM, _BLEND_TO, _STRETCH_TO = np.deg2rad([30.0, 45.0, 90.0]) ** 2
 
 class NumpyPlacing:
     """
-    What places the segments of a tree.
-
-    Parameters
-    ----------
-    branches, segments
-        Records of `BRANCH`, (b,), and `SEGMENT`.
-    frozen
-        What moves with its parent as one body.
-
+    What places the segments of a tree by its records; what is frozen moves with its parent as one
+    body.
     """
 
     def __init__(self, branches: Records, segments: Records, frozen: RigidParts | None) -> None:

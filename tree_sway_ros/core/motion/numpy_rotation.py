@@ -4,7 +4,6 @@
 Rotations and the two-axis branch on whole arrays, in plain numpy.
 
 Quaternions are w x y z, (n, 4); vectors are (n, 3).
-
 """
 
 from __future__ import annotations
@@ -47,16 +46,9 @@ def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
 
 def cayley_turned(rotations: Floats, vectors: Floats) -> Floats:
     """
-    Turn vectors by Cayley's map of rotation vectors, (1 - H)^-1 (1 + H) with H the cross product by
-    r / 2.
+    Turn vectors (n, 3) by Cayley's map of rotation vectors [rad], (n, 3).
 
-    Parameters
-    ----------
-    rotations
-        In [rad], (n, 3).
-    vectors
-        To turn, (n, 3).
-
+    That is (1 - H)^-1 (1 + H) with H the cross product by r / 2.
     """
     half = 0.5 * rotations
     square = np.square(half).sum(axis=1, keepdims=True)

@@ -15,7 +15,6 @@ stand, then segment after segment up the sixteen branches at once.
 
 The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
 stands at its segment's root-side node, its x axis runs along the segment (REP-103).
-
 """
 
 from __future__ import annotations
@@ -24,6 +23,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import fused, inlined
+from tree_sway_ros.core.motion.lanes import put_four, take_four
 from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import (
     NEAR_LIMIT,
@@ -74,23 +74,13 @@ def place_standing_at(
     east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
-    Place every segment of a tree that is turned and scaled.
+    Place every segment of a tree that is turned and scaled, with its root node at east, north, up.
 
-    Parameters
-    ----------
-    branches, segments, heads, work, x, out
-        As for `place`.
-    east, north, up
-        Root node.
-    cosine, sine
-        Of half the angle that the tree is turned by about the vertical.
-    scale
-        Its size over that of its records.
-
+    ``cosine`` and ``sine`` are of half the angle that it is turned by about the vertical, ``scale``
+    its size over that of its records; the rest is as for `place`.
     """
     last = len(heads) - 1
     scratch = heads[last]
-    at, pose = scratch.at, scratch.pose
     for block in range(last):
         head = heads[block]
         _read_parents(branches, head, scratch, work, x, east, north, up, cosine, sine, out)
@@ -113,32 +103,16 @@ def place_standing_at(
                 _join(segment, scratch, scale)
             else:
                 _join_gaps(segment, scratch, scale)
-            for j in range(segment.n_lanes):
-                pose_to = out[np.uintp(head.first[j] + rank)]
-                pose_to[0], pose_to[1], pose_to[2] = at[0, j], at[1, j], at[2, j]
-                pose_to[3], pose_to[4], pose_to[5] = pose[1, j], pose[2, j], pose[3, j]
-                pose_to[6] = pose[0, j]
+            _write_poses(head, scratch, rank, segment.n_lanes, out)
 
 
 @fused
 def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
-    Rotation of a place on a branch.
+    Rotation of a place on a branch, as quaternion w x y z from rest.
 
-    Parameters
-    ----------
-    parent
-        Record of `BRANCH`.
-    turns
-        Rotation vector of that place per unit of each of its coordinates, (c, 3).
-    x
-        Key rotations, (N,).
-
-    Returns
-    -------
-    tuple
-        Quaternion w x y z, from rest.
-
+    ``turns`` are rotation vectors of that place per unit of each of its parent's coordinates, (c,
+    3).
     """
     i = parent.coordinate
     half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
@@ -162,24 +136,33 @@ def _read_parents(
     base, carrier = scratch.parent_base, scratch.carrier
     if head.n_parent_rows > 2:
         parent_key[2:] = 0.0
+    if head.parent[0] < 0:  # the stem, alone
+        parent_key[:], carrier[:] = 0.0, 0.0
+        base[0, 0], base[1, 0], base[2, 0], base[3, 0] = cosine, 0.0, 0.0, sine
+        carrier[0, 0], carrier[1, 0], carrier[2, 0] = east, north, up
+        carrier[5, 0], carrier[6, 0] = sine, cosine
+        key[0, 0], key[1, 0] = x[head.coordinate[0]], x[head.coordinate[0] + 1]
+        return
+    parents, on = head.parent, head.base_segment
+    for j in range(0, head.n_lanes, 4):  # what is read of lanes that are empty is of no account
+        a, b = out[np.uintp(on[j])], out[np.uintp(on[j + 1])]
+        c, d = out[np.uintp(on[j + 2])], out[np.uintp(on[j + 3])]
+        take_four(a, b, c, d, 0, carrier, 0, j)
+        take_four(a, b, c, d, 3, carrier, 3, j)
+        a, b = work[np.uintp(parents[j])].base, work[np.uintp(parents[j + 1])].base
+        c, d = work[np.uintp(parents[j + 2])].base, work[np.uintp(parents[j + 3])].base
+        take_four(a, b, c, d, 0, base, 0, j)
+        take_four(a, b, c, d, 4, base, 4, j)
     for j in range(head.n_lanes):
-        i, parent = head.coordinate[j], head.parent[j]
-        key[0, j], key[1, j] = x[i], x[i + 1]
-        if parent < 0:
-            parent_key[:, j], carrier[:, j] = 0.0, 0.0
-            base[0, j], base[1, j], base[2, j], base[3, j] = cosine, 0.0, 0.0, sine
-            carrier[0, j], carrier[1, j], carrier[2, j] = east, north, up
-            carrier[5, j], carrier[6, j] = sine, cosine
-            continue
-        below, on = work[parent], out[np.uintp(head.base_segment[j])]
-        parent_key[0, j], parent_key[1, j] = below.key[0], below.key[1]
-        base[0, j], base[1, j] = below.base[0], below.base[1]
-        base[2, j], base[3, j] = below.base[2], below.base[3]
-        carrier[0, j], carrier[1, j], carrier[2, j] = on[0], on[1], on[2]
-        carrier[3, j], carrier[4, j], carrier[5, j], carrier[6, j] = on[3], on[4], on[5], on[6]
-        if head.n_parent_rows > 2:
-            i = branches[parent].coordinate
-            for c in range(2, branches[parent].n_coordinates):
+        i = np.uintp(head.coordinate[j])
+        key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
+    for j in range(LANES):
+        parent_key[0, j], parent_key[1, j] = base[4, j], base[5, j]
+    if head.n_parent_rows > 2:
+        for j in range(head.n_lanes):
+            parent = branches[parents[j]]
+            i = parent.coordinate
+            for c in range(2, parent.n_coordinates):
                 parent_key[c, j] = 0.5 * x[i + c]
 
 
@@ -225,14 +208,12 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
     """
     Turn the bases of sixteen branches, put them where they stand, and set how their first shape
     bends.
-
     """
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
-    bent, base, half_turn, half_key, swing, following = (
-        scratch.bent, scratch.base, scratch.half_turn, scratch.half_key, scratch.swing,
-        scratch.next,
+    base, half_turn, half_key, swing, following = (
+        scratch.base, scratch.half_turn, scratch.half_key, scratch.swing, scratch.next
     )  # fmt: skip
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
@@ -244,7 +225,7 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
         ux = x * frame[2, 0, j] - y * frame[1, 0, j]
         uy = x * frame[2, 1, j] - y * frame[1, 1, j]
         uz = x * frame[2, 2, j] - y * frame[1, 2, j]
-        bent[0, j], bent[1, j] = own * x, own * y
+        base[4, j], base[5, j] = own * x, own * y
         wx, wy, wz = half * ux, half * uy, half * uz
         half_turn[0, j], half_turn[1, j], half_turn[2, j] = wx, wy, wz
         half_key[0, j], half_key[1, j] = half * x, half * y
@@ -257,9 +238,10 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
             below[0, j], below[1, j], below[2, j], below[3, j], c, s * hx, s * hy, s * hz
         )
         base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
-        swing[0, j], swing[1, j], swing[2, j], swing[3, j] = product(
-            bw, bx, by, bz, 0.0, wx, wy, wz
-        )
+        swing[0, j] = -bx * wx - by * wy - bz * wz
+        swing[1, j] = bw * wx + by * wz - bz * wy
+        swing[2, j] = bw * wy - bx * wz + bz * wx
+        swing[3, j] = bw * wz + bx * wy - by * wx
         ox, oy, oz = rotated(
             carrier[6, j], carrier[3, j], carrier[4, j], carrier[5, j],
             offset[0, j], offset[1, j], offset[2, j],
@@ -274,13 +256,17 @@ def _write_bases(head: Record, scratch: Record, work: Records) -> float:
     """
     Leave for the children how their parents are turned; return a bound on the square of half the
     angle that any segment turns by.
-
     """
-    for j in range(head.n_bearing):
-        here = work[head.branch[j]]
-        here.base[0], here.base[1] = scratch.base[0, j], scratch.base[1, j]
-        here.base[2], here.base[3] = scratch.base[2, j], scratch.base[3, j]
-        here.key[0], here.key[1] = scratch.bent[0, j], scratch.bent[1, j]
+    branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
+    for j in range(0, whole, 4):
+        a, b = work[np.uintp(branch[j])].base, work[np.uintp(branch[j + 1])].base
+        c, d = work[np.uintp(branch[j + 2])].base, work[np.uintp(branch[j + 3])].base
+        put_four(base, 0, j, a, b, c, d, 0)
+        put_four(base, 4, j, a, b, c, d, 4)
+    for j in range(whole, head.n_bearing):
+        here = work[np.uintp(branch[j])].base
+        for row in range(6):
+            here[row] = base[row, j]
     together = 0.0
     for j in range(head.n_lanes):
         together += scratch.half_angle[j]
@@ -312,6 +298,22 @@ def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Float
     return farthest
 
 
+@fused
+def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Floats) -> None:
+    """Write the poses of sixteen segments, each behind the one before it on its branch."""
+    pose, first = scratch.pose, head.first
+    whole = n_lanes - n_lanes % 4
+    for j in range(0, whole, 4):
+        a, b = out[np.uintp(first[j] + rank)], out[np.uintp(first[j + 1] + rank)]
+        c, d = out[np.uintp(first[j + 2] + rank)], out[np.uintp(first[j + 3] + rank)]
+        put_four(pose, 0, j, a, b, c, d, 0)
+        put_four(pose, 3, j, a, b, c, d, 3)
+    for j in range(whole, n_lanes):
+        to = out[np.uintp(first[j] + rank)]
+        for row in range(7):
+            to[row] = pose[row, j]
+
+
 @inlined
 def _half_vector(segment: Record, scratch: Record, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
@@ -331,7 +333,7 @@ def _turn(
 ) -> None:
     """Turn the segment of the lane j from rest."""
     rest, pose = segment.rest, scratch.pose
-    pose[0, j], pose[1, j], pose[2, j], pose[3, j] = product(
+    pose[6, j], pose[3, j], pose[4, j], pose[5, j] = product(
         qw, qx, qy, qz, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
     )
 
@@ -339,11 +341,11 @@ def _turn(
 @fused
 def _join(segment: Record, scratch: Record, scale: float) -> None:
     """Put sixteen turned segments at the ends of those before them, and find their own ends."""
-    pose, at, following, reach = scratch.pose, scratch.at, scratch.next, segment.reach
+    pose, following, reach = scratch.pose, scratch.next, segment.reach
     for j in range(LANES):
-        w, x, y, z = pose[0, j], pose[1, j], pose[2, j], pose[3, j]
+        x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
         px, py, pz, length = following[0, j], following[1, j], following[2, j], scale * reach[0, j]
-        at[0, j], at[1, j], at[2, j] = px, py, pz
+        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
         twice = length + length
         following[0, j] = px + length - twice * (y * y + z * z)
         following[1, j] = py + twice * (x * y + w * z)
@@ -353,12 +355,12 @@ def _join(segment: Record, scratch: Record, scale: float) -> None:
 @fused
 def _join_gaps(segment: Record, scratch: Record, scale: float) -> None:
     """Do the same where the next segment does not start at this one's end."""
-    pose, at, following, reach = scratch.pose, scratch.at, scratch.next, segment.reach
+    pose, following, reach = scratch.pose, scratch.next, segment.reach
     for j in range(LANES):
         px, py, pz = following[0, j], following[1, j], following[2, j]
-        at[0, j], at[1, j], at[2, j] = px, py, pz
+        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
         rx, ry, rz = rotated(
-            pose[0, j], pose[1, j], pose[2, j], pose[3, j], reach[0, j], reach[1, j], reach[2, j]
+            pose[6, j], pose[3, j], pose[4, j], pose[5, j], reach[0, j], reach[1, j], reach[2, j]
         )
         following[0, j] = px + scale * rx
         following[1, j] = py + scale * ry

@@ -15,7 +15,6 @@ branches at once too, in the order of the branches.
 
 Frames: ``rest`` is the tree's frame at rest, its origin the root node. Positions in [m], rotations
 in [rad].
-
 """
 
 from __future__ import annotations
@@ -36,7 +35,6 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
 
     Where no branch has more than its key rotation, records have no room for more: a forest is
     solved no faster than its records come from memory.
-
     """
     return np.dtype(
         [
@@ -47,11 +45,7 @@ def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ("coordinate", "i8"),  # its first coordinate
             ("n_coordinates", "i8"),  # key rotation x, y, then further ones
             ("source", "i8"),  # branch whose motion it copies, itself if solved
-            (
-                "frame",
-                "f8",
-                (3, 3),
-            ),  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
+            ("frame", "f8", (3, 3)),  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
             (
                 "twist",
                 "f8",
@@ -118,7 +112,6 @@ def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
     All that placing needs to know of one segment of each of sixteen branches; where no branch has
     more than its key rotation, there is no room for what further coordinates turn it by.
-
     """
     rows = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
     return _whole_lines(
@@ -140,7 +133,6 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     What placing needs to know of the sixteen branches of a block, and finds.
 
     All work in the last record, behind the last block's, so that it stays in the fastest cache.
-
     """
     return _whole_lines(
         [
@@ -167,33 +159,26 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             # Scratch:
             ("key", "f8", (2, LANES)),  # key rotation
             ("parent_key", "f8", (n_coordinates, LANES)),  # half of each of its parent's, stretched
-            ("parent_base", "f8", (4, LANES)),  # orientation, from rest, w x y z
+            ("parent_base", "f8", (8, LANES)),  # `base` of `WORK`
             ("carrier", "f8", (7, LANES)),  # pose of the base segment
             (
                 "carrier_turn",
                 "f8",
                 (3, LANES),
             ),  # half the rotation vector at the base, from the parent's base
-            ("bent", "f8", (2, LANES)),  # half the key rotation, stretched, as children see it
-            ("base", "f8", (4, LANES)),  # orientation of the base when placed, from rest, w x y z
-            ("half", "f8", (3, LANES)),  # half the rotation vector of a segment
+            ("base", "f8", (8, LANES)),  # `base` of `WORK`
             ("blend", "f8", (LANES,)),  # how far it has gone over to the tip's slope
             ("half_turn", "f8", (3, LANES)),  # half the rotation vector per unit of slope
             ("half_key", "f8", (n_coordinates, LANES)),  # half of each coordinate, stretched
             ("square", "f8", (LANES,)),  # of the length of half_turn
-            (
-                "swing",
-                "f8",
-                (4, LANES),
-            ),  # half_turn, then the base: what a sine is multiplied by
+            ("swing", "f8", (4, LANES)),  # half_turn, then the base: what a sine is multiplied by
             (
                 "half_angle",
                 "f8",
                 (LANES,),
             ),  # bound on the square of half of what segments turn by [rad^2]
-            ("at", "f8", (3, LANES)),  # where the segment starts
-            ("next", "f8", (3, LANES)),  # where the one after it starts
-            ("pose", "f8", (4, LANES)),  # its orientation when placed, w x y z
+            ("next", "f8", (3, LANES)),  # where the segment after this one starts
+            ("pose", "f8", (7, LANES)),  # of the segment, in message order
         ]
     )
 
@@ -209,11 +194,12 @@ WORK = np.dtype(
         ("turn", "f8", (3,)),  # rotation of the base, from its parent's base
         ("shift", "f8", (3,)),  # displacement of the base in its parent's base's frame
         ("wrench", "f8", (6,)),  # force and moment of itself and all it carries (`tree_passes`)
-        ("base", "f8", (4,)),  # orientation of the base when placed, from rest, w x y z
-        ("key", "f8", (2,)),  # half the key rotation, stretched, for who sits on a plain branch
+        # Orientation of the base when placed, from rest, w x y z; half the key rotation, stretched,
+        # for who sits on a plain branch; two that fill the vector:
+        ("base", "f8", (8,)),
     ]
 )
-"""What a step computes on the way, kept from one step to the next."""
+"""What a step computes in between, kept from one step to the next."""
 
 
 def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
@@ -221,7 +207,6 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
     What the wind load knows of sixteen branches that follow each other, and finds.
 
     Rows are coordinates, those that a branch does not have zeros.
-
     """
     return [
         ("n_rows", "i8"),  # the most coordinates that one of them has

@@ -5,7 +5,6 @@ Placing what is frozen: a subtree that moves with its parent as one body.
 
 Its base turns and goes with the segment it sits on, as that of any branch; from there on every
 segment keeps its place and orientation relative to the base.
-
 """
 
 from __future__ import annotations
@@ -51,15 +50,7 @@ class RigidParts:
     @staticmethod
     def of(pruning: Pruning, branches: Records) -> RigidParts:
         """
-        Lay out the frozen subtrees of a tree.
-
-        Parameters
-        ----------
-        pruning
-            What is frozen.
-        branches
-            Records of `BRANCH` of the whole tree, (b,).
-
+        Lay out the frozen subtrees of a tree, by the records of `BRANCH` of the whole of it, (b,).
         """
         tree, tops = pruning.whole, pruning.tops
         first = tree.branch_first[tops]
@@ -78,17 +69,10 @@ class RigidParts:
 
     def place(self, branches: Records, work: Records, x: Floats, out: Floats) -> None:
         """
-        Place the frozen segments, once the moving ones are.
+        Place the frozen segments, once the moving ones are: their rows of the whole pose block, (n,
+        7).
 
-        Parameters
-        ----------
-        branches, work
-            Records of `BRANCH` and `WORK` of the moving branches, (m,).
-        x
-            Their key rotations, (M,).
-        out
-            Pose block of the whole tree, (n, 7), its frozen rows written.
-
+        Records (m,) and key rotations (M,) are those of the moving branches.
         """
         _place(
             self.parent, self.rows, self.base_turn, self.offset, self.arm, self.rest,

@@ -6,7 +6,6 @@ Key rotations that come nearest to given poses: the way back from segments to br
 From the root out, each branch's base is turned as placing would turn it; what its segments are
 turned by beyond that is fitted by the branch's coordinates, by least squares weighted with
 the lengths of the segments.
-
 """
 
 from __future__ import annotations
@@ -28,17 +27,7 @@ _LEAST = 1e-4
 
 
 class RotationFit:
-    """
-    Finds the key rotations of poses.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    branches, segments
-        Its records of `BRANCH` (b,) and `segment_layout`.
-
-    """
+    """Finds the key rotations of poses, by the records of a tree."""
 
     def __init__(self, tree: Tree, branches: Records, segments: Records) -> None:
         """Invert the shapes of every branch."""
@@ -58,7 +47,6 @@ class RotationFit:
     def of(self, poses: Floats) -> Floats:
         """
         Return the key rotations of a pose block (n, 7) in [rad], (N,); the same array each time.
-
         """
         _fit(self._branches, self._inverse, self._rest, poses, self._base, self._x)
         return self._x
@@ -100,15 +88,8 @@ def coordinates_within(branches: Records, moving: Ints, whole: Records) -> Any:
     """
     Lay the coordinates of a part of a tree out among those of the whole, sparse (N, M).
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH` of the part, (m,), some with less shapes or other axes.
-    moving
-        Which branch of the whole each of them is, (m,).
-    whole
-        Records of `BRANCH` of the whole, (b,).
-
+    Records of `BRANCH` of the part, (m,), may have less shapes or other axes; ``moving`` tells
+    which branch of the whole each of them is, (m,).
     """
     rows, columns, values = [], [], []
     for local, b in zip(branches, moving, strict=True):

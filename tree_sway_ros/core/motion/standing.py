@@ -8,7 +8,6 @@ tree scaled by k bends by the same angles in the same wind, and swings k times s
 goes with the fifth power of its size, its stiffness and the wind's moment with the third. So it is
 its kind, stepped by 1/k of the time. (Gravity and the profile of the wind are those of the kind,
 but that the speed is that at its own height.)
-
 """
 
 from __future__ import annotations
@@ -53,22 +52,16 @@ def step_standing(
     winds: Floats,
 ) -> tuple[int, int]:
     """
-    Step every tree that is not still.
+    Step every tree that is not still, each with its mean wind over the step in [m/s], (t, 3).
 
-    Parameters
-    ----------
-    tables, paces, standing, instances
-        Records of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,).
-    drag_laws
-        C and N of each kind, (k, 2).
-    winds
-        Mean wind over the step at each tree in [m/s], (t, 3).
+    Records are of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,); C
+    and N of each kind (k, 2).
 
     Returns
     -------
     tuple
-        Trees whose wind was held at the limit of their table, and trees whose motion was not
-        finite and that go on from rest.
+        Trees whose wind was held at the limit of their table, and trees whose motion was not finite
+        and that go on from rest.
 
     """
     held, restarted = 0, 0

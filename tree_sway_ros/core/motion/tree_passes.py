@@ -6,7 +6,6 @@ One pass outward and one inward: how branches move on each other, and what they 
 Outward, from the stem to the twigs: each base takes over the motion of its parent, and the wind's
 force on each branch is found in the air that passes it. Inward, from the twigs to the stem: each
 branch adds up force and moment of all it carries.
-
 """
 
 from __future__ import annotations
@@ -21,16 +20,9 @@ from tree_sway_ros.core.rotation import turned
 @fused
 def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None:
     """
-    Hand rotation and velocity of every parent to the bases of its children.
+    Hand rotation [rad] and velocity [rad/s], (N,), of every parent to the bases of its children.
 
-    Parameters
-    ----------
-    branches, work
-        Records of `BRANCH` and `WORK`, (b,); how bases move and are turned is written to the
-        latter.
-    x, v
-        Key rotations in [rad] and their rates in [rad/s], (N,).
-
+    How bases move and are turned is written to records of `WORK`, (b,).
     """
     for b in range(1, len(branches)):
         branch = branches[b]
@@ -230,7 +222,6 @@ def inward_pass(branches: Records, work: Records) -> None:
     """
     Add up, from the twigs to the stem, force and moment about the root of all that each branch
     carries.
-
     """
     for b in range(len(branches)):
         here, couple = work[b], branches[b].couple
@@ -323,7 +314,6 @@ def _turned_loads(loads: Record) -> None:
     """
     Turn the wind's own forces on sixteen branches into loads on their coordinates and moments about
     their bases.
-
     """
     force, push, load, couple = loads.own_force, loads.push, loads.load, loads.couple
     turn, base, moment = loads.turned, loads.base, loads.moment

@@ -10,7 +10,6 @@ move with its parent; it still swings at a pace of its own.
 The load is found once per step, at the state half a step on (exponential midpoint rule), and held
 over the step; what depends on the branch's own angle is corrected once within the step
 (`two_axis.step_branch`).
-
 """
 
 from __future__ import annotations
@@ -34,22 +33,15 @@ from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_
 
 class UncoupledBank:
     """
-    Oscillators of all branches.
+    Oscillators of all branches, in [kg m^2], [N m s/rad] and [N m/rad], (b,).
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    inertia, damping, stiffness
-        In [kg m^2], [N m s/rad] and [N m/rad], (b,).
-    carries
-        Whether branches carry their children (model 2) or are alone (model 1).
-    integrator
-        Method of the oscillators, one of `REAL_TIME`.
-
+    ``carries`` tells whether branches carry their children (model 2) or are alone (model 1); the
+    integrator is one of `REAL_TIME`.
     """
 
     is_tabled = False
+    n_outside, table_error = 0, 0.0
+    shapes = np.zeros((0, 0))
 
     def __init__(
         self,
@@ -93,20 +85,9 @@ class UncoupledBank:
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
-        Advance one step.
+        Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
 
-        Parameters
-        ----------
-        wx, wy, wz
-            Mean wind over the step in [m/s].
-        per_speed_squared
-            `drag.pressure` in [kg/m^3].
-
-        Returns
-        -------
-        int
-            How many loads were held at their limit, -1 if the motion is not finite.
-
+        Returns how many loads were held at their limit, -1 if the motion is not finite.
         """
         return int(self._compiled(wx, wy, wz, per_speed_squared))
 
@@ -119,7 +100,6 @@ class UncoupledBank:
         """
         Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
         geometry.
-
         """
         impedance = (
             self.stiffness[:, None]

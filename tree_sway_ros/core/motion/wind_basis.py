@@ -7,7 +7,6 @@ What a step costs does not depend on the tree's size. The oscillators and the st
 of `modes`, and so is the order of work: the load is that of the state half a step on. Only the load
 comes from a table (`wind_basis_table`) and not from the branches. Where a wind or a lean leaves the
 table, the step is one of `modes`, told by `outside`.
-
 """
 
 from __future__ import annotations
@@ -32,11 +31,11 @@ from tree_sway_ros.core.motion.wind_basis_force import (
     wind_force,
     wind_rest,
 )
-from tree_sway_ros.core.motion.wind_basis_table import STEEPEST, WindBasisTable
+from tree_sway_ros.core.motion.wind_basis_table import GENTLE, STEEPEST, WindBasisTable
 
 
 def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
-    """State of one tree on a table, and room to work in."""
+    """State of one tree on a table, and scratch."""
     m = table_layout(n_modes, n_harmonics)["stiffness"].shape[0]
     return np.dtype(
         [
@@ -50,7 +49,7 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
             ("middle", "f8", (m,)),
             ("middle_rate", "f8", (m,)),
             ("wanted", "f8", (m,)),
-            ("room", "f8", (3, m)),
+            ("scratch", "f8", (3, m)),
             ("values", "f8", (n_harmonics,)),
         ]
     )
@@ -64,15 +63,9 @@ CARRIED = ("eta", "rate", "force", "rest", "middle", "middle_rate", "wind", "pre
 
 class WindBasisBank:
     """
-    Oscillators of natural modes in even winds.
+    Oscillators of natural modes in even winds: a table of what the wind does to them.
 
-    Parameters
-    ----------
-    modal
-        The same modes on the loads of all branches.
-    table
-        What the wind does to them.
-
+    ``modal`` are the same modes on the loads of all branches.
     """
 
     carries = True
@@ -81,7 +74,7 @@ class WindBasisBank:
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
         """Stand at rest."""
-        self.modal, self.table = modal, table
+        self.modal, self.table, self.table_error = modal, table, table.error
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
         n, m = modal.shapes.shape
         self.record, self.pace = table.record, np.zeros(1, dtype=pace_layout(m))
@@ -116,14 +109,6 @@ class WindBasisBank:
     ) -> Callable[[float, float, float], int]:
         """
         Return a step as one compiled call: `step_in_wind` of the components of a wind in [m/s].
-
-        Parameters
-        ----------
-        wind, max_wind
-            As of `take_wind`.
-        law
-            Drag of the tree.
-
         """
         arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
@@ -195,22 +180,10 @@ def fill_pace(pace: np.void, modal: ModalBank) -> None:
 
 def step_outside(instance: Record, modal: ModalBank, shapes: Floats, rotations: Floats) -> int:
     """
-    Step a tree that is outside of its table on the loads of its branches.
+    Step a tree that is outside of its table on the loads of its branches; returns how many were
+    held.
 
-    Parameters
-    ----------
-    instance
-        Record of `instance_layout`.
-    modal
-        The modes of the tree.
-    shapes, rotations
-        As of `expand`; the rotations are written.
-
-    Returns
-    -------
-    int
-        How many loads were held at their limit.
-
+    Its rotations are written, as by `expand`.
     """
     m = modal.shapes.shape[1]
     rotations[:] = instance["eta"][:m] @ shapes[:m] + instance["rest"] @ shapes[m:]
@@ -244,17 +217,9 @@ def find_rest(table: Record, instance: Record) -> None:
 @fused
 def expand(table: Record, instance: Record, shapes: Floats, x: Floats) -> None:
     """
-    Key rotations of an instance: by its modes and by its static rest.
+    Key rotations (N,) of an instance: by its modes and by its static rest, which is written too.
 
-    Parameters
-    ----------
-    table, instance
-        Records of `table_layout` and `instance_layout`; the rest of the latter is written.
-    shapes
-        Of the modes, then of the rest, (m + r, N).
-    x
-        Written, (N,).
-
+    Shapes are those of the modes, then of the rest, (m + r, N).
     """
     find_rest(table, instance)
     eta, rest, n = instance.eta, instance.rest, len(shapes) - N_REST
@@ -338,15 +303,16 @@ def step_instance(
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
         energy += table.stiffness[i] * middle[i] * middle[i]
     wind_force(
-        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.room, wanted
+        table, x, y, z, push, drag, middle, middle_rate, instance.values, instance.scratch, wanted
     )
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
     inside = push <= table.most_pressure and energy <= table.most_energy
-    instance.outside = 0 if is_held or (inside and abs(z) * push <= STEEPEST * push) else 1
+    is_steep = abs(z) > STEEPEST and push > GENTLE * table.levels[1]
+    instance.outside = 0 if is_held or (inside and not is_steep) else 1
     if instance.outside:
         return 1
-    diagonal = instance.room[2]
+    diagonal = instance.scratch[2]
     for i in range(len(eta)):
         # Implicit in the mode's own damping: stable for any wind and step.
         own = diagonal[i] * half[5, i]

@@ -26,7 +26,6 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     Table of one tree; modes are filled up to a multiple of four, at least twelve.
 
     One layout serves most trees, so that the kernel is compiled once.
-
     """
     m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
     a, n = N_AZIMUTHS, N_LEVELS
@@ -99,7 +98,7 @@ def table_corners(
 @fused
 def wind_force(
     table: Record, x: float, y: float, z: float, push: float, drag: float,
-    eta: Floats, rate: Floats, values: Floats, room: Floats, force: Floats,
+    eta: Floats, rate: Floats, values: Floats, scratch: Floats, force: Floats,
 ) -> None:  # fmt: skip
     """
     Find the modal forces of an even wind.
@@ -114,7 +113,7 @@ def wind_force(
         Dynamic pressure ``p U^2`` in [kg/m/s^2] and ``p U`` in [kg/m^2/s].
     eta, rate
         Modes and their rates, (m,).
-    values, room
+    values, scratch
         Harmonics, (h,), written; and to work in, (3, m), the last of these gets the diagonal of the
         damping.
     force
@@ -125,7 +124,7 @@ def wind_force(
     fill_harmonics(x, y, z, table.degree, values)
     first, second, j, share, up, lean = table_corners(table, x, y, eta)
     a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up
-    off, damp, diagonal = room[0], room[1], room[2]
+    off, damp, diagonal = scratch[0], scratch[1], scratch[2]
     for i in range(m):
         static = (1.0 - share) * table.static[first, i] + share * table.static[second, i]
         off[i] = eta[i] - lean * static
@@ -166,15 +165,8 @@ def wind_rest(
     eta: Floats, rate: Floats, values: Floats, rest: Floats,
 ) -> None:  # fmt: skip
     """
-    Find the static rest of the modes left out, as `wind_force`.
-
-    Parameters
-    ----------
-    values
-        Harmonics of the wind's direction, (h,).
-    rest
-        Amounts of the shapes of the rest, (r,), written.
-
+    Find the static rest of the modes left out, (r,), as `wind_force`, by harmonics of the wind,
+    (h,).
     """
     first, second, j, share, up, lean = table_corners(table, x, y, eta)
     a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up

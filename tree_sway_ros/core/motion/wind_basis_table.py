@@ -19,7 +19,6 @@ load turns and leans with the tree) and by their rates (aerodynamic damping):
     x = Phi eta + V {s [Y R + rest(a) + turning_r (eta - a e)] + p |U| damping_r eta'}
 
 with V the few shapes that the static rest of the modes left out takes.
-
 """
 
 from __future__ import annotations
@@ -55,7 +54,14 @@ levels further down.
 """
 
 STEEPEST = np.sin(np.deg2rad(45.0))
-"""Sine of the elevation up to which a wind is in the table."""
+"""Sine of the elevation up to which a wind is in the table, unless it is gentle."""
+
+GENTLE = 0.05
+"""
+Dynamic pressure, over that of the lowest lean, up to which a wind is in the table whatever its
+elevation: some 1 m/s, as turbulence lets it blow straight up in a calm.
+
+"""
 
 BEYOND = 1.6
 """Dynamic pressure up to which the table goes on, over that of the last level."""
@@ -142,12 +148,12 @@ class WindBasisTable:
         )  # fmt: skip
         return moments
 
-    def _slopes(self, at: Floats, wind: Floats, ways: Floats, *, rates: bool = False) -> Floats:
-        """Slope of the moments by each way (k, N) that the tree can bend or move, (k, N)."""
-        slopes, here = np.zeros_like(ways), self._moments(at, self._still, wind)
-        for row, way in zip(slopes, ways, strict=True):
-            size = _DIFFERENCE / max(float(np.abs(way).max()), 1e-12)
-            x, v = (at, size * way) if rates else (at + size * way, self._still)
+    def _slopes(self, at: Floats, wind: Floats, shapes: Floats, *, rates: bool = False) -> Floats:
+        """Slope of the moments by shapes (k, N) that the tree is bent by, or moves by, (k, N)."""
+        slopes, here = np.zeros_like(shapes), self._moments(at, self._still, wind)
+        for row, shape in zip(slopes, shapes, strict=True):
+            size = _DIFFERENCE / max(float(np.abs(shape).max()), 1e-12)
+            x, v = (at, size * shape) if rates else (at + size * shape, self._still)
             row[:] = (self._moments(x, v, wind) - here) / size
         return slopes
 
@@ -183,8 +189,8 @@ class WindBasisTable:
         self._twice = float(twice.max())
         excess, lean = np.zeros((len(_ASKED), m)), np.zeros((len(_ASKED), m, m))
         for k, azimuth in enumerate(_ASKED):
-            way = self._along[k] @ self._rests
-            excess[k] = self._slopes(self._still, direction(azimuth, 0.0), way[None])[0] @ shapes
+            lean_shape = (self._along[k] @ self._rests)[None]
+            excess[k] = self._slopes(self._still, direction(azimuth, 0.0), lean_shape)[0] @ shapes
             for sign in (1.0, -1.0):
                 slant = direction(azimuth, sign * _SLOPE_AT)
                 slopes = self._slopes(self._still, slant, shapes.T)
@@ -197,7 +203,6 @@ class WindBasisTable:
         Ask the tree for its loads where it leans as a dynamic pressure [kg/m/s^2] holds it.
 
         The slopes of the rest are large, and wanted of the lowest lean alone.
-
         """
         shapes, count = self._shapes, len(_ASKED)
         n, m = shapes.shape
@@ -266,7 +271,7 @@ class WindBasisTable:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table["n_modes"]), table["stiffness"]
-        forces, room = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
+        forces, scratch = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
         values, rest, still = np.zeros(COUNT[degree]), np.zeros(N_REST), np.zeros(len(stiffness))
         wrong = right = 0.0
         for _ in range(_TRIALS):
@@ -278,8 +283,9 @@ class WindBasisTable:
             eta = np.zeros(len(stiffness))
             eta[:m] = lean * (at @ table["harmonics"][:, :m]) / stiffness[:m]
             _force(
-                self.record, wind[0], wind[1], wind[2], push, eta, still, values, room, forces, rest
-            )
+                self.record, wind[0], wind[1], wind[2], push, eta, still, values, scratch, forces,
+                rest,
+            )  # fmt: skip
             x = self._shapes @ eta[:m] + rest @ self.rest_shapes
             true = push * self._moments(x, self._still, wind) @ self._shapes
             wrong += float((np.square(forces[:m] - true) / stiffness[:m]).sum())
@@ -327,7 +333,7 @@ def _fill(directions: Floats, degree: int, out: Floats) -> None:
 @fused
 def _force(
     tables: Records, x: float, y: float, z: float, push: float, eta: Floats, rate: Floats,
-    values: Floats, room: Floats, force: Floats, rest: Floats,
+    values: Floats, scratch: Floats, force: Floats, rest: Floats,
 ) -> None:  # fmt: skip
-    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, room, force)
+    wind_force(tables[0], x, y, z, push, 0.0, eta, rate, values, scratch, force)
     wind_rest(tables[0], x, y, push, 0.0, eta, rate, values, rest)

@@ -5,5 +5,4 @@ One linear or two-axis oscillator over one step: exact propagator, matrix expone
 
 Everything the solver steps with; what methods do side by side is in ``study/methods``.
 Nothing here knows of branches.
-
 """

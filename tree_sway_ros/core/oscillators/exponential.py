@@ -8,7 +8,6 @@ where it loses no digits: the Taylor series of small pairs, differences of phi f
 pairs far apart, closed forms for the rest. The phase of a lightly damped pair is kept in
 double-double, so that a thousand turns in one step are as exact as one (Dekker 1971, A
 floating-point technique for extending the available precision).
-
 """
 
 from __future__ import annotations
@@ -63,7 +62,6 @@ def scaled_discriminant(
     floats.
 
     Both come from ``k2^2 - 4 I k1``, whose two products are taken without rounding.
-
     """
     ch, cl = two_product(c, c)
     kh, kl = two_product(4.0 * i, k)

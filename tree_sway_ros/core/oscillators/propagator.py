@@ -14,7 +14,6 @@ two eigenvalues times h. With e[..] for the divided differences of the exponenti
 follows from ``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham 2008,
 Functions of Matrices, 10.7: the phi functions), which `exponential_differences` finds without
 cancellation.
-
 """
 
 from __future__ import annotations
@@ -92,22 +91,10 @@ def fill_propagator(
     inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats
 ) -> int:
     """
-    Refill coefficients in place, for a step that changes; no allocation, computed in float64.
+    Refill coefficients (n, 8) in place, for a step [s] that changes; computed in float64.
 
-    Parameters
-    ----------
-    inertia, damping, stiffness
-        As for `propagator`, arrays (n,), not checked.
-    dt
-        Time step in [s].
-    out
-        Coefficients, (n, 8), float64 or float32.
-
-    Returns
-    -------
-    int
-        Index of the first oscillator with nothing but zeros (its row is set to stand still), or -1.
-
+    Arguments are those of `propagator`, not checked; nothing is allocated. Returned is the index of
+    the first oscillator with nothing but zeros (its row is set to stand still), or -1.
     """
     refused = -1
     for row in range(len(inertia)):

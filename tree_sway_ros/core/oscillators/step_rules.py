@@ -7,7 +7,6 @@ Every rule is linear in angle, rate and the moments at both ends of a step, so e
 per oscillator hold it; the kernels apply those and do not know which rule made them. What the rules
 are, with order, limits and sources, is declared where they are studied side by side
 (``study/methods``).
-
 """
 
 from __future__ import annotations
@@ -131,15 +130,7 @@ STEP_RULES: MappingProxyType[str, StepRule] = MappingProxyType(
 
 
 def rule_named(name: str) -> StepRule:
-    """
-    Return a step rule by its name.
-
-    Raises
-    ------
-    ParameterError
-        A name that no rule has.
-
-    """
+    """Return a step rule by its name; a `ParameterError` if no rule has it."""
     if name not in STEP_RULES:
         raise ParameterError(
             f"no integrator {name!r} that the solver can run",
@@ -154,7 +145,6 @@ def rule_propagator(
 ) -> Array:
     """
     Eight coefficients per oscillator, as `propagator.propagator`, of a rule's own step, (n, 8).
-
     """
     i, c, k = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))
@@ -176,18 +166,8 @@ def stability_limit(name: str, damping_ratio: float = 0.0) -> float:
     """
     Largest w h [-] at which free motion does not grow, infinite where every step is stable.
 
-    Parameters
-    ----------
-    name
-        One of `REAL_TIME`.
-    damping_ratio
-        Of the oscillator [-].
-
-    Returns
-    -------
-    float
-        The first crossing, found by a scan and bisection on the rule's own step.
-
+    It is the first crossing, found by a scan and bisection on the rule's own step, for an
+    oscillator of a damping ratio.
     """
     slack = 1.0 + 1e-9
     scan = np.geomspace(1e-2, 1e4, 600)
@@ -207,28 +187,11 @@ def stable_steps(
     name: str, inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float
 ) -> Array:
     """
-    Return the coefficients of a rule's step, after a check that no oscillator grows under it.
+    Coefficients (n, 8) of a rule's step, after a check that no oscillator grows under it.
 
-    Parameters
-    ----------
-    name
-        One of `REAL_TIME`.
-    inertia, damping, stiffness
-        I [kg m^2], k2 [N m s], k1 [N m], (n,).
-    dt
-        Time step in [s].
-
-    Returns
-    -------
-    Array
-        Coefficients, (n, 8).
-
-    Raises
-    ------
-    ParameterError
-        An unknown name, or a step beyond the rule's limit: the first oscillator that would grow,
-        its w h and the limit at its damping.
-
+    Oscillators have I [kg m^2], k2 [N m s] and k1 [N m], (n,). A `ParameterError` tells of an
+    unknown name, or of the first that would grow under dt [s], its w h and the limit at its
+    damping.
     """
     i, c, k = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))

@@ -25,7 +25,6 @@ k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no e
 moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w
 h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the branch to
 the right side and angle; at 4 / (w h)^2 it no longer does.
-
 """
 
 from __future__ import annotations
@@ -76,7 +75,7 @@ def _series(t: float) -> tuple[float, float, float, float]:
 @inlined
 def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[float, float]:
     """
-    Moment of a force on the two axes, at any deflection.
+    Generalised force [N m] on the two axes at any deflection; (w1, w2) at zero.
 
     Parameters
     ----------
@@ -84,11 +83,6 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
         Rotation vector in [rad].
     wb, w1, w2
         Force times lever along b, e1, e2 in [N m].
-
-    Returns
-    -------
-    fx, fy
-        Generalised force over the inertia of each direction, in [N m]; (w1, w2) at zero.
 
     """
     x, y, t = _held(x, y)
@@ -103,20 +97,10 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
 @inlined
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
-    Acceleration that the sphere itself asks for: great circles at constant speed.
+    Acceleration [rad/s^2] that the sphere itself asks for: great circles at constant speed.
 
-    Parameters
-    ----------
-    x, y
-        Rotation vector in [rad].
-    vx, vy
-        Its rate in [rad/s].
-
-    Returns
-    -------
-    ax, ay
-        Acceleration in [rad/s^2]; zero for motion in one plane.
-
+    It follows from the rotation vector [rad] and its rate [rad/s], and is zero for motion in one
+    plane.
     """
     x, y, t = _held(x, y)
     s, c, s1, c1 = _series(t)
@@ -135,7 +119,6 @@ def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, fl
     Hold the length of a load at a limit in [N m]; the last value tells whether it was held.
 
     What is not a number, or so large that its square is not, counts as held and pulls nowhere.
-
     """
     square = wb * wb + w1 * w1 + w2 * w2
     if square <= limit * limit:

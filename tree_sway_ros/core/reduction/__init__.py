@@ -5,5 +5,4 @@ From branches to matrices: inertia, stiffness, weight, natural modes, branches l
 
 Done once per tree, before the first step.
 Nothing here runs in a step.
-
 """

@@ -7,7 +7,6 @@ Taken as rigid, a crown makes its stem too quick, for its branches bend back as 
 accelerates. One step of inverse iteration from the stem's own coordinate lets them: ``q = K^-1 M
 e_i`` within the subtree, and Rayleigh's quotient of q is the square of the frequency at which
 branch i really swings (Rayleigh, 1877; K is diagonal but for gravity).
-
 """
 
 from __future__ import annotations
@@ -21,23 +20,10 @@ from tree_sway_ros.core.tree.tree import Tree
 
 def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
-    Inertia of each coordinate with its subtree giving way.
+    Inertia of each coordinate with its subtree giving way, in [kg m^2], (N,).
 
-    Both axes of a branch that carries others are taken as one, so that it does not matter how they
-    are laid.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    reduction
-        Its matrices, two coordinates per branch.
-
-    Returns
-    -------
-    Floats
-        In [kg m^2], (N,); never less than the diagonal of the mass matrix.
-
+    It is never less than the diagonal of the mass matrix. Both axes of a branch that carries others
+    are taken as one, so that it does not matter how they are laid.
     """
     mass, stiffness = reduction.mass.tocsc(), reduction.stiffness.tocsc()
     inertia = np.asarray(mass.diagonal()).copy()

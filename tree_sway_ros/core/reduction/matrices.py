@@ -222,6 +222,10 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each
     child's subtree about its base takes the place of m t for the child.
 
+    Rotations about unlike axes do not add up: what is first bent and then twisted is turned by half
+    of the cross product of the two as well, and the weight, whose moment the branch bears at rest,
+    does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
+
     """
     beam = model.beam
     own, nodes, _ = beam.from_base(model.mass)
@@ -241,5 +245,13 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     once = turns[..., 2] @ (turns * arms).sum(axis=-1).T
     n = len(turns)
     both = (turns * arms[:, 2:]).reshape(n, -1) @ turns.reshape(n, -1).T
-    lift: Floats = 0.5 * (once + once.T) - both
+    outer = beam.from_base(lever / beam.weight[..., None])
+    hung = outer[1][-1] - outer[0] + beam.child_lever[1] @ hanging
+    borne = beam.weight[..., None] * np.stack(
+        [hung[..., 1], -hung[..., 0], np.zeros_like(beam.weight)], axis=-1
+    )
+    curvatures = np.stack([one.curvature for one in model.fields]).reshape(n, -1)
+    about = np.stack([cross(borne, slope) for slope in slopes]).reshape(n, -1)
+    unlike = about @ curvatures.T
+    lift: Floats = 0.5 * (once + once.T + unlike + unlike.T) - both
     return lift

@@ -6,7 +6,6 @@ Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
 Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq,
 Sorensen & Yang, 1998); all modes of a small one from the dense problem. A tree whose stiffness with
 its own weight is not positive buckles (Greenhill, 1881): it is refused with the name of the branch.
-
 """
 
 from __future__ import annotations
@@ -32,19 +31,14 @@ nothing.
 
 _DENSE_UP_TO = 400
 
+_MOST_LEFT = 0.05
+"""Of what wind drives slow modes to do, root mean square: as much may be left out."""
+
 
 @dataclass(frozen=True)
 class Modes:
     """
-    Natural modes, the slowest first.
-
-    Parameters
-    ----------
-    circular
-        Circular frequencies w in [rad/s], (m,).
-    shapes
-        Key rotations of each mode, (N, m), of unit modal mass.
-
+    Natural modes, the slowest first: w [rad/s], (m,), and key rotations of unit modal mass, (N, m).
     """
 
     circular: Floats
@@ -63,21 +57,7 @@ class Modes:
 
 def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) -> Modes:
     """
-    Find the slowest modes.
-
-    Parameters
-    ----------
-    tree
-        The tree, for the names in errors.
-    reduction
-        Its matrices.
-    count
-        How many; all if None.
-
-    Returns
-    -------
-    Modes
-        The `count` slowest modes.
+    Find the slowest modes of a tree, all if no count is given.
 
     Raises
     ------
@@ -128,57 +108,31 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
-def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
+def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int, further: int = 0) -> Modes:
     """
-    Keep the modes by which turbulence moves the tips most.
+    Keep so many of the modes by which turbulence moves the tips most, the slowest first.
 
-    At its own pace a mode goes ``phi . q / (2 zeta w^2)`` under a load q; turbulence there has a
-    power of ``w^(-5/3)``, over a band as wide as w. Of modes that loads do not reach, as branches
-    that swing against each other, nothing is lost.
-
-    Parameters
-    ----------
-    modes
-        To choose from.
-    loads
-        Moments on the key rotations, (N, any).
-    moved
-        Sum over the tips of the square of what a unit of each mode moves them, (m,).
-    count
-        How many to keep.
-
-    Returns
-    -------
-    Modes
-        The chosen ones, the slowest first.
-
+    At its own pace a mode goes ``phi . q / (2 zeta w^2)`` under a load q, of moments (N, any);
+    turbulence there has a power of ``w^(-5/3)``, over a band as wide as w. Of modes that loads do
+    not reach, as branches that swing against each other, nothing is lost. ``moved`` is the sum over
+    the tips of the square of what a unit of each mode moves them, (m,). Up to so many ``further``
+    ones are kept where those left out would make up more than 5 % of the root mean square of all.
     """
     driven = moved * np.square(modes.shapes.T @ loads).sum(axis=1) / modes.circular ** (14.0 / 3.0)
-    kept = np.sort(np.argsort(-driven, kind="stable")[:count])
+    order = np.argsort(-driven, kind="stable")
+    left = 1.0 - np.cumsum(driven[order]) / max(float(driven.sum()), 1e-300)
+    missed = int((left[count - 1 :] > _MOST_LEFT**2).sum())
+    kept = np.sort(order[: count + min(missed, further)])
     return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
 
 
 def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
     """
-    Add to modes what they lack of the static answers to loads.
+    Add to modes what they lack of the static answers to loads (N, l).
 
-    With the flexibility of each coordinate alone taken as static, the answer to these
-    loads then is exact (mode acceleration with Ritz vectors: Wilson, Yuan & Dickens, 1982).
-
-    Parameters
-    ----------
-    modes
-        Some of the natural modes.
-    reduction
-        The matrices.
-    loads
-        Moments on the key rotations, (N, l).
-
-    Returns
-    -------
-    Modes
-        The same and up to l more, orthogonal to them and to each other in mass and stiffness.
-
+    With the flexibility of each coordinate alone taken as static, the answer to these loads then is
+    exact (mode acceleration with Ritz vectors: Wilson, Yuan & Dickens, 1982). There are up to l
+    more, orthogonal to them and to each other in mass and stiffness.
     """
     stiffness, mass = csc_matrix(reduction.stiffness), reduction.mass
     rest = sparse_linalg.splu(stiffness).solve(np.ascontiguousarray(loads))
@@ -202,14 +156,8 @@ def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     """
-    Find by how much the weight could grow before the tree buckles.
-
-    Returns
-    -------
-    factor, coordinate
-        Critical weight over real weight (infinite without gravity), and the coordinate that gives
-        way most.
-
+    Critical weight over real weight (infinite without gravity), and the coordinate that gives way
+    most.
     """
     n = reduction.n_coordinates
     softening = -reduction.gravity
@@ -236,13 +184,8 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
 
 def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
     """
-    Refuse a tree that cannot swing.
-
-    Raises
-    ------
-    TreeError
-        It buckles under its own weight, or a branch has no mass.
-
+    Refuse a tree that buckles under its own weight, or whose branch has no mass, with a
+    `TreeError`.
     """
     diagonal = reduction.mass.diagonal()
     for coordinate in np.flatnonzero(~(diagonal > 0.0))[:1]:

@@ -6,7 +6,6 @@ Linear algebra on one thread, so that a tree is the same bit for bit however man
 OpenBLAS divides sums among its threads, so that the last bits of modes depend on their number. What
 numpy and scipy are linked with is asked through the libraries that they have loaded; where it is
 another BLAS nothing is changed.
-
 """
 
 from __future__ import annotations

@@ -9,7 +9,6 @@ load joins the parent's, summed as the loads of pieces of one branch are. Solvin
 moving branches alone.
 
 Symbols: b branches, m moving ones, N and M their coordinates.
-
 """
 
 from __future__ import annotations
@@ -67,7 +66,6 @@ class Pruning:
     def place_among_moving(self) -> Ints:
         """
         Index of each branch among those that move, -1 for the frozen and for no branch, (b + 1,).
-
         """
         place = np.full(len(self.frozen) + 1, -1, dtype=np.int64)
         place[self.moving] = np.arange(len(self.moving))

@@ -5,5 +5,4 @@ Every segment solved in 3D: the truth that reduced models are measured against.
 
 Also the model `segments` of the simulator.
 Nothing here is reduced.
-
 """

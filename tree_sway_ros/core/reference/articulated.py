@@ -7,7 +7,6 @@ Every segment bends at one joint inside it (see `articulated_bodies`), the artic
 algorithm gives the accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit
 (`articulated_step`). It stands beside the reduced model as the truth for large, coupled motion, and
 as the last model of the ladder.
-
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from tree_sway_ros.core.reference.articulated_modes import (
     joint_modes,
 )
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
-from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, room_of
+from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, scratch_of
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -113,7 +112,11 @@ class ArticulatedTree:
         )
         n = cut.n_segments
         self.state = State(np.zeros((n, 4)), np.zeros((n, 3)))
-        self._motion, self._articulation, self._room = motion_of(n), articulation_of(n), room_of(n)
+        self._motion, self._articulation, self._scratch = (
+            motion_of(n),
+            articulation_of(n),
+            scratch_of(n),
+        )
         self._rotation, self._nodes = np.zeros((n, 3, 3)), np.zeros((3, n, 3))
         self._rest = tree.rest_frame
         self._wind = np.zeros((n, 3))
@@ -166,17 +169,16 @@ class ArticulatedTree:
         Where a joint would turn by more than `LARGEST_TURN`, as that of a twig does in a gale, the
         step is taken in finer pieces. Returns whether that helped; if not the tree is at rest
         again.
-
         """
         wind = np.asarray(wind, dtype=np.float64)
         if wind.ndim == 2:
             wind = np.repeat(wind, self.subdivisions, axis=0)
         np.multiply(self._wind_factor, wind, out=self._wind)
-        room = self._motion, self._articulation, self._room
+        scratch = self._motion, self._articulation, self._scratch
         before = self.state.turn.copy(), self.state.rate.copy()
         for pieces in (1, 4, 16, 64, 256):
             for _ in range(pieces):
-                advance(self.bodies, self.laws, self.state, self._wind, dt / pieces, *room)
+                advance(self.bodies, self.laws, self.state, self._wind, dt / pieces, *scratch)
                 if not np.abs(self.state.rate).max() * dt / pieces <= LARGEST_TURN:
                     break
             else:
@@ -211,13 +213,10 @@ class ArticulatedTree:
 
     def linear_modes(self, count: int) -> tuple[Floats, Floats]:
         """
-        Natural frequencies in [Hz], lowest first, and the displacement of the end nodes.
+        Natural frequencies [Hz], lowest first, (count,), and displacements of the end nodes,
+        (count, n, 3).
 
-        Returns
-        -------
-        tuple
-            Frequencies (count,) and shapes of unit modal mass, (count, n, 3).
-
+        The shapes have unit modal mass.
         """
         modes = joint_modes(self.bodies, self._gravity, count)
         shapes = end_displacements(self.bodies, modes.turn)
@@ -229,7 +228,6 @@ class ArticulatedTree:
         """
         Damping of `Laws`: by stiffness so much that the last of these modes has the ratio, and the
         rest to each below it.
-
         """
         modes = joint_modes(self.bodies, self._gravity, count)
         circular = 2.0 * math.pi * modes.frequency

@@ -9,7 +9,6 @@ segment is gathered in one ball joint of stiffness ``1 / integral(ds / EI)`` at 
 tip's part of segment i and the root's parts of all that sit on it. The tangent at a fork then is
 the same for all who meet there, and frequencies converge with the square of the length of the
 segments; joints at the nodes would be a power slower wherever a branch forks.
-
 """
 
 from __future__ import annotations

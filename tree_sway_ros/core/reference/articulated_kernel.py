@@ -8,7 +8,6 @@ taken about each body's own joint. The articulated inertia of a body is three bl
 and f the moment and force that its joint passes, alpha and a the accelerations there,
 
     n = A alpha + B a + n0,   f = B^T alpha + C a + f0.
-
 """
 
 from __future__ import annotations
@@ -62,7 +61,7 @@ class Motion(NamedTuple):
 
 class Articulation(NamedTuple):
     """
-    Room for the backward pass.
+    Scratch for the backward pass.
 
     Parameters
     ----------
@@ -128,17 +127,16 @@ def move(bodies: Bodies, turn: Floats, rate: Floats, motion: Motion) -> None:
 
 @kernel
 def load(
-    bodies: Bodies, motion: Motion, gravity: float, mass_damping: float, room: Articulation
+    bodies: Bodies, motion: Motion, gravity: float, mass_damping: float, scratch: Articulation
 ) -> None:
     """
     Start each articulated inertia and bias from the body's own, with its weight.
 
     The damping in [1/s] acts on each body's momentum.
-
     """
     half, own = np.empty((3, 3)), np.empty((3, 3))
     for i in range(len(bodies.mass)):
-        R, A, B, C = motion.rotation[i], room.A[i], room.B[i], room.C[i]
+        R, A, B, C = motion.rotation[i], scratch.A[i], scratch.B[i], scratch.C[i]
         m, r, w = bodies.mass[i], times(R, read(bodies.centre, i)), read(motion.spin, i)
         product(R, bodies.inertia[i], half)
         square = dot(r, r)
@@ -158,15 +156,15 @@ def load(
         force = (m * rising[0], m * rising[1], m * (rising[2] + gravity))
         momentum = times(own, w)
         moment = plus(plus(cross(w, momentum), cross(r, force), 1.0), momentum, mass_damping)
-        write(room.moment, i, moment)
-        write(room.force, i, force)
+        write(scratch.moment, i, moment)
+        write(scratch.force, i, force)
 
 
 @kernel
-def push(i: int, place: Vector, force: Vector, share: float, room: Articulation) -> None:
+def push(i: int, place: Vector, force: Vector, share: float, scratch: Articulation) -> None:
     """Apply a share of a force in [N] to body i, at a place from its joint in [m]."""
-    write(room.moment, i, plus(read(room.moment, i), cross(place, force), -share))
-    write(room.force, i, plus(read(room.force, i), force, -share))
+    write(scratch.moment, i, plus(read(scratch.moment, i), cross(place, force), -share))
+    write(scratch.force, i, plus(read(scratch.force, i), force, -share))
 
 
 @kernel
@@ -176,7 +174,7 @@ def accelerate(
     torque: Floats,
     twist_axis: Floats,
     implicit: float,
-    room: Articulation,
+    scratch: Articulation,
     out: Floats,
 ) -> None:
     """
@@ -184,24 +182,20 @@ def accelerate(
 
     Parameters
     ----------
-    bodies, motion
-        The tree and how it moves now.
     torque
         Torque of the joints, body axes, (n, 3) in [N m].
     twist_axis
         Gradient of their angles of twist, body axes, (n, 3).
     implicit
         Inertia added to the joints by their stiffness in [s^2]: it makes the springs implicit.
-    room
+    scratch
         From `load`, with every force pushed.
-    out
-        Where the accelerations go.
 
     """
     n = len(bodies.mass)
     block, passed, shared, turned, spread = np.empty((5, 3, 3))
     for i in range(n - 1, -1, -1):
-        R, A, B, C = motion.rotation[i], room.A[i], room.B[i], room.C[i]
+        R, A, B, C = motion.rotation[i], scratch.A[i], scratch.B[i], scratch.C[i]
         t = times(R, read(twist_axis, i))
         across = implicit * bodies.bend[i]
         about = implicit * bodies.twist[i] - across
@@ -209,26 +203,30 @@ def accelerate(
             for k in range(3):
                 block[j, k] = A[j, k] + about * t[j] * t[k]
             block[j, j] += across
-        inverse(block, room.inverse[i])
-        moment, force = read(room.moment, i), read(room.force, i)
+        inverse(block, scratch.inverse[i])
+        moment, force = read(scratch.moment, i), read(scratch.force, i)
         drive = plus(times(R, read(torque, i)), moment, -1.0)
-        write(room.drive, i, drive)
+        write(scratch.drive, i, drive)
         p = bodies.carrier[i]
         if p < 0:
             continue
         # What is left of the inertia when the joint gives way: A - A D A, B - A D B, C - B^T D B.
         turn, shift = read(motion.bias_turn, i), read(motion.bias_shift, i)
         given = plus(drive, times(A, turn), -1.0)
-        given = times(room.inverse[i], plus(given, times(B, shift), -1.0))
+        given = times(scratch.inverse[i], plus(given, times(B, shift), -1.0))
         turn = plus(turn, given, 1.0)
         moment = plus(plus(moment, times(A, turn), 1.0), times(B, shift), 1.0)
         force = plus(plus(force, times_transposed(B, turn), 1.0), times(C, shift), 1.0)
         d = read(motion.arm, i)
-        write(room.moment, p, plus(plus(read(room.moment, p), moment, 1.0), cross(d, force), 1.0))
-        write(room.force, p, plus(read(room.force, p), force, 1.0))
-        product(A, room.inverse[i], passed)
+        write(
+            scratch.moment,
+            p,
+            plus(plus(read(scratch.moment, p), moment, 1.0), cross(d, force), 1.0),
+        )
+        write(scratch.force, p, plus(read(scratch.force, p), force, 1.0))
+        product(A, scratch.inverse[i], passed)
         product(passed, B, shared)
-        product(room.inverse[i], B, turned)
+        product(scratch.inverse[i], B, turned)
         product(passed, A, block)
         left_A, left_B, left_C = block, shared, spread
         for j in range(3):
@@ -237,19 +235,21 @@ def accelerate(
                 left_B[j, k] = B[j, k] - shared[j, k]
                 gone = B[0, j] * turned[0, k] + B[1, j] * turned[1, k] + B[2, j] * turned[2, k]
                 left_C[j, k] = C[j, k] - gone
-        _shift(d, left_A, left_B, left_C, passed, turned, room.A[p], room.B[p], room.C[p])
+        _shift(d, left_A, left_B, left_C, passed, turned, scratch.A[p], scratch.B[p], scratch.C[p])
 
     for i in range(n):
         turn, shift = read(motion.bias_turn, i), read(motion.bias_shift, i)
         p = bodies.carrier[i]
         if p >= 0:
-            alpha = read(room.alpha, p)
+            alpha = read(scratch.alpha, p)
             turn = plus(turn, alpha, 1.0)
-            shift = plus(plus(shift, read(room.a, p), 1.0), cross(alpha, read(motion.arm, i)), 1.0)
-        spare = plus(read(room.drive, i), times(room.A[i], turn), -1.0)
-        own = times(room.inverse[i], plus(spare, times(room.B[i], shift), -1.0))
-        write(room.alpha, i, plus(turn, own, 1.0))
-        write(room.a, i, shift)
+            shift = plus(
+                plus(shift, read(scratch.a, p), 1.0), cross(alpha, read(motion.arm, i)), 1.0
+            )
+        spare = plus(read(scratch.drive, i), times(scratch.A[i], turn), -1.0)
+        own = times(scratch.inverse[i], plus(spare, times(scratch.B[i], shift), -1.0))
+        write(scratch.alpha, i, plus(turn, own, 1.0))
+        write(scratch.a, i, shift)
         write(out, i, times_transposed(motion.rotation[i], own))
 
 
@@ -260,7 +260,6 @@ def _shift(
 ) -> None:  # fmt: skip
     """
     Add an inertia to one whose point lies back by d: B + d x C, and A + d x B^T - (B + d x C) d x.
-
     """
     cross_columns(d, C, first)
     for j in range(3):

@@ -5,7 +5,6 @@ Linear modes of the articulated tree: mass and stiffness of its joints at rest.
 
 Both matrices couple a joint with those that carry it and those that it carries only, so they are
 sparse.
-
 """
 
 from __future__ import annotations
@@ -23,17 +22,9 @@ from tree_sway_ros.errors import TreeError
 
 class JointModes(NamedTuple):
     """
-    Modes of unit modal mass, lowest first.
+    Modes of unit modal mass, lowest first, (k,) in [Hz].
 
-    Parameters
-    ----------
-    frequency
-        In [Hz], (k,).
-    turn
-        Rotations of the joints in [rad], (k, n, 3).
-    momentum
-        Mass matrix times these, (k, n, 3).
-
+    Rotations of the joints are in [rad], (k, n, 3); momenta are the mass matrix times these.
     """
 
     frequency: Floats
@@ -42,15 +33,7 @@ class JointModes(NamedTuple):
 
 
 def joint_modes(bodies: Bodies, gravity: float, count: int) -> JointModes:
-    """
-    Lowest modes about rest.
-
-    Raises
-    ------
-    TreeError
-        If the stiffness is not positive: the tree buckles under its own weight.
-
-    """
+    """Lowest modes about rest; a `TreeError` if the tree buckles under its own weight."""
     mass, stiffness = joint_mass(bodies), joint_stiffness(bodies, gravity)
     factor = linalg.splu(
         stiffness,
@@ -82,7 +65,6 @@ def joint_mass(bodies: Bodies) -> Any:
     Mass matrix of the joints' rotations at rest in [kg m^2], sparse (3 n, 3 n).
 
     Composite rigid bodies (Featherstone 2008, table 6.2).
-
     """
     _, lever, tensor = _composite(bodies)
     own = [np.array(t) for t in tensor]
@@ -104,7 +86,6 @@ def joint_stiffness(bodies: Bodies, gravity: float) -> Any:
 
     Gravity's part is the second variation of the height of the masses, each joint turned in the
     axes its carrier has turned already, with the springs' share in holding the rest shape.
-
     """
     twist = np.einsum("ni,nj->nij", bodies.axis, bodies.axis)
     springs = bodies.bend[:, None, None] * (np.eye(3) - twist) + bodies.twist[:, None, None] * twist

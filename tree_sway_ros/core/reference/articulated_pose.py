@@ -27,19 +27,10 @@ def place_bodies(
     bodies: Bodies, turn: Floats, rotation: Floats, joint: Floats, start: Floats, end: Floats
 ) -> None:
     """
-    Carry the joints' rotations from the root out.
+    Carry the joints' rotations, quaternions wxyz (n, 4), from the root out.
 
-    Parameters
-    ----------
-    bodies
-        The tree.
-    turn
-        Quaternions wxyz of the joints, (n, 4).
-    rotation
-        Rotation of each body from rest, (n, 3, 3), written.
-    joint, start, end
-        Joint, start node and end node of each segment in [m], (n, 3), written.
-
+    Written are the rotation of each body from rest, (n, 3, 3), and joint, start node and end node
+    of each segment in [m], (n, 3).
     """
     own = np.empty((3, 3))
     for i in range(len(turn)):
@@ -74,20 +65,8 @@ def pose_block(
     Fill poses (m, 7): start node, and as ``xyzw`` the turn that lays x along the chord.
 
     The roll is the body's own: x turns with the segment, then takes the shortest way to the chord.
-
-    Parameters
-    ----------
-    bodies, turn
-        The tree, and quaternions of its joints, (n, 4).
-    rest
-        Orientation of each segment at rest, quaternions wxyz, (m, 4).
-    rotation, start, end
-        From `place_bodies`.
-    pieces
-        Bodies a segment, n / m.
-    out
-        Pose block to write.
-
+    Rotations and nodes are those of `place_bodies`; ``rest`` is the orientation of each segment at
+    rest, wxyz, (m, 4).
     """
     q = np.empty((len(turn), 4))
     for i in range(len(turn)):

@@ -9,7 +9,6 @@ Jacobian, L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and 
 own joint only, so that (1 - gamma h A) costs no more than some inertia added to each joint:
 
     (M + gamma h C + gamma^2 h^2 K) k = f - gamma h K w.
-
 """
 
 from __future__ import annotations
@@ -91,14 +90,13 @@ class State(NamedTuple):
     """
     Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body
     axes.
-
     """
 
     turn: Floats
     rate: Floats
 
 
-class Room(NamedTuple):
+class Scratch(NamedTuple):
     """
     Scratch of a step.
 
@@ -127,9 +125,9 @@ class Room(NamedTuple):
     second: Floats
 
 
-def room_of(n: int) -> Room:
+def scratch_of(n: int) -> Scratch:
     """Make room for a step of n bodies."""
-    return Room(np.zeros((n, 3, 3)), np.zeros((n, 4)), *np.zeros((6, n, 3)))
+    return Scratch(np.zeros((n, 3, 3)), np.zeros((n, 4)), *np.zeros((6, n, 3)))
 
 
 @kernel
@@ -153,7 +151,6 @@ def push_drag(
     Push the drag on every segment by the wind (n, 3) relative to the middle of its chord.
 
     Each part of the segment takes the force on its own area, at its own middle.
-
     """
     for i in range(len(bodies.mass)):
         p = bodies.carrier[i]
@@ -188,7 +185,6 @@ def damp_modes(laws: Laws, rate: Floats, implicit: float, out: Floats) -> None:
 
     Taken off their torques it would shake a bent tree to pieces: there a torque that bends the tree
     at rest also twists it, and has hardly any inertia to do so against.
-
     """
     for mode in range(len(laws.mode_damping)):
         momentum, shape = laws.mode_momentum[mode], laws.mode_turn[mode]
@@ -210,42 +206,32 @@ def respond(
     implicit: float,
     motion: Motion,
     articulation: Articulation,
-    room: Room,
+    scratch: Scratch,
     out: Floats,
 ) -> None:
     """
-    Accelerations of the joints (n, 3) in [rad/s^2], body axes.
+    Accelerations of the joints (n, 3) in [rad/s^2], body axes, in air (n, 3) in [m/s].
 
-    Parameters
-    ----------
-    bodies, laws
-        The tree and what acts on it.
-    turn, rate
-        Quaternions (n, 4) and angular velocities (n, 3) of the joints.
-    wind
-        Air at each segment in [m/s], (n, 3).
-    implicit
-        gamma h in [s]; 0 is the plain equation of motion.
-    motion, articulation, room
-        Filled on the way; `room.pull` is read.
-    out
-        Where the accelerations go.
-
+    Joints have quaternions (n, 4) and angular velocities (n, 3). ``implicit`` is gamma h in [s]; 0
+    is the plain equation of motion. What is filled on the way is scratch, but for its `pull`, which
+    is read.
     """
     late = laws.stiffness_damping + implicit
     for i in range(len(turn)):
-        matrix_of(turn[i], room.matrix[i])
+        matrix_of(turn[i], scratch.matrix[i])
         v = logarithm(turn[i])
         twist, g = twist_of(turn[i], read(bodies.axis, i))
-        write(room.twist_axis, i, g)
+        write(scratch.twist_axis, i, g)
         torque = held_torque(v, read(bodies.rest_torque, i))
         torque = plus(torque, spring(bodies, i, v, twist, g), -1.0)
-        v = plus(read(room.pull, i), read(rate, i), -late)
-        write(room.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
-    move(bodies, room.matrix, rate, motion)
+        v = plus(read(scratch.pull, i), read(rate, i), -late)
+        write(scratch.torque, i, plus(torque, spring(bodies, i, v, dot(g, v), g), 1.0))
+    move(bodies, scratch.matrix, rate, motion)
     load(bodies, motion, laws.gravity, laws.mass_damping, articulation)
     push_drag(bodies, motion, laws, wind, articulation)
-    accelerate(bodies, motion, room.torque, room.twist_axis, implicit * late, articulation, out)
+    accelerate(
+        bodies, motion, scratch.torque, scratch.twist_axis, implicit * late, articulation, out
+    )
     damp_modes(laws, rate, implicit * late, out)
 
 
@@ -258,28 +244,37 @@ def advance(
     dt: float,
     motion: Motion,
     articulation: Articulation,
-    room: Room,
+    scratch: Scratch,
 ) -> None:
     """Move the state on by dt in [s]."""
     turn, rate = state.turn, state.rate
-    first, second = room.first, room.second
+    first, second = scratch.first, scratch.second
     gh = GAMMA * dt
-    room.pull[:] = 0.0
-    respond(bodies, laws, turn, rate, wind, gh, motion, articulation, room, first)
+    scratch.pull[:] = 0.0
+    respond(bodies, laws, turn, rate, wind, gh, motion, articulation, scratch, first)
     beta = laws.stiffness_damping
     for i in range(len(turn)):
         k = read(first, i)
         moving = plus(read(rate, i), k, gh)
-        turn_on(turn[i], plus((0.0, 0.0, 0.0), moving, dt), room.stage_turn[i])
-        write(room.stage_rate, i, plus(read(rate, i), k, dt))
-        write(room.pull, i, plus((0.0, 0.0, 0.0), plus(moving, k, beta + gh), 2.0 * gh))
+        turn_on(turn[i], plus((0.0, 0.0, 0.0), moving, dt), scratch.stage_turn[i])
+        write(scratch.stage_rate, i, plus(read(rate, i), k, dt))
+        write(scratch.pull, i, plus((0.0, 0.0, 0.0), plus(moving, k, beta + gh), 2.0 * gh))
     respond(
-        bodies, laws, room.stage_turn, room.stage_rate, wind, gh, motion, articulation, room, second
+        bodies,
+        laws,
+        scratch.stage_turn,
+        scratch.stage_rate,
+        wind,
+        gh,
+        motion,
+        articulation,
+        scratch,
+        second,
     )
     for i in range(len(turn)):
         k, m = read(first, i), read(second, i)
         # Rates of rotation of both stages; that their axes differ is of third order.
-        both = plus(read(rate, i), read(room.stage_rate, i), 1.0)
+        both = plus(read(rate, i), read(scratch.stage_rate, i), 1.0)
         both = plus(plus(both, k, -gh), m, gh)
         turn_on(turn[i], plus((0.0, 0.0, 0.0), both, 0.5 * dt), turn[i])
         write(rate, i, plus(plus(read(rate, i), k, 0.5 * dt), m, 0.5 * dt))

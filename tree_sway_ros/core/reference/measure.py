@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 What every model of a tree is measured by: where its tips are, in winds that are even per frame.
-
 """
 
 from __future__ import annotations
@@ -23,17 +22,10 @@ def tips_of_poses(tree: Tree, poses: Floats, branches: Ints | slice = slice(None
 
 def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:
     """
-    Means of a wind record over frames, its samples joined by straight lines, (t, 3).
+    Means of a wind record [m/s], (m, 3), over frames of dt [s], its samples joined by lines, (t,
+    3).
 
-    Parameters
-    ----------
-    time
-        Of the samples in [s], rising, (m,).
-    velocity
-        The samples in [m/s], (m, 3).
-    dt
-        Length of a frame in [s]; the first begins with the first sample, the last ends by the last.
-
+    The first frame begins with the first sample, the last ends by the last.
     """
     t, v = np.asarray(time, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
     slope = np.diff(v, axis=0) / np.diff(t)[:, None]

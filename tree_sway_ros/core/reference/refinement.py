@@ -17,7 +17,6 @@ def refined(tree: Tree, pieces: int) -> Tree:
 
     Piece j of segment i becomes segment ``pieces * i + j``. A branch goes on sitting at the same
     point.
-
     """
     if pieces == 1:
         return tree

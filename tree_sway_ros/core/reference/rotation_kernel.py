@@ -3,18 +3,17 @@
 """
 Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is
 allocated.
-
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 
 Vector = tuple[float, float, float]
+Quaternion = Floats | tuple[float, float, float, float]
 
 
 @kernel
@@ -44,11 +43,7 @@ def dot(a: Vector, b: Vector) -> float:
 @kernel
 def cross(a: Vector, b: Vector) -> Vector:
     """Vector product."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @kernel
@@ -103,10 +98,9 @@ def inverse(m: Floats, out: Floats) -> None:
 
 
 @kernel
-def turn_on(q: Any, v: Vector, out: Any) -> None:
+def turn_on(q: Quaternion, v: Vector, out: Floats) -> None:
     """
     Turn a quaternion wxyz (4,) on by a rotation vector in its own axes in [rad], to unit length.
-
     """
     square = dot(v, v)
     half = 0.5 * math.sqrt(square)
@@ -121,7 +115,7 @@ def turn_on(q: Any, v: Vector, out: Any) -> None:
 
 
 @kernel
-def logarithm(q: Any) -> Vector:
+def logarithm(q: Quaternion) -> Vector:
     """Rotation vector in [rad] of a quaternion wxyz (4,); the short way round."""
     sine = math.sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     sign = -1.0 if q[0] < 0.0 else 1.0
@@ -130,7 +124,7 @@ def logarithm(q: Any) -> Vector:
 
 
 @kernel
-def matrix_of(q: Any, out: Floats) -> None:
+def matrix_of(q: Quaternion, out: Floats) -> None:
     """Rotation matrix (3, 3) of a quaternion wxyz (4,)."""
     w, x, y, z = q[0], q[1], q[2], q[3]
     out[0, 0], out[0, 1] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z)
@@ -141,12 +135,11 @@ def matrix_of(q: Any, out: Floats) -> None:
 
 
 @kernel
-def twist_of(q: Any, t: Vector) -> tuple[float, Vector]:
+def twist_of(q: Quaternion, t: Vector) -> tuple[float, Vector]:
     """
     Angle in [rad] that a quaternion wxyz (4,) turns about an axis, and its gradient in body axes.
 
     Swing and twist: the rotation is one about the axis and one across it (Dobrowolski 2015).
-
     """
     w, v = q[0], (q[1], q[2], q[3])
     about = dot(v, t)
@@ -164,7 +157,6 @@ def held_torque(v: Vector, torque: Vector) -> Vector:
 
     That is ``J^-T torque`` with J the right Jacobian of the exponential map (Chirikjian 2012,
     10.86).
-
     """
     square = dot(v, v)
     if square < 1e-4:

@@ -5,5 +5,4 @@ Several trees in one wind: where they stand, when a gust reaches them, how exact
 
 `make` is the door to every kind of simulator.
 Nothing here draws or publishes.
-
 """

@@ -6,13 +6,11 @@ Several trees in one wind, solved one after another and placed in one block.
 Every tree is turned and moved to where it stands once, before it is calibrated, so that no wind
 need be turned into its frame and no pose out of it. The gusts reach one tree after the other
 (`gust_travel`).
-
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,9 +22,8 @@ from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
-from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
 from tree_sway_ros.core.wind.limits import take_wind
@@ -84,19 +81,22 @@ class Forest:
         **changes: Any,
     ) -> None:
         """Calibrate every tree where it stands."""
+        for number, each in enumerate(trees):
+            if not isinstance(each, PlacedTree):
+                raise ParameterError(
+                    f"a {type(each).__name__}, where a PlacedTree is asked for",
+                    where=f"trees[{number}]",
+                    cure="give PlacedTree(name, tree, x, y) each",
+                )
         names = [tree.name for tree in trees]
         for name in names:
             if names.count(name) > 1:
                 raise ParameterError(f"two trees called '{name}'", where="forest", cure="name each")
-        self.settings = replace(settings or Settings(), **changes)
+        self.settings = settings_with(settings, changes)
         self.names = tuple(names)
         self.tree: Tree = joined([tree.placed() for tree in trees])
         self.simulators = tuple(
-            _simulator(
-                tree,
-                tree.settings_where_it_stands(self.settings),
-                tolerance,
-            )
+            _simulator(tree, tree.settings_where_it_stands(self.settings), tolerance)
             for tree in trees
         )
         self.gusts = GustHistory(
@@ -242,11 +242,6 @@ def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSi
     """Simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:
-        return make_simulator(
-            placed,
-            tree.species if tree.species is not None else species_named(placed.species),
-            settings,
-            tolerance=tolerance,
-        )
+        return make_simulator(placed, tree.species, settings, tolerance=tolerance)
     except TreeSwayError as error:
         raise error.inside(tree.name) from error

@@ -4,20 +4,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
 from tree_sway_ros.core.simulator.segments import SegmentsSimulator
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
 
 def make_simulator(
-    tree: Tree,
+    tree: Tree | GrownTree,
     species: Species | None = None,
     settings: Settings | None = None,
     *,
@@ -43,18 +43,18 @@ def make_simulator(
     Raises
     ------
     ParameterError
-        An unknown model, or a setting out of its range.
+        An unknown model, a setting out of its range, or an argument that is something else.
     TreeError
         A tree that buckles under its own weight.
 
     """
-    chosen = replace(settings or Settings(), **changes)
-    wood = species if species is not None else species_named(tree.species)
+    chosen = settings_with(settings, changes)
+    bare, wood = tree_and_species(tree, species)
     if chosen.model == "auto":
-        return AdaptiveSimulator(tree, wood, chosen, tolerance=tolerance, budget=budget)
+        return AdaptiveSimulator(bare, wood, chosen, tolerance=tolerance, budget=budget)
     if chosen.model == "segments":
-        return SegmentsSimulator(tree, wood, chosen)
-    return SwaySimulator(tree, wood, chosen)
+        return SegmentsSimulator(bare, wood, chosen)
+    return SwaySimulator(bare, wood, chosen)
 
 
 def simulators_of(simulator: Simulator) -> tuple[TreeSimulator, ...]:

@@ -13,6 +13,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.tree.grown_tree import tree_and_species
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
@@ -36,7 +37,7 @@ class PlacedTree:
     name
         Its name in the forest.
     tree
-        The tree, in a frame of its own.
+        The tree, in a frame of its own; one with its species, as `open_tree` gives, is taken apart.
     x, y, z
         Where its root node stands in [m].
     yaw
@@ -51,7 +52,7 @@ class PlacedTree:
     Raises
     ------
     ParameterError
-        If position or yaw is not finite.
+        If position or yaw is not finite, or the tree is something else.
 
     """
 
@@ -66,13 +67,16 @@ class PlacedTree:
     leaf_on: bool | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is nowhere."""
+        """Refuse what is no tree, and what is nowhere."""
+        if self.species is not None or not isinstance(self.tree, Tree):
+            tree, species = tree_and_species(self.tree, self.species)
+            object.__setattr__(self, "tree", tree)
+            object.__setattr__(self, "species", species)
         refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
 
     def placed(self) -> Tree:
         """
         Return the tree where it stands, in the frame of the forest, under its name in the forest.
-
         """
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -112,26 +116,10 @@ class PlacedTree:
 
 def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
     """
-    Join trees to one record, to be described or drawn as one.
+    Join trees in one frame to one record, to be described or drawn as one; a `TreeError` if none.
 
-    Parameters
-    ----------
-    trees
-        In one frame.
-    name
-        Of all together.
-
-    Returns
-    -------
-    Tree
-        All segments one tree after another, names as ``tree/branch``. It has several roots, so it
-        cannot be solved.
-
-    Raises
-    ------
-    TreeError
-        If there is none.
-
+    Segments are one tree after another, names ``tree/branch``. It has several roots, so it cannot
+    be solved.
     """
     if not trees:
         raise TreeError("no trees", where=name, cure="give at least one")

@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
-
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -20,23 +18,11 @@ from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.sway_record import SwayRecord
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
-from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.simulator.settings import MODELS, Settings, settings_with
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
-
-
-class GrownTree(Protocol):
-    """A tree with the species it is made of, as `open_tree` gives."""
-
-    @property
-    def tree(self) -> Tree:
-        """The segments."""
-
-    @property
-    def species(self) -> Species:
-        """The wood."""
 
 
 @runtime_checkable
@@ -104,22 +90,15 @@ def simulate(
 
 class Rig:
     """
-    A tree set up once, to be taken through one wind after the other, each from rest.
-
-    Parameters
-    ----------
-    tree, settings, **changes
-        As for `simulate`.
-
+    A tree set up once as for `simulate`, to be taken through one wind after the other from rest.
     """
 
     def __init__(
         self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
     ) -> None:
         """Calibrate the tree, once for the simulator and for what is measured on it."""
-        self.tree = tree if isinstance(tree, Tree) else tree.tree
-        self.species = species_named(tree.species) if isinstance(tree, Tree) else tree.species
-        self.settings = replace(settings or Settings(), **changes)
+        self.tree, self.species = tree_and_species(tree)
+        self.settings = settings_with(settings, changes)
         self.calibrated = CalibratedTree(self.tree, self.species, self.settings)
         self._simulator: TreeSimulator | None = None
         self.base = BaseMoment(self.calibrated)
@@ -134,13 +113,8 @@ class Rig:
         progress: Callable[[float], None] | None = None,
     ) -> SwayRecord:
         """
-        Let the tree sway in a wind from rest: the same numbers, whatever it went through before.
-
-        Parameters
-        ----------
-        wind, rate, seconds, branches, progress
-            As for `simulate`.
-
+        Let the tree sway in a wind from rest, as `simulate`: the same whatever it went through
+        before.
         """
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
         simulator = self._at_rest()
@@ -166,7 +140,7 @@ class Rig:
         )
 
     def _at_rest(self) -> TreeSimulator:
-        """Return the simulator at rest; one that chooses its model by what it met is made anew."""
+        """Return the simulator at rest; one that chooses its model by its winds is made anew."""
         if self.settings.model not in MODELS:
             return make_simulator(self.tree, self.species, self.settings)
         if self._simulator is None:
@@ -182,12 +156,6 @@ class BaseMoment:
     Bending moment at the base of the stem from the curvature of its shapes there.
 
     What a strain gauge tells: the moment of wind and inertia together, as the wood carries it.
-
-    Parameters
-    ----------
-    calibrated
-        Of the simulator that is asked.
-
     """
 
     def __init__(self, calibrated: CalibratedTree) -> None:

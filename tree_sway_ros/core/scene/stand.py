@@ -6,7 +6,6 @@ A stand: thousands of trees of a few kinds in one wind.
 Trees of one kind share its model, tables and rest geometry: a tree is a state, a pose, a scale and
 the delay with which gusts reach it. All are solved in one call, on the model `wind_basis`, and
 placed only where asked for. A tree may stand still, or be solved on a model of its own.
-
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined, refuse_nowhere
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.simulator.simulator import (
     LOAD_HELD,
     OK,
@@ -109,15 +108,7 @@ class StandTree:
 @dataclass(frozen=True)
 class StandKind:
     """
-    What trees of one kind share.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    species
-        Its wood, damping and drag; looked up by the tree's own species if None.
-
+    What trees of one kind share: the tree, and its species, looked up by the tree's own if None.
     """
 
     tree: Tree
@@ -177,7 +168,7 @@ class Stand(KeepsState):
         _refuse(trees, kinds)
         self.trees = tuple(trees)
         self.names = tuple(tree.name for tree in trees)
-        self.settings = replace(settings or Settings(), **changes)
+        self.settings = settings_with(settings, changes)
         self.counts = Counts()
         self._used = tuple(dict.fromkeys(tree.kind for tree in trees))
         self._kinds = {name: kinds[name] for name in self._used}

@@ -5,5 +5,4 @@ A tree that sways: settings, calibration, ``step`` and ``place``.
 
 One class per kind of simulator, all with the same protocol.
 No choice of model by itself: that is the room ``fidelity``.
-
 """

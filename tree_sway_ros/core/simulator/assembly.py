@@ -4,7 +4,6 @@
 From a tree to the oscillators that move it, for every model of the ladder.
 
 What only one model needs is imported where that model is made.
-
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.branch.model import BranchModel, branch_models, enriched_branches
+from tree_sway_ros.core.branch.model import BranchModel, TreeBeams, enriched_branches
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
 from tree_sway_ros.core.leaves.foliage import clad_wood
@@ -61,6 +60,12 @@ class Oscillators(Protocol):
 
     carries: bool
     is_tabled: bool
+    n_outside: int
+    """Steps outside of its table, if it has one."""
+    table_error: float
+    """Share by which the table's static deflections are wrong [-]."""
+    shapes: Floats
+    """Of its modes, (N, m); empty where branches swing on their own."""
     branches: Records
     work: Records
 
@@ -104,12 +109,21 @@ USUAL_MODES = 12
 _FEW_MODES = 6
 """To more modes than this comes what they lack of the static sway along x, y and z."""
 
+_FURTHER = 12_000
+"""
+Coordinates of all further modes together that a tree which wind drives in many modes may have: a
+frame takes up to a tenth longer by them.
+
+"""
+
 
 class Frozen:
     """Model 0: a tree that stands still, for one too far away to be seen moving."""
 
     carries = True
     is_tabled = False
+    n_outside, table_error = 0, 0.0
+    shapes = np.zeros((0, 0))
     loads: Records | None = None
 
     def __init__(self, branches: Records, n_coordinates: int) -> None:
@@ -156,25 +170,11 @@ class Frozen:
 @dataclass(frozen=True)
 class Bank:
     """
-    A tree ready to be stepped and placed.
+    A tree ready to be stepped and placed: its oscillators, and records of branches, segments and
+    heads.
 
-    Parameters
-    ----------
-    oscillators
-        What moves.
-    branches, segments, heads
-        Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
-    frequencies
-        Natural frequencies of the model without air in [Hz], rising.
-    n_solved
-        Branches that are solved and do not copy.
-    mass
-        Of wood and leaves in [kg].
-    frozen
-        What moves with its parent as one body, and how many branches that is.
-    plain
-        Whether nothing is compiled.
-
+    Frequencies are without air in [Hz], rising; ``mass`` is of wood and leaves in [kg]; ``frozen``
+    is what moves with its parent as one body; ``plain`` tells that nothing is compiled.
     """
 
     oscillators: Oscillators
@@ -213,7 +213,6 @@ class Bank:
         Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
 
         Nothing is checked: arrays must be of float64, in one piece and of these shapes.
-
         """
         if self.plain:
             self._plain_placing.place(rotations, origin, out)
@@ -240,17 +239,7 @@ class Layer:
 
 
 class CalibratedTree:
-    """
-    A tree calibrated once, for all models.
-
-    Parameters
-    ----------
-    tree, species, settings
-        As for `SwaySimulator`; the settings' model does not matter.
-    plain
-        Whether its models run in numpy: always where nothing can be compiled.
-
-    """
+    """A tree calibrated once, for all models; its models run in numpy if ``plain``."""
 
     def __init__(
         self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
@@ -263,6 +252,7 @@ class CalibratedTree:
         self.settings = in_season(tree, species, settings)
         self._slowest: Modes | None = None
         self._tables: dict[int, WindBasisTable] = {}
+        self._known: list[tuple[list[BranchModel], Records]] = []
 
     @property
     def damping_ratio(self) -> float:
@@ -304,15 +294,9 @@ class CalibratedTree:
     @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
-        Build the oscillators of a model.
+        Build the oscillators of a model, ``modes`` and ``wind_basis`` with so many modes.
 
-        Parameters
-        ----------
-        model
-            One of `MODELS`.
-        n_modes
-            How many modes ``modes`` and ``wind_basis`` step; `USUAL_MODES`, or all if there are
-            fewer, if None.
+        If None, these are `USUAL_MODES`, or all if there are fewer.
 
         Raises
         ------
@@ -394,38 +378,43 @@ class CalibratedTree:
             carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
         )
 
-    @one_thread()
-    def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
-        tree, species, settings = self.tree, self.species, self.settings
-        speed = settings.profile.over_anemometer(0.5 * (tree.start[:, 2] + tree.end[:, 2]))
-        models = branch_models(
-            tree,
+    @cached_property
+    def _speed(self) -> Floats:
+        """Wind at each segment's middle over that at the anemometer, (n,)."""
+        middle = 0.5 * (self.tree.start[:, 2] + self.tree.end[:, 2])
+        return self.settings.profile.over_anemometer(middle)
+
+    @cached_property
+    def _beams(self) -> TreeBeams:
+        """What the layers share."""
+        species, settings = self.species, self.settings
+        return TreeBeams(
+            self.tree,
             species.density,
-            carries=carries,
             shear_ratio=species.shear_ratio,
-            enriched=enriched,
-            speed_profile=speed,
+            speed_profile=self._speed,
             leaf_mass=settings.leaf_mass,
             leaf_area=self.leaf_load_area,
             root_compliance=species.modulus / species.root_stiffness,
         )
+
+    @one_thread()
+    def _reduced(self, *, carries: bool, enriched: frozenset[int]) -> Layer:
+        tree, species = self.tree, self.species
+        models = self._beams.models(carries=carries, enriched=enriched)
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(
-            tree, models, species.modulus, shear, settings.gravity, carries=carries
+            tree, models, species.modulus, shear, self.settings.gravity, carries=carries
         )
         layout = branch_layout() if enriched else branch_layout(2)
-        return Layer(
-            models,
-            reduction,
-            branch_records(tree, models, reduction, speed, layout),
-            segment_records(tree, models),
-            float(sum(model.beam.integral(model.mass) for model in models)),
-        )
+        records = branch_records(tree, models, reduction, self._speed, layout, self._known)
+        self._known.append((models, records))
+        mass = float(sum(model.beam.integral(model.mass) for model in models))
+        return Layer(models, reduction, records, segment_records(tree, models), mass)
 
     def _modes(self, model: str, count: int | None) -> Modes:
         """
         All modes, or those of the slowest that the wind drives most and the static sway they lack.
-
         """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
@@ -447,8 +436,12 @@ class CalibratedTree:
         n_static = loads.shape[1]
         if not _FEW_MODES < n_modes < n - n_static:
             return most_driven(modes, even_wind_moments(branches, n), moved, n_modes)
-        n_driven = n_modes - n_static if model == "wind_basis" else n_modes
-        return with_static(most_driven(modes, loads, moved, n_driven), reduction, loads)
+        if model == "wind_basis":
+            chosen = most_driven(modes, loads, moved, n_modes - n_static)
+        else:
+            further = min(n_modes, _FURTHER // n)
+            chosen = most_driven(modes, loads, moved, n_modes, further)
+        return with_static(chosen, reduction, loads)
 
     def _modal_bank(self) -> type[ModalBank]:
         if self.plain:

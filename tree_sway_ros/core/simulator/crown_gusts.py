@@ -5,7 +5,6 @@ Gusts that reach the limbs of a tree one after another, handed to the model in u
 
 `segments` and the models that step branches give each limb its own wind. `wind_basis` knows even
 winds alone and takes the mean of the limbs' winds, weighted by their loads.
-
 """
 
 from __future__ import annotations
@@ -35,17 +34,8 @@ def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
 
 class CrownGusts:
     """
-    The wind of a crown, and the loads that it goes to.
-
-    Parameters
-    ----------
-    delays
-        Of the branches that are stepped.
-    coherence
-        As of `CrownWind`.
-    loads
-        Records of `load_fields`, written; None for a model that knows even winds alone.
-
+    The wind of a crown, and the loads that it goes to; None for a model that knows even winds
+    alone.
     """
 
     def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
@@ -63,21 +53,9 @@ class CrownGusts:
 
     def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
-        Hand the wind of a step to the limbs.
+        Hand the mean wind [m/s] of a step of dt [s] to the limbs; the wind to step with.
 
-        Parameters
-        ----------
-        x, y, z
-            Mean of the wind over the step at the anemometer in [m/s].
-        dt
-            Length of the step in [s].
-
-        Returns
-        -------
-        tuple of float
-            The wind to step with in [m/s]: what was given, or the mean of the limbs' where the
-            model knows even winds alone.
-
+        That is what was given, or the mean of the limbs' where the model knows even winds alone.
         """
         apart = self.wind.push(x, y, z, dt)
         if self._hand_out is not None:

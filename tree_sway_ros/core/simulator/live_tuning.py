@@ -6,7 +6,6 @@ Stiffness, damping and weight of a tree changed while it sways, without building
 A change is gone over in `GLIDE`, so that no pose jumps. Modes keep their shapes: a mode of elastic
 stiffness k_e and of weight k_g per unit of gravity has ``w^2 = s k_e + g k_g``, Rayleigh's
 quotient, which errs by the square of what the shapes would change by.
-
 """
 
 from __future__ import annotations
@@ -63,11 +62,7 @@ class Tuning:
         """
         Return this with some values changed.
 
-        Raises
-        ------
-        ParameterError
-            A name that may not change, or a value out of its range.
-
+        A `ParameterError` tells of a name that may not change, or a value out of its range.
         """
         for name, value in changes.items():
             if name not in _RANGES:
@@ -106,17 +101,7 @@ class LiveTuning:
     """
     Takes the oscillators of a model from one tuning to the next.
 
-    Parameters
-    ----------
-    oscillators
-        Of one model, written.
-    reduction
-        Matrices they were made of.
-    settings, damping_ratio
-        They were made with.
-    is_tabled
-        Whether their load comes from a table, which holds for one stiffness.
-
+    ``is_tabled`` tells that their load comes from a table, which holds for one stiffness.
     """
 
     def __init__(
@@ -147,15 +132,11 @@ class LiveTuning:
 
     def check(self, goal: Tuning) -> None:
         """
-        Refuse a tuning that this tree cannot take.
+        Refuse a tuning that this tree cannot take, with a `ParameterError`.
 
-        Raises
-        ------
-        ParameterError
-            A tree that would buckle, weight on one that was made without, a value that the rule of
-            stiffness or the table in use does not know, or more stiffness than the integrator may
-            stand.
-
+        That is a tree that would buckle, weight on one that was made without, a value that the rule
+        of stiffness or the table in use does not know, or more stiffness than the integrator may
+        stand.
         """
         rule = self._settings.stiffness
         unused = _OF_BEAMS if rule == "volume_rule" else _OF_VOLUMES

@@ -4,16 +4,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypeVar
+
+from tree_sway_ros.core.wind.gust_travel import GustHistory
+
+_One = TypeVar("_One", bound="OneTree")
 
 
 class OneTree:
     """A simulator of one tree; its face is `TreeSimulator`."""
 
-    gusts: Any = None
+    gusts: GustHistory | None = None
     """No gusts travel within a tree."""
 
     @property
-    def simulators(self) -> tuple[Any, ...]:
+    def simulators(self: _One) -> tuple[_One, ...]:
         """The simulator of each tree: this one."""
         return (self,)

@@ -3,7 +3,6 @@
 """
 A calibrated tree some of whose branches move with their parents: the models between one model and
 the next.
-
 """
 
 from __future__ import annotations
@@ -21,16 +20,10 @@ from tree_sway_ros.core.wind.crown_wind import CrownDelays
 
 class PartlyFrozenTree(CalibratedTree):
     """
-    What is left to solve of a tree when branches are frozen.
+    What is left to solve of a calibrated tree, whose layers are shared, when branches are frozen,
+    (b,).
 
-    Parameters
-    ----------
-    whole
-        The tree, calibrated; its layers are shared.
-    frozen
-        Branches that move with their parent, (b,); with each, all that it carries, and never the
-        stem.
-
+    With each goes all that it carries; the stem never does.
     """
 
     def __init__(self, whole: CalibratedTree, frozen: Bools) -> None:

@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Records
+from tree_sway_ros.core.simulator.assembly import Bank
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import Counts
@@ -82,7 +83,7 @@ class TreeSimulator(Simulator, Protocol):
     species: Species
 
     @property
-    def bank(self) -> Any:
+    def bank(self) -> Bank:
         """Records of the tree and the oscillators, as `Bank`."""
 
     @property

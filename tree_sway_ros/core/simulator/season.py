@@ -16,40 +16,16 @@ LEAVES: dict[str, bool | None] = {"auto": None, "on": True, "off": False}
 
 
 def is_in_leaf(species: Species, told: bool | None = None) -> bool:
-    """
-    Whether a tree bears leaves.
-
-    Parameters
-    ----------
-    species
-        Its species.
-    told
-        Whether it does; None leaves it to the species, of which evergreens do.
-
-    """
+    """Whether a tree bears leaves, as is told, or None: of the species, evergreens do."""
     return species.leaves.is_evergreen if told is None else told
 
 
 def in_season(tree: Tree, species: Species, settings: Settings) -> Settings:
     """
-    Return the settings with the leaves that the tree bears.
+    Return the settings with the leaves that the tree of a species bears.
 
     Leaves add mass and area to their branches, damp them as the species in leaf, and let the crown
-    streamline.
-
-    Parameters
-    ----------
-    tree, species
-        The tree, and the species whose leaves it bears.
-    settings
-        Whether it is in leaf, or None; leaves that are given stay as they are.
-
-    Returns
-    -------
-    Settings
-        ``in_leaf`` is true or false, and leaf mass and area are there if it is true. What this
-        function has returned it returns again as it is.
-
+    streamline. Leaves that are given stay; what this has returned it returns again as it is.
     """
     are_given = settings.leaf_mass is not None or settings.leaf_area is not None
     in_leaf = are_given or is_in_leaf(species, settings.in_leaf)

@@ -4,9 +4,8 @@
 Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
 reduced tree.
 
-It is there to compare with, and for a scene that has the time: its steps are many times as dear
+It is there to compare with, and for a scene that has the time: its steps cost many times as much
 (`tree-sway chart cost`).
-
 """
 
 from __future__ import annotations
@@ -48,16 +47,7 @@ class SegmentsSimulator(OneTree, KeepsState):
     """
     A tree of rigid segments on springs that sways; otherwise as `SwaySimulator`.
 
-    Parameters
-    ----------
-    tree, species, settings
-        As for `SwaySimulator`; what concerns the reduction does not matter.
-
-    Raises
-    ------
-    ParameterError
-        The volume rule, which this model does not know.
-
+    A `ParameterError` tells of the volume rule, which this model does not know.
     """
 
     @property
@@ -106,10 +96,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         self._highest = int(np.argmax(tree.end[tree.branch_first[1:] - 1, 2]))
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """
-        Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut.
-
-        """
+        """Advance one step, as `SwaySimulator.step`; what is longer than `LONGEST_STEP` is cut."""
         refuse_time_step(dt)
         status = OK
         if not take_wind(self.wind, wind_mean, self.settings.max_wind):

@@ -5,14 +5,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.oscillators.rule_names import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
-from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.errors import ParameterError, nearest
 
 MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
 """Models of the ladder of models, the least first."""
@@ -134,6 +136,26 @@ class Settings:
                 raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
         if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
             raise ParameterError(f"gravity {self.gravity} m/s^2", cure="give 0 or more")
+
+
+def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
+    """
+    Return settings, the defaults if None, with some fields changed.
+
+    A `ParameterError` tells what are none, a field that there is not, or a value out of its range.
+    """
+    if not isinstance(settings, Settings | None):
+        raise ParameterError(
+            f"a {type(settings).__name__}, where Settings are asked for",
+            where="settings",
+            cure="give Settings(...), or its fields as keywords",
+        )
+    known = Settings.__dataclass_fields__
+    for name in changes:
+        if name not in known:
+            cure = nearest(name, known) or f"there are: {', '.join(known)}"
+            raise ParameterError(f"unknown setting '{name}'", cure=cure)
+    return replace(settings or Settings(), **changes)
 
 
 def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,9 +20,10 @@ from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
 from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
-from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.limits import take_wind
 from tree_sway_ros.errors import ParameterError
@@ -38,19 +39,11 @@ OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
 @dataclass
 class Counts:
     """
-    What was refused or held, since the start.
+    What became of the steps since the start.
 
-    Parameters
-    ----------
-    steps
-        Steps taken.
-    refused
-        Steps whose wind was not finite or faster than the limit; the wind before was kept.
-    held
-        Loads that were held at the limit of the model.
-    restarted
-        Steps whose motion was not finite, so that the tree went on from rest.
-
+    ``refused``: the wind was not finite or faster than the limit, and the one before was kept;
+    ``held``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
+    tree went on from rest.
     """
 
     steps: int = 0
@@ -66,9 +59,9 @@ class SwaySimulator(OneTree, KeepsState):
     Parameters
     ----------
     tree
-        The tree.
+        The tree, alone or with its species.
     species
-        Its wood, damping and drag; looked up by the tree's own species if None.
+        Its wood, damping and drag; the tree's own if None.
     settings
         How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
@@ -96,7 +89,7 @@ class SwaySimulator(OneTree, KeepsState):
 
     def __init__(
         self,
-        tree: Tree,
+        tree: Tree | GrownTree,
         species: Species | None = None,
         settings: Settings | None = None,
         *,
@@ -104,9 +97,8 @@ class SwaySimulator(OneTree, KeepsState):
         **changes: Any,
     ) -> None:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
-        self.tree = tree
-        self.species = species if species is not None else species_named(tree.species)
-        self.settings = in_season(tree, self.species, replace(settings or Settings(), **changes))
+        self.tree, self.species = tree, species = tree_and_species(tree, species)
+        self.settings = in_season(tree, self.species, settings_with(settings, changes))
         self.counts = Counts()
         if calibrated is None:
             calibrated = CalibratedTree(tree, self.species, self.settings)
@@ -121,9 +113,7 @@ class SwaySimulator(OneTree, KeepsState):
             from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
 
             self._gusts = CrownGusts(
-                calibrated.crown_delays,
-                self.settings.crown_coherence,
-                self.bank.oscillators.loads,
+                calibrated.crown_delays, self.settings.crown_coherence, self.bank.oscillators.loads
             )
         self._calibrated = calibrated
         self._tuning: LiveTuning | None = None
@@ -169,7 +159,6 @@ class SwaySimulator(OneTree, KeepsState):
     def frequencies(self, count: int = 10) -> Floats:
         """
         Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
-
         """
         return self.bank.frequencies[:count]
 
@@ -308,7 +297,6 @@ class SwaySimulator(OneTree, KeepsState):
         """
         Moment of the last step's wind about the root node, of all branches where they stand at
         rest, in [N m], (3,).
-
         """
         couple, force = self.bank.branches["couple"], self.bank.oscillators.forces()
         moment: Floats = np.einsum("bij,bj->i", couple, force)
@@ -395,14 +383,6 @@ _pressure = fused(pressure)
 
 
 def refuse_time_step(dt: float) -> None:
-    """
-    Refuse a time step [s] that is none.
-
-    Raises
-    ------
-    ParameterError
-        If it is not above 0 or not finite.
-
-    """
+    """Refuse a time step [s] that is not finite and above 0."""
     if not (math.isfinite(dt) and dt > 0.0):
         raise ParameterError(f"time step of {dt} s", where="step", cure="give a finite one above 0")

@@ -3,5 +3,4 @@
 """
 What a tree is at one moment, as few numbers: a basis of the key rotations, and states to keep and
 set.
-
 """

@@ -5,13 +5,12 @@ Finding the basis of a tree's shapes: singular values of what the tips do in see
 
 Three winds, calm to storm, turn once about the tree each; each run counts alike, whatever its
 strength. What the basis leaves out is told by runs in other winds.
-
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +19,7 @@ from tree_sway_ros.core.arrays import Floats, Records
 from tree_sway_ros.core.motion.response import tip_motion
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.state.state_basis import BasisError, StateBasis
+from tree_sway_ros.core.state.tree_state import TreeState
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
@@ -58,10 +58,10 @@ class Swaying(Protocol):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations, (n, 7)."""
 
-    def state(self) -> Any:
+    def state(self) -> TreeState:
         """All that is carried from step to step."""
 
-    def set_state(self, state: Any) -> None:
+    def set_state(self, state: TreeState) -> None:
         """Go on from a state."""
 
     def reset(self) -> None:
@@ -151,7 +151,6 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
     """
     Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
     (m, N).
-
     """
     shapes, projections = [], []
     for rotations in runs:
@@ -170,20 +169,7 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:
     """
-    Moments on the coordinates under forces on the tips: the transpose of `tip_motion`.
-
-    Parameters
-    ----------
-    joints
-        Records of `BRANCH`, (b,).
-    forces
-        (b, 3, m).
-
-    Returns
-    -------
-    Floats
-        (N, m).
-
+    Moments on the coordinates (N, m) under forces on the tips (b, 3, m): `tip_motion` transposed.
     """
     moments = np.zeros((int(joints["n_coordinates"].sum()), forces.shape[-1]))
     wrench = np.concatenate([forces, np.cross(joints["tip"][:, :, None], forces, axis=1)], axis=1)

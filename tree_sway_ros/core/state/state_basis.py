@@ -8,7 +8,6 @@ shapes that it takes in any wind: ``x = B c``, ``c = P x``. A coordinate is meas
 to the tips of all branches, so that what is left out is what is seen least (proper orthogonal
 decomposition; Holmes et al. 2012, *Turbulence, Coherent Structures, Dynamical Systems and
 Symmetry*, 3.1).
-
 """
 
 from __future__ import annotations
@@ -29,15 +28,8 @@ class BasisError:
     """
     How far segments are from where the model has them, over a run that the basis was not made from.
 
-    Parameters
-    ----------
-    rms, greatest
-        What the basis leaves out, of all segments and times, in [m].
-    quantised_rms, quantised_greatest
-        The same with coordinates as int16.
-    motion_rms, motion_greatest
-        Motion of the segments from rest in the same run in [m].
-
+    Of all segments and times in [m]: what the basis leaves out, the same with coordinates as int16,
+    and the motion of the segments from rest.
     """
 
     rms: float
@@ -53,17 +45,9 @@ class StateBasis:
     """
     Coordinates that hold the shape of one tree on one model.
 
-    Parameters
-    ----------
-    matrix
-        Key rotations per unit of each coordinate in [rad], (N, m).
-    projection
-        Coordinates per unit of each key rotation in [1/rad], (m, N).
-    scale
-        Value of each coordinate at `FULL_SCALE`, (m,).
-    error
-        What is left out, found on a run of its own.
-
+    The matrix is key rotations per unit of each in [rad], (N, m), the projection its inverse, (m,
+    N), the scale the value of each at `FULL_SCALE`, (m,), the error what is left out, on a run of
+    its own.
     """
 
     matrix: Floats

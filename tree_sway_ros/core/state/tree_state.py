@@ -5,7 +5,6 @@ All that a simulator carries from one step to the next, to be kept and set again
 
 A simulator that is set to a state goes on bit for bit as the one that gave it. A state tells which
 tree, settings and model it belongs to, by a digest of all of them, and is refused by any other.
-
 """
 
 from __future__ import annotations
@@ -31,21 +30,9 @@ _LARGEST_HEAD = 4096
 @dataclass(frozen=True)
 class TreeState:
     """
-    A tree at one moment.
+    A tree at one moment: what its model carries from step to step, the last wind [m/s] first.
 
-    Parameters
-    ----------
-    tree
-        Name of the tree.
-    digest
-        Of tree, species and settings (`digest_of`).
-    model
-        Model that the values belong to.
-    values
-        What the model carries from step to step, the wind of the last step [m/s] first.
-    version
-        `VERSION` of the program that gave it.
-
+    The digest is that of tree, species and settings, the version that of the program (`VERSION`).
     """
 
     tree: str
@@ -61,15 +48,7 @@ class TreeState:
 
     @staticmethod
     def from_bytes(data: bytes) -> TreeState:
-        """
-        Read what `to_bytes` wrote.
-
-        Raises
-        ------
-        StateError
-            Bytes that hold no state, or one of another version.
-
-        """
+        """Read what `to_bytes` wrote; a `StateError` for no state, or one of another version."""
         head, _, values = data.partition(b"\n")
         try:
             told = json.loads(head[:_LARGEST_HEAD])
@@ -111,7 +90,6 @@ def digest_of(*told: Any) -> str:
 class KeepsState:
     """
     A simulator whose state can be kept, set and placed; bases of this class give what it asks for.
-
     """
 
     tree: Tree
@@ -151,12 +129,8 @@ class KeepsState:
         """
         Go on from a state.
 
-        Raises
-        ------
-        StateError
-            A state of another tree, model or version, or one that is not finite; what was before
-            stays.
-
+        A `StateError` tells of another tree, model or version, or what is not finite; what was
+        before stays.
         """
         refuse_version(state.version)
         arrays = self.memory()
@@ -181,15 +155,7 @@ class KeepsState:
             first += array.size
 
     def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
-        """
-        Poses of a state, (n, 7), as `place` gives them; the simulator stays as it is.
-
-        Raises
-        ------
-        StateError
-            As `set_state`.
-
-        """
+        """Poses of a state, (n, 7), as `place` gives them; the simulator stays as it is."""
         own = self.state()
         self.set_state(state)
         rotations = self.rotations().copy()

@@ -5,5 +5,4 @@ The tree as arrays of segments in depth-first order, and what makes one.
 
 Species live here too: wood, damping and drag by name.
 Nothing here knows of wind or motion.
-
 """

@@ -6,7 +6,6 @@ From segments in any order to a `Tree`: check, infer what is missing, group, ord
 The input is the paper's: start point, end point and thickness of each segment (Kanda & Ohya, 3.1).
 Parents may be given; if not, a segment sits on the one whose end node is where it starts. Branches
 may be given; if not, the thickest child that goes on from a segment's end continues its branch.
-
 """
 
 from __future__ import annotations
@@ -160,7 +159,6 @@ def _integers(values: ArrayLike, n: int, what: str) -> Ints:
 def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
     """
     Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size.
-
     """
     from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
 
@@ -208,7 +206,6 @@ def _branches_by_continuation(
 ) -> Ints:
     """
     Number branches: at each node the thickest child goes on with the branch, straightest on a tie.
-
     """
     n = len(parents)
     direction = ends - starts

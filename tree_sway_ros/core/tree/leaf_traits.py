@@ -9,7 +9,6 @@ two to three times that per square metre. Leaf area follows the conducting secti
 model: Shinozaki et al. 1964); its ratio varies by three orders of magnitude over the world's
 species (Mencuccini et al. 2019), so ratios are estimates within a factor of two, and so are
 frequencies. Areas are of one side.
-
 """
 
 from __future__ import annotations

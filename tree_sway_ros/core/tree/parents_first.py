@@ -9,19 +9,9 @@ from collections.abc import Iterable
 
 def parents_first(parents: Iterable[int]) -> list[int]:
     """
-    Order a tree from its roots, generation by generation.
+    Order the numbers of a tree from its roots (negative parents) on, generation by generation.
 
-    Parameters
-    ----------
-    parents
-        Parent of each number 0, 1 ...; negative at a root.
-
-    Returns
-    -------
-    list of int
-        Numbers, each after its parent. Those that follow from no root, as they go in a circle, are
-        left out.
-
+    Those that follow from no root, as they go in a circle, are left out.
     """
     children: dict[int, list[int]] = {}
     for number, parent in enumerate(parents):

@@ -9,7 +9,6 @@ stems has 3 to 20 GPa and 400 to 1300 kg/m^3, and stems are 10 to 150 times as h
 lies ten times and more beyond that is refused. The slowest sway of a tree of its size is that of
 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in [cm], H in [m] (Moore & Maguire
 2004).
-
 """
 
 from __future__ import annotations
@@ -38,18 +37,7 @@ def refuse_nonsense(tree: Tree, species: Species) -> None:
     """
     Refuse a tree whose numbers are in another unit than SI.
 
-    Parameters
-    ----------
-    tree, species
-        The tree and its wood.
-
-    Raises
-    ------
-    ParameterError
-        Modulus or density of the wood.
-    TreeError
-        Height or diameter of the tree.
-
+    A `ParameterError` tells of modulus or density of the wood, a `TreeError` of height or diameter.
     """
     _refuse_wood("modulus", species.modulus, "Pa", _MODULUS_LIMIT, {1e9: "GPa", 1e6: "MPa"})
     _refuse_wood("density", species.density, "kg/m^3", _DENSITY_LIMIT, {1e3: "g/cm^3"})
@@ -73,29 +61,14 @@ def refuse_nonsense(tree: Tree, species: Species) -> None:
 
 def doubts(tree: Tree, species: Species) -> tuple[str, ...]:
     """
-    Tell what is odd about a tree, one sentence each; nothing if it is like other trees.
-
-    Parameters
-    ----------
-    tree, species
-        The tree and its wood.
-
+    Tell what is odd about a tree and its wood, one sentence each; nothing if it is like other
+    trees.
     """
     return tuple(_doubts(tree, species))
 
 
 def doubt_of_sway(tree: Tree, frequency: float) -> str:
-    """
-    Tell whether a tree sways far slower or faster than others of its size; empty if it does not.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    frequency
-        Its slowest sway in [Hz].
-
-    """
+    """Tell whether a tree sways, in [Hz], far off others of its size; empty if it does not."""
     height, diameter, _ = _size(tree)
     usual = 0.0766 + 3.1219 * 100.0 * diameter / height**2
     if usual / _SWAY_FACTOR <= frequency <= usual * _SWAY_FACTOR:

@@ -4,7 +4,6 @@
 The frame of a segment: x along it, turned from the axes of the world as little as possible.
 
 Every pose, file and picture that speaks of the frame of a segment means this one.
-
 """
 
 from __future__ import annotations
@@ -17,18 +16,9 @@ from tree_sway_ros.core.arrays import Floats
 
 def quaternions_from_x(direction: Floats) -> Floats:
     """
-    Orientations whose x axis runs along given directions, turned as little as possible.
+    Orientations w x y z (n, 4), turned as little as possible, whose x axis has directions (n, 3).
 
-    Parameters
-    ----------
-    direction
-        Unit vectors, (n, 3).
-
-    Returns
-    -------
-    Floats
-        Quaternions w x y z, (n, 4); half a turn about z where the direction is -x.
-
+    It is half a turn about z where the direction is -x.
     """
     x, y, z = direction.T
     across = y * y + z * z
@@ -43,21 +33,8 @@ def quaternions_from_x(direction: Floats) -> Floats:
 
 def ends_of_poses(poses: ArrayLike, length: ArrayLike) -> tuple[Floats, Floats]:
     """
-    Nodes of segments from a pose block.
-
-    Parameters
-    ----------
-    poses
-        x y z and the quaternion's x y z w of each segment, (n, 7): its root-side node, and the
-        rotation that turns x along it.
-    length
-        Length of each segment in [m], (n,).
-
-    Returns
-    -------
-    start, end
-        Root-side and tip-side nodes in [m], (n, 3) each.
-
+    Root-side and tip-side nodes [m], (n, 3) each, of segments of a length [m] from a pose block (n,
+    7).
     """
     block = np.asarray(poses, dtype=np.float64)
     start = block[:, :3]

@@ -6,7 +6,6 @@ Twigs that copy: of many alike, the necessary few are solved and the others reus
 The paper's rule (Kanda & Ohya, 3.3) made definite: a branch of one segment that carries nothing
 copies another such on the same parent whose length, thickness and direction agree with its own to a
 tolerance.
-
 """
 
 from __future__ import annotations
@@ -19,21 +18,11 @@ from tree_sway_ros.core.tree.tree import Tree
 
 def twig_sources(tree: Tree, tolerance: float) -> Ints:
     """
-    Find for each branch the one whose motion it copies.
+    Find for each branch the one, at or before it, whose motion it copies; its own if solved, (b,).
 
-    Parameters
-    ----------
-    tree
-        The tree.
-    tolerance
-        Relative difference in length and diameter, and angle between directions in [rad], up to
-        which two twigs are alike; 0 copies only equals, a negative one nothing.
-
-    Returns
-    -------
-    Ints
-        Index of the branch to copy, at or before each branch; its own where it is solved, (b,).
-
+    The tolerance is the relative difference in length and diameter, and the angle between
+    directions in [rad], up to which two twigs are alike; 0 copies only equals, a negative one
+    nothing.
     """
     source = np.arange(tree.n_branches, dtype=np.int64)
     if tolerance < 0.0:

@@ -11,7 +11,6 @@ and the field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 a
 broadleaf of no known species take the mean of the three measured broadleaves, Goldcrest takes
 spruce's. Entries marked as estimates have no measurement behind them. Where leaves come from stands
 in `leaf_traits`.
-
 """
 
 from __future__ import annotations
@@ -19,6 +18,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 from tree_sway_ros.core.tree.leaf_traits import BROAD_LEAVES, NEEDLES, LeafTraits
 from tree_sway_ros.errors import SpeciesError, nearest
@@ -96,129 +96,47 @@ def _needles(*green: float) -> LeafTraits:
     return replace(NEEDLES, green=green)  # type: ignore[arg-type]
 
 
-_GOLDCREST = "Cupressus macrocarpa 'Goldcrest'"
-_with_broadleaf_drag = partial(Species, drag_coefficient=2.345, drag_exponent=0.877)
-_conifer = partial(Species, habit="conifer")
-_with_spruce_drag = partial(_conifer, drag_coefficient=2.35, drag_exponent=0.51)
+def _species(
+    key: str, title: str, modulus: float, density: float, drag: tuple[float, float], **told: Any
+) -> Species:
+    """One row of the table; the drag is C and N of the law in leaf."""
+    told |= {"drag_coefficient": drag[0], "drag_exponent": drag[1]}
+    return Species(key, title, modulus, density, **told)
 
-_TABLE = {
-    s.key: s
-    for s in (
-        _with_broadleaf_drag(
-            "benjamina",
-            "Ficus benjamina",
-            8.3e9,
-            950.0,
-            leaves=LeafTraits(0.05, 4400.0, 0.20, 5.0, is_evergreen=True, green=(0.22, 0.45, 0.16)),
-            bark=(0.52, 0.48, 0.42),
-            habit="pot",
-            is_estimate=True,
-        ),
-        _with_spruce_drag(
-            "goldcrest",
-            _GOLDCREST,
-            6.0e9,
-            950.0,
-            leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, True, True, green=(0.63, 0.70, 0.22)),
-            bark=(0.46, 0.32, 0.24),
-            habit="pot",
-            is_estimate=True,
-        ),
-        _with_broadleaf_drag(
-            "broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, is_estimate=True
-        ),
-        _with_spruce_drag(
-            "spruce",
-            "Norway spruce",
-            6.3e9,
-            850.0,
-            leaves=_needles(0.20, 0.36, 0.22),
-            bark=(0.42, 0.29, 0.22),
-        ),
-        _with_spruce_drag(
-            "sitka",
-            "Sitka spruce",
-            5.9e9,
-            850.0,
-            leaves=_needles(0.26, 0.40, 0.30),
-            bark=(0.42, 0.37, 0.36),
-        ),
-        _conifer(
-            "pine",
-            "Scots pine",
-            7.3e9,
-            850.0,
-            drag_coefficient=3.07,
-            drag_exponent=0.75,
-            leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, True, True, green=(0.28, 0.42, 0.28)),
-            bark=(0.66, 0.40, 0.24),
-        ),
-        _conifer(
-            "douglas_fir",
-            "Douglas-fir",
-            8.3e9,
-            850.0,
-            drag_coefficient=2.40,
-            drag_exponent=0.70,
-            leaves=_needles(0.22, 0.38, 0.20),
-            bark=(0.38, 0.29, 0.24),
-        ),
-        Species(
-            "birch",
-            "birch",
-            9.9e9,
-            900.0,
-            drag_coefficient=1.9627,
-            drag_exponent=0.881,
-            leaves=LeafTraits(0.045, 4000.0, 0.16, 5.0, green=(0.40, 0.57, 0.22)),
-            bark=(0.86, 0.85, 0.81),
-        ),
-        Species(
-            "oak",
-            "oak",
-            9.4e9,
-            1010.0,
-            drag_coefficient=2.6575,
-            drag_exponent=0.846,
-            leaves=LeafTraits(0.09, 1900.0, 0.20, 3.5),
-            bark=(0.36, 0.31, 0.26),
-        ),
-        Species(
-            "beech",
-            "beech",
-            9.8e9,
-            1158.0,
-            drag_coefficient=2.4141,
-            drag_exponent=0.904,
-            leaves=LeafTraits(0.065, 3000.0, 0.17, 4.5, green=(0.25, 0.48, 0.18)),
-            bark=(0.55, 0.56, 0.54),
-        ),
-        _with_broadleaf_drag(
-            "ash",
-            "ash",
-            9.5e9,
-            801.0,
-            leaves=LeafTraits(0.06, 2700.0, 0.18, 4.5, green=(0.34, 0.55, 0.24)),
-            bark=(0.52, 0.50, 0.44),
-        ),
-        _with_broadleaf_drag(
-            "sycamore",
-            "sycamore",
-            8.4e9,
-            721.0,
-            leaves=LeafTraits(0.13, 2600.0, 0.18, 3.0, green=(0.27, 0.45, 0.17)),
-            bark=(0.50, 0.45, 0.41),
-        ),
-        _with_broadleaf_drag(
-            "walnut",
-            "walnut",
-            11.3e9,
-            805.0,
-            leaves=LeafTraits(0.10, 2500.0, 0.21, 3.0, green=(0.36, 0.53, 0.20)),
-            bark=(0.46, 0.43, 0.40),
-        ),
-    )
-}
+
+_conifer = partial(_species, habit="conifer")
+_estimate = partial(_species, is_estimate=True)
+_BROADLEAF, _SPRUCE = (2.345, 0.877), (2.35, 0.51)
+
+_TABLE = {s.key: s for s in (
+    _estimate("benjamina", "Ficus benjamina", 8.3e9, 950.0, _BROADLEAF, habit="pot",
+              leaves=LeafTraits(0.05, 4400.0, 0.20, 5.0, True, green=(0.22, 0.45, 0.16)),
+              bark=(0.52, 0.48, 0.42)),
+    _estimate("goldcrest", "Cupressus macrocarpa 'Goldcrest'", 6.0e9, 950.0, _SPRUCE, habit="pot",
+              leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, True, True, green=(0.63, 0.70, 0.22)),
+              bark=(0.46, 0.32, 0.24)),
+    _estimate("broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, _BROADLEAF),
+    _conifer("spruce", "Norway spruce", 6.3e9, 850.0, _SPRUCE,
+             leaves=_needles(0.20, 0.36, 0.22), bark=(0.42, 0.29, 0.22)),
+    _conifer("sitka", "Sitka spruce", 5.9e9, 850.0, _SPRUCE,
+             leaves=_needles(0.26, 0.40, 0.30), bark=(0.42, 0.37, 0.36)),
+    _conifer("pine", "Scots pine", 7.3e9, 850.0, (3.07, 0.75), bark=(0.66, 0.40, 0.24),
+             leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, True, True, green=(0.28, 0.42, 0.28))),
+    _conifer("douglas_fir", "Douglas-fir", 8.3e9, 850.0, (2.40, 0.70),
+             leaves=_needles(0.22, 0.38, 0.20), bark=(0.38, 0.29, 0.24)),
+    _species("birch", "birch", 9.9e9, 900.0, (1.9627, 0.881), bark=(0.86, 0.85, 0.81),
+             leaves=LeafTraits(0.045, 4000.0, 0.16, 5.0, green=(0.40, 0.57, 0.22))),
+    _species("oak", "oak", 9.4e9, 1010.0, (2.6575, 0.846), bark=(0.36, 0.31, 0.26),
+             leaves=LeafTraits(0.09, 1900.0, 0.20, 3.5)),
+    _species("beech", "beech", 9.8e9, 1158.0, (2.4141, 0.904), bark=(0.55, 0.56, 0.54),
+             leaves=LeafTraits(0.065, 3000.0, 0.17, 4.5, green=(0.25, 0.48, 0.18))),
+    _species("ash", "ash", 9.5e9, 801.0, _BROADLEAF, bark=(0.52, 0.50, 0.44),
+             leaves=LeafTraits(0.06, 2700.0, 0.18, 4.5, green=(0.34, 0.55, 0.24))),
+    _species("sycamore", "sycamore", 8.4e9, 721.0, _BROADLEAF, bark=(0.50, 0.45, 0.41),
+             leaves=LeafTraits(0.13, 2600.0, 0.18, 3.0, green=(0.27, 0.45, 0.17))),
+    _species("walnut", "walnut", 11.3e9, 805.0, _BROADLEAF, bark=(0.46, 0.43, 0.40),
+             leaves=LeafTraits(0.10, 2500.0, 0.21, 3.0, green=(0.36, 0.53, 0.20))),
+)}  # fmt: skip
 
 
 def species_named(key: str) -> Species:
@@ -231,6 +149,9 @@ def species_named(key: str) -> Species:
         If no species has that key; the error lists those that exist.
 
     """
+    if not isinstance(key, str):
+        what = f"a {type(key).__name__}, where the key of a species is asked for"
+        raise SpeciesError(what, cure="give its key, as 'oak'")
     try:
         return _TABLE[key]
     except KeyError:
@@ -257,7 +178,6 @@ def typical_root_stiffness(stem_mass: float) -> float:
     120 is taken. They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust &
     Krisans 2023, Forests 14, 533). Soils differ by a factor of two. That broadleaves are like
     conifers is assumed.
-
     """
     return 0.4 * 120.0 * stem_mass / math.radians(0.25)
 

@@ -8,7 +8,6 @@ order, so that a branch comes after its parent and everything it carries is one 
 Sums over subtrees are then one backward pass and joining from the root is one forward pass.
 
 Symbols: n segments, b branches. SI units; z points up, the frame is ENU (REP-103).
-
 """
 
 from __future__ import annotations
@@ -106,7 +105,6 @@ class Tree:
 
         It is the foot of the perpendicular from the start of the segment onto the parent, within
         its ends.
-
         """
         parent = self.segment_parent
         chord = self.end[parent] - self.start[parent]

@@ -5,5 +5,4 @@ The wind from a sensor to what the trees feel: convention, gate, mean over a ste
 
 One way in: units, sign and limits are settled here and nowhere else.
 Nothing here knows of trees or of messages.
-
 """

@@ -13,7 +13,6 @@ What the solver has been given is never redrawn, so that nothing jumps in `linea
 late, early or not at all: a short dropout is held; a long one decays to calm; after either, what
 was given fades over into the new samples. Every mean is one of samples and of calm, and never
 beyond them. Times are those of one clock, handed in by the caller; it may jump.
-
 """
 
 from __future__ import annotations

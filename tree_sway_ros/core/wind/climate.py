@@ -6,7 +6,6 @@ The wind of the last while as a choice of model needs to know it: how its load s
 A load goes with ``|U| U``. Of a wind that is only described its mean and covariance in the plane
 are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral time
 (von Karman, 1948). A wind that was measured has a spectrum of its own.
-
 """
 
 from __future__ import annotations
@@ -53,20 +52,11 @@ class WindClimate:
         mean_speed: float, intensity: float, bearing: float = 0.0, integral_time: float = 5.0
     ) -> WindClimate:
         """
-        Take a wind that is only described.
+        Take a wind that is only described: a mean speed [m/s] towards a bearing from x towards y in
+        [rad].
 
-        Parameters
-        ----------
-        mean_speed
-            In [m/s].
-        intensity
-            Standard deviation over mean of the along-wind speed in [-]; across it 0.8 of that (IEC
-            61400-1).
-        bearing
-            Angle of the mean from x towards y in [rad].
-        integral_time
-            How long a gust lasts in [s].
-
+        The intensity is that along the wind; across it 0.8 of that is taken (IEC 61400-1). A gust
+        lasts for the integral time [s].
         """
         along = np.array([math.cos(bearing), math.sin(bearing)])
         across = np.array([-along[1], along[0]])
@@ -79,38 +69,18 @@ class WindClimate:
 
     @staticmethod
     def of_samples(velocity: Floats, rate: float) -> WindClimate:
-        """
-        Take a wind that is known.
-
-        Parameters
-        ----------
-        velocity
-            Wind in [m/s], (n, 2) or (n, 3).
-        rate
-            Samples per second in [Hz].
-
-        """
+        """Take a wind that is known in [m/s], (n, 2) or (n, 3), at a rate in [Hz]."""
         speed = np.linalg.norm(velocity, axis=1)
         return _of_loads(speed[:, None] * velocity[:, :2], float(speed.mean()), rate)
 
     def power(self, frequencies: Floats) -> Floats:
         """
-        Mean square of the load's swings about its mean that falls to each of some frequencies.
+        Mean square of the load's swings at frequencies [Hz], rising from 0, (f,); [m^4/s^4], (f, 2,
+        2).
 
         A record stands for itself with calm before and after it, so that what sets in with it is
         counted too: what a linear model answers to this power is no less than the mean square of
         its motion from rest in that time (Parseval's theorem).
-
-        Parameters
-        ----------
-        frequencies
-            In [Hz], ascending from 0, (f,).
-
-        Returns
-        -------
-        Floats
-            In [m^4/s^4], (f, 2, 2).
-
         """
         if self.record is None:
             spans = np.gradient(frequencies)
@@ -132,15 +102,7 @@ class WindClimate:
 
 
 class ClimateTracker:
-    """
-    The wind of the last while as it comes, in cells of even length.
-
-    Parameters
-    ----------
-    memory
-        How long it is remembered in [s].
-
-    """
+    """The wind as it comes, in cells of even length, remembered for ``memory`` [s]."""
 
     def __init__(self, memory: float = 60.0) -> None:
         """Start with no wind."""
@@ -152,7 +114,6 @@ class ClimateTracker:
     def add(self, wind: Floats, dt: float) -> None:
         """
         Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step.
-
         """
         u, v, w = wind.tolist()
         speed, left = math.sqrt(u * u + v * v + w * w), min(dt, self._memory)

@@ -6,7 +6,6 @@ How to read wind: sign, unit, yaw of the mast and force plane.
 ROS vectors are velocities in ENU (REP-103): a wind vector points where the air goes. Meteorology
 names the wind by where it comes from. A source that does the latter has every sign the other way
 round.
-
 """
 
 from __future__ import annotations
@@ -32,22 +31,10 @@ def velocity_of_bearing(
     speed: float, bearing: float, direction_convention: str = "from"
 ) -> tuple[float, float, float]:
     """
-    Velocity of a speed and a compass bearing.
+    Velocity east, north, up to which a wind blows in [m/s], by speed and bearing.
 
-    Parameters
-    ----------
-    speed
-        Speed in [m/s].
-    bearing
-        Clockwise from north in [rad].
-    direction_convention
-        ``from``: where the wind comes from, as meteorology says it; ``to``: where it blows to.
-
-    Returns
-    -------
-    tuple of float
-        Where the wind blows to: east, north, up in [m/s].
-
+    The bearing, clockwise from north in [rad], is where it comes ``from``, as meteorology says it,
+    or blows ``to``.
     """
     sign = WindConvention(direction_convention).sign
     return sign * speed * math.sin(bearing), sign * speed * math.cos(bearing), 0.0

@@ -13,7 +13,6 @@ than itself.
 
 Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and the
 same in every run. Delays follow the mean wind as in `gust_travel`.
-
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ DECAY = 8.0
 
 USUAL_COHERENCE = 0.3
 """
-Share of a gust that reaches the whole crown at once, where gusts are met limb by limb.
+Share of a gust that reaches the whole crown at once, where gusts reach limb after limb.
 
 Gusts of the first frequency of a tree (0.5 to 1 Hz) at 7 m/s have by the source a root coherence of
 0.03 to 0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one. With it
@@ -63,17 +62,9 @@ _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 class CrownDelays(NamedTuple):
     """
-    Which delay each branch has, and how much load.
+    Which of `N_DELAYS` each branch has, (b,), what share of the load has each, and their spread.
 
-    Parameters
-    ----------
-    of_branch
-        Which of `N_DELAYS` each branch has, (b,).
-    share
-        Of the load that has each delay, (`N_DELAYS`,).
-    spread
-        Longest delay times the wind speed in [m].
-
+    That is the longest delay times the wind speed, in [m].
     """
 
     of_branch: Ints
@@ -85,15 +76,8 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     """
     Deal the delays: the stem has none, and what a limb carries has the limb's.
 
-    Parameters
-    ----------
-    parent
-        Of each branch, -1 for the stem, (b,).
-    centre
-        Centre of the wind load of each in [m], (b, 3).
-    load
-        Wind load of each in any unit, (b,).
-
+    Branches have a parent, -1 for the stem, a centre of their wind load [m], (b, 3), and a load of
+    any unit, (b,).
     """
     on_stem = parent == 0
     limb = np.where(on_stem, np.cumsum(on_stem), 0)
@@ -143,18 +127,8 @@ class CrownWind:
     """
     The wind of the last seconds, and what of it each limb feels now.
 
-    Parameters
-    ----------
-    spread
-        As of `CrownDelays`.
-    coherence
-        Share of the wind that reaches all at once in [-], 0 to 1.
-
-    Raises
-    ------
-    ParameterError
-        If the coherence is out of its range.
-
+    The spread is that of `CrownDelays`; the coherence, 0 to 1, else a `ParameterError`, is the
+    share of the wind that reaches all at once.
     """
 
     def __init__(self, spread: float, coherence: float) -> None:
@@ -168,20 +142,10 @@ class CrownWind:
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
-        Take the wind of a step at the anemometer and find how that of each delay differs from it.
+        Take the mean wind [m/s] of a step of dt [s]; how that of each delay differs, (`N_DELAYS`,
+        3).
 
-        Parameters
-        ----------
-        x, y, z
-            Mean of the wind over the step in [m/s].
-        dt
-            Length of the step in [s].
-
-        Returns
-        -------
-        Floats
-            In [m/s], (`N_DELAYS`, 3); the same array each time.
-
+        It is the same array each time.
         """
         self._compiled(x, y, z, dt)
         return self._apart

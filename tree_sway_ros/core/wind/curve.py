@@ -11,16 +11,10 @@ Vector = tuple[float, float, float]
 
 class WindCurve:
     """
-    Straight lines (or steps) through the newest knots; before the first and after the last it is
-    level.
+    Straight lines (or steps) through the newest knots, level before the first and after the last.
 
-    Parameters
-    ----------
-    is_stepped
-        True holds each knot's value up to the next one; false joins them by lines.
-    capacity
-        Number of knots kept; the oldest go first.
-
+    Steps hold each knot's value up to the next one. Of more knots than the capacity the oldest go
+    first.
     """
 
     def __init__(self, is_stepped: bool, capacity: int) -> None:
@@ -57,7 +51,6 @@ class WindCurve:
     def cut(self, time: float) -> None:
         """
         Drop what comes after a time in [s], and be level from there: the past stays as it was.
-
         """
         if self._knots and self.end > time:
             value = self.value(time)
@@ -86,20 +79,10 @@ class WindCurve:
 
     def mean(self, start: float, end: float, share: tuple[float, float] = (1.0, 1.0)) -> Vector:
         """
-        Return the exact mean of the curve over an interval.
+        Exact mean [m/s] of the curve from ``start`` to a later ``end`` in [s]; there must be a
+        knot.
 
-        Parameters
-        ----------
-        start, end
-            The interval in [s], ``start < end``; there must be a knot.
-        share
-            What the curve is multiplied by at start and at end, and evenly in between, in [-].
-
-        Returns
-        -------
-        Vector
-            Mean in [m/s].
-
+        It is multiplied by the two shares at start and end, and evenly in between.
         """
         # From the newest knot back: a solver asks for the last step, which holds one knot or none.
         x = y = z = 0.0

@@ -13,15 +13,8 @@ from tree_sway_ros.core.wind.curve import Vector, WindCurve
 @dataclass(frozen=True)
 class Fade:
     """
-    A mix of a steady wind and a curve, with a share of the curve that rises from 0 to 1.
-
-    Parameters
-    ----------
-    before
-        The steady wind in [m/s].
-    start, end
-        When the share begins and ends to rise in [s].
-
+    A mix of a steady wind [m/s] and a curve, whose share rises from 0 at ``start`` to 1 at ``end``
+    [s].
     """
 
     before: Vector

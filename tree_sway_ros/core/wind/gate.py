@@ -15,7 +15,6 @@ much older than it, a duplicate, out of order) is counted by its cause; in its p
 of arrival, less the delay of the sample before, so that the times of a mixed stream go on evenly. A
 stamp ahead is believed only if those before it were nearly as far ahead: a single one would shut
 out the good samples that follow it. All times are whole nanoseconds of one clock.
-
 """
 
 from __future__ import annotations
@@ -29,6 +28,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.checks import three_numbers, within
 from tree_sway_ros.core.wind.limits import FASTEST_WIND, is_wind
+from tree_sway_ros.core.wind.response import ResponseWatch
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
@@ -98,8 +98,8 @@ class GateCounts:
         before; before that of the sample before; not after the time given to the sample before.
     clock_back
         Times the clock was set back.
-    frozen
-        Times the sensor began to repeat one reading.
+    frozen, sluggish
+        Times the sensor began to repeat one reading, and to pass slow changes alone.
 
     """
 
@@ -120,6 +120,7 @@ class GateCounts:
     overtaken_stamp: int = 0
     clock_back: int = 0
     frozen: int = 0
+    sluggish: int = 0
 
     @property
     def refused(self) -> int:
@@ -193,6 +194,12 @@ class WindGate:
         self._refused_since: int | None = None
         self._equal_since = 0
         self._is_frozen = False
+        self._response = ResponseWatch()
+
+    @property
+    def is_sluggish(self) -> bool:
+        """Whether the sensor passes slow changes alone (`response`)."""
+        return self._response.is_sluggish
 
     @property
     def is_frozen(self) -> bool:
@@ -247,6 +254,7 @@ class WindGate:
         if reason is Reason.ACCEPTED:
             self._good, self._good_time = (x, y, z), time
             self._refused_since = None
+            self.counts.sluggish += self._response.add(time, self._good)
         return Verdict(reason is Reason.ACCEPTED, reason, time)
 
     def _time_of(self, stamp: int, given: int | None, lead: int) -> int:

@@ -12,7 +12,6 @@ gusts travel, the mean speed itself over open ground and up to 1.8 of it over a 
 The wind is kept as its run, the displacement of the air since the start, at the end of every step:
 the mean over any span is then the difference of two runs over the span. As the mean wind turns or
 freshens, delays follow so slowly that for every tree time goes on.
-
 """
 
 from __future__ import annotations
@@ -111,7 +110,6 @@ class GustHistory:
     def n_forgotten(self) -> int:
         """
         Places so far downwind that the history is too short; they feel the oldest wind there is.
-
         """
         return int((self._wanted > self._memory).sum())
 
@@ -122,25 +120,11 @@ class GustHistory:
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """
-        Take the wind of a step at the anemometer and find that of every place.
+        Take the mean wind of a step of dt [s] at the anemometer in [m/s], (3,), and find that of
+        each place.
 
-        Parameters
-        ----------
-        wind_mean
-            Mean of the wind over the step in [m/s], (3,).
-        dt
-            Length of the step in [s].
-
-        Returns
-        -------
-        Floats
-            Mean of the wind over the step at each place in [m/s], (t, 3); the same array each time.
-
-        Raises
-        ------
-        ParameterError
-            If a number is not finite or the step not above 0.
-
+        It is (t, 3), the same array each time. A `ParameterError` tells of a number that is not
+        finite, or a step that is not above 0.
         """
         x, y, z = three_numbers("wind", wind_mean)
         if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):
@@ -203,7 +187,6 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
     """
     A plain mean while there is little wind to average, then a running one; its span stands beside
     it.
-
     """
     mean[2] = min(mean[2] + dt, max(averaging, dt))
     weight = dt / mean[2]
@@ -219,7 +202,6 @@ def _feel(
 ) -> None:  # fmt: skip
     """
     Let delays follow the mean wind, and take the mean of the history over each place's own step.
-
     """
     now = run[at[0], 0]
     speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)

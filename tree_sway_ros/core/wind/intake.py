@@ -17,15 +17,10 @@ from tree_sway_ros.core.wind.limits import FASTEST_WIND
 
 class GoodWind(NamedTuple):
     """
-    A sample that is good.
+    A sample that is good: its time [ns], after that of the one before, and velocity to which it
+    blows.
 
-    Parameters
-    ----------
-    time
-        The time to use for it in [ns], after that of the sample before.
-    velocity
-        Where the wind blows to, ENU in [m/s], on the force plane, (3,).
-
+    That is ENU in [m/s], on the force plane, (3,).
     """
 
     time: int
@@ -37,14 +32,9 @@ class WindIntake:
     """
     Reads samples as a source sends them and keeps the good ones.
 
-    Parameters
-    ----------
-    convention
-        What the numbers of the source mean; may be replaced between samples. None where the samples
-        are velocities on the force plane already.
-    gate
-        What judges the samples, before they are projected.
-
+    The convention says what the numbers of the source mean, and may be replaced between samples;
+    None where they are velocities on the force plane already. The gate judges them before that
+    projection.
     """
 
     convention: WindConvention | None = None
@@ -70,22 +60,11 @@ class WindIntake:
         rotation: Floats | None = None,
     ) -> GoodWind | None:
         """
-        Take a sample.
+        Take a sample, (3,), along the source's axes, in its unit and sign; None if refused, and
+        counted.
 
-        Parameters
-        ----------
-        stamp, arrival, lead
-            As for `WindGate.offer`, in [ns].
-        components
-            Along the source's axes, in its unit and its sign, (3,).
-        rotation
-            From the source's frame into that of the trees, (3, 3); None where they are one.
-
-        Returns
-        -------
-        GoodWind or None
-            None if the sample was refused, and counted.
-
+        Times are as for `WindGate.offer`; the rotation (3, 3) is from the source's frame into the
+        trees'.
         """
         reads = self.convention
         velocity = np.array(components) if reads is None else reads.velocity(*components)

@@ -21,22 +21,9 @@ def is_wind(x: float, y: float, z: float, limit: float = FASTEST_WIND) -> bool:
 
 def take_wind(kept: Floats, wind: ArrayLike, limit: float) -> bool:
     """
-    Keep a wind, if it is one: the way in to every simulator.
+    Keep a wind [m/s], (3,), if it is one: the way in to every simulator.
 
-    Parameters
-    ----------
-    kept
-        The wind of the last step in [m/s], (3,); written if the new one is a wind.
-    wind
-        In [m/s], (3,).
-    limit
-        Speed in [m/s] above which it is refused.
-
-    Returns
-    -------
-    bool
-        False if it is not finite or too fast, and what was kept stays.
-
+    Returns False if it is not finite or faster than the limit [m/s]; what was kept stays then.
     """
     x, y, z = float(wind[0]), float(wind[1]), float(wind[2])  # type: ignore[index, arg-type]
     if not math.hypot(x, y, z) <= limit:

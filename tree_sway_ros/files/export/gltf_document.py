@@ -18,15 +18,7 @@ ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
 class GltfDocument:
-    """
-    A document that grows by objects and arrays.
-
-    Parameters
-    ----------
-    generator
-        What made it.
-
-    """
+    """A document that grows by objects and arrays; ``generator`` tells what made it."""
 
     def __init__(self, generator: str) -> None:
         """Begin with nothing in it."""
@@ -49,15 +41,8 @@ class GltfDocument:
         """
         Add an array of uint8, uint16, uint32 or float32 as an accessor and return its number.
 
-        Parameters
-        ----------
-        array
-            (n,), (n, 3), (n, 4), or matrices by columns (n, 4, 4).
-        target
-            `ARRAY_BUFFER` for vertices, `ELEMENT_ARRAY_BUFFER` for indices.
-        bounds
-            Whether to tell its least and greatest values, as for positions and times.
-
+        It is (n,), (n, 3), (n, 4), or matrices by columns (n, 4, 4); for `ARRAY_BUFFER` (vertices)
+        or `ELEMENT_ARRAY_BUFFER` (indices). Bounds are told of positions and times.
         """
         view = self.add(
             "bufferViews",

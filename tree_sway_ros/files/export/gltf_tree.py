@@ -9,7 +9,6 @@ tree: a node's translation and rotation are the segment's pose, at rest and in e
 vertices, so that some twenty weights play the tree; the targets are linear, and `LinearForm` tells
 what that leaves out. glTF has y up by its specification, which the node of the tree turns: all
 inside it keeps our frame.
-
 """
 
 from __future__ import annotations
@@ -44,17 +43,10 @@ _BREEZE, _SECONDS, _RATE, _DT = 6.0, 20.0, 15, 1.0 / 60.0
 @dataclass(frozen=True)
 class LinearForm:
     """
-    How the tree of morph targets differs from the solver's, over the breeze that the file plays.
+    How far the tree of morph targets is from the solver's, over the breeze that the file plays.
 
-    Parameters
-    ----------
-    names
-        Name of each target, (m,).
-    rms, greatest
-        Distance of the segments' vertices from where the solver has them in [m].
-    motion_rms, motion_greatest
-        Their motion from rest in [m].
-
+    ``names`` are those of the targets, (m,). Distances of the segments' vertices and, in
+    ``motion_*``, their motions from rest are in [m].
     """
 
     names: tuple[str, ...]
@@ -68,11 +60,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     """
     Return a tree, or a forest joined to one, as a mesh with a skin of a joint per segment.
 
-    Raises
-    ------
-    FormatError
-        If it has more segments than a skin can have joints.
-
+    A `FormatError` tells of more segments than a skin can have joints.
     """
     if tree.n_segments > _MAX_JOINTS:
         raise FormatError(
@@ -110,18 +98,10 @@ def morphing_tree(
     simulator: Swaying, leaves: LeafClusters | None = None
 ) -> tuple[GltfDocument, LinearForm]:
     """
-    Return a tree as a mesh with a morph target per coordinate of its state.
+    Return a tree, as a simulator on any model has it, as a mesh with a morph target per coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
     the basis; 1 is as far as it goes in a storm. An animation plays a breeze.
-
-    Parameters
-    ----------
-    simulator
-        The tree, on any model.
-    leaves
-        Clusters of leaves to draw.
-
     """
     tree, basis = simulator.tree, state_basis(simulator)
     unit = basis.scale / MARGIN

@@ -5,7 +5,6 @@ Write a tree for other programs: our YAML, Wavefront OBJ, glTF.
 
 YAML is exact and reads back. OBJ holds the shape at rest, one object per segment, named as in
 `Tree.segment_names`, z up as the tree. glTF sways by a skin or by morph targets; see `gltf_tree`.
-
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tree_sway_ros.core.leaves.foliage import LeafClusters
+from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError
@@ -28,7 +28,7 @@ _SUFFIXES = (".yaml", ".yml", ".obj", *GLTF_SUFFIXES)
 
 def write_tree(
     path: str | Path,
-    tree: Tree,
+    tree: Tree | GrownTree,
     species: Species | None = None,
     leaves: LeafClusters | None = None,
 ) -> None:
@@ -40,9 +40,9 @@ def write_tree(
     path
         The file: ``.yaml``, ``.yml``, ``.obj``, ``.glb`` or ``.gltf``; overwritten if it exists.
     tree
-        The tree.
+        The tree, alone or with its species.
     species
-        Its wood, if other than the table's; only YAML can carry it.
+        Its wood, if other than the tree's own; only YAML can carry it.
     leaves
         Clusters of leaves to draw; only glTF can carry them.
 
@@ -54,6 +54,8 @@ def write_tree(
         If the species table does not know the tree's species.
 
     """
+    if not isinstance(tree, Tree):
+        tree, species = tree_and_species(tree, species)
     suffix = Path(path).suffix.lower()
     if suffix not in _SUFFIXES:
         raise FormatError(

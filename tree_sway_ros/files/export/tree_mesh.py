@@ -22,16 +22,8 @@ class TreeMesh:
     """
     Triangles, each vertex of which is carried by one segment.
 
-    Parameters
-    ----------
-    points, normals
-        Of each vertex in the frame of its segment, (v, 3): origin at the segment's start, x along
-        it; points in [m].
-    segment
-        Segment that carries each vertex, (v,).
-    triangles
-        Vertices of each triangle, counter-clockwise seen from outside, (t, 3).
-
+    Points [m] and normals, (v, 3), are in the frame of the segment: its start, x along it.
+    Triangles, (t, 3), are counter-clockwise seen from outside.
     """
 
     points: Floats
@@ -41,13 +33,7 @@ class TreeMesh:
 
     def placed(self, poses: Floats) -> Floats:
         """
-        Return the vertices where the segments are, in the frame of the poses in [m], (v, 3).
-
-        Parameters
-        ----------
-        poses
-            Pose block as of `segment_poses`, (n, 7): x y z and quaternion x y z w.
-
+        Vertices in the frame of a pose block (n, 7) (x y z, quaternion x y z w) in [m], (v, 3).
         """
         rotation = Rotation.from_quat(poses[self.segment, 3:])
         return poses[self.segment, :3] + rotation.apply(self.points)
@@ -55,11 +41,8 @@ class TreeMesh:
 
 def wood_mesh(tree: Tree) -> TreeMesh:
     """
-    Return a closed cone for each segment, round in its normals, with flat ends.
-
-    Each has 4 `SIDES` vertices, two rings for its side and one for each end, and 4 `SIDES` - 4
-    triangles.
-
+    Return a closed cone per segment, round in its normals, with flat ends, as 4 `SIDES` vertices:
+    two rings for its side and one for each end.
     """
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES

@@ -6,7 +6,6 @@ A tree out to the YAML form, such that reading it back gives the same tree to th
 A branch whose segments join end to start is written by its nodes; one with steps or gaps, as
 cylinder models have, segment by segment. Of the wood only what differs from the species table is
 written, so that a calibrated tree carries its values and an ordinary one follows the table.
-
 """
 
 from __future__ import annotations
@@ -21,14 +20,7 @@ from tree_sway_ros.files.yaml_document import tree_schema
 
 def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
     """
-    Return a tree as YAML text.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    species
-        Its wood, if other than the table's entry for ``tree.species``.
+    Return a tree as YAML text, its wood told where it is not the table's.
 
     Raises
     ------

@@ -5,7 +5,6 @@ The messages of a rosbag2 bag as the bytes that they came as, read without ROS a
 
 Its two storages are read from end to end, with neither the index nor the metadata that a recorder
 writes last: a bag that was cut off gives all that is there.
-
 """
 
 from __future__ import annotations
@@ -31,17 +30,10 @@ _SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 @dataclass
 class BagContent:
     """
-    What a bag holds.
+    What a bag holds: types of topics as ``package/msg/Name``, and messages of those asked for.
 
-    Parameters
-    ----------
-    types
-        Type of each topic, as ``package/msg/Name``.
-    messages
-        Those of each topic that was asked for: time of recording in [ns], increasing, and bytes.
-    damage
-        What ended the reading too soon; empty if the bag is whole.
-
+    A message is its time of recording [ns], increasing, and its bytes. ``damage`` is what ended the
+    reading too soon; empty if the bag is whole.
     """
 
     types: dict[str, str] = field(default_factory=dict)
@@ -51,14 +43,7 @@ class BagContent:
 
 def read_bag(path: Path, types: Collection[str]) -> BagContent:
     """
-    Read the messages of some types.
-
-    Parameters
-    ----------
-    path
-        The bag's folder, or its ``.db3`` or ``.mcap`` file.
-    types
-        As ``package/msg/Name``.
+    Read the messages of some types from a bag: its folder, or its ``.db3`` or ``.mcap`` file.
 
     Raises
     ------

@@ -16,19 +16,12 @@ class BagWriter:
     """
     Writes a bag, which can be played by ``ros2 bag play`` and opened in Foxglove and PlotJuggler.
 
-    Parameters
-    ----------
-    path
-        Folder to make.
-    format
-        One of `FORMATS`.
-
     Raises
     ------
     MissingDependencyError
         If rosbags is not installed.
     ParameterError
-        An unknown format.
+        A format that is none of `FORMATS`.
     FormatError
         A folder that is there already.
 
@@ -67,17 +60,8 @@ class BagWriter:
         depth: int = 1,
     ) -> None:
         """
-        Add a topic, with the quality of service that it is to be played with.
-
-        Parameters
-        ----------
-        topic
-            Its name.
-        type_name
-            As ``package/msg/Name``, of the common interfaces.
-        reliable, latched, depth
-            As `Topic` of the nodes has them.
-
+        Add a topic of a type ``package/msg/Name``, to be played with the quality of service of
+        `Topic`.
         """
         from rosbags.interfaces import (
             Qos,

@@ -25,22 +25,15 @@ def read_mcap(
     unpack: Mapping[str, Callable[[bytes], bytes]],
 ) -> bool:
     """
-    Read a file as far as it goes.
+    Read a file as far as it goes; returns whether all its messages were there.
 
     Parameters
     ----------
-    path
-        The file.
     take
         Called with each topic and its type; returns what is called with the time [ns] and the bytes
         of each of its messages, or None for none.
     unpack
         What undoes a compression, by its name.
-
-    Returns
-    -------
-    bool
-        Whether all its messages were there.
 
     """
     with path.open("rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:

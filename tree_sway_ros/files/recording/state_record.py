@@ -23,23 +23,10 @@ _AFTER_HEAD = 4  # of CDR, whose third and fourth bytes are options
 @dataclass(frozen=True, eq=False)
 class StateRecord:
     """
-    A state over time.
+    A state over time: messages as CDR bytes, and the last description as a CDR string.
 
-    Parameters
-    ----------
-    time
-        Of each message after the first in [s], increasing, (n,).
-    epoch
-        Stamp of the first in seconds after 1970.
-    states
-        Messages as CDR bytes.
-    description
-        The last description as a CDR string.
-    source
-        The file.
-    refused
-        How many messages were left out, as their time does not go on or they cannot be read.
-
+    Times count from the first message in [s], increasing, (n,); ``epoch`` is its stamp in seconds
+    after 1970. ``refused`` messages are those whose time does not go on or that cannot be read.
     """
 
     time: Floats
@@ -53,14 +40,10 @@ class StateRecord:
 
 def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
     """
-    Read the state and the description of a bag.
+    Read the state and the description of a bag, its folder or its file.
 
-    Parameters
-    ----------
-    path
-        The bag's folder, or its ``.db3`` or ``.mcap`` file.
-    name
-        Topic of the state, or the end of its name; the description is looked for beside it.
+    ``name`` is the topic of the state, or the end of its name; the description is looked for beside
+    it.
 
     Raises
     ------

@@ -17,17 +17,7 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
 @dataclass(frozen=True, eq=False)
 class StandFile(ForestFile):
-    """
-    A stand.
-
-    Parameters
-    ----------
-    kinds
-        What trees are, by name.
-    standing
-        Each tree with its name, its kind and its place.
-
-    """
+    """A stand: kinds of trees by name, and each tree with its name, its kind and its place."""
 
     kinds: dict[str, StandKind] = field(default_factory=dict)
     standing: tuple[StandTree, ...] = ()
@@ -60,20 +50,9 @@ class StandFile(ForestFile):
         **changes: Any,
     ) -> Stand:
         """
-        Make a simulator of all trees, on the model `wind_basis` but for those that say otherwise.
+        Make a `Stand` of all trees, on the model `wind_basis` but for those that say otherwise.
 
-        Parameters
-        ----------
-        settings, progress, **changes
-            As for `Stand`.
-        fidelity, tolerance
-            Not used: they are there for `ForestFile`.
-
-        Raises
-        ------
-        TreeSwayError
-            As `Stand`.
-
+        ``fidelity`` and ``tolerance`` are not used: they are there for `ForestFile`.
         """
         return Stand(
             self.standing,

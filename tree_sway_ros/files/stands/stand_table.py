@@ -6,7 +6,6 @@ A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, 
 Trees of one species are scaled from few that are grown: heights of a species within a factor of
 three share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a tree
 without a name is called after its row, one without a yaw is turned at random.
-
 """
 
 from __future__ import annotations
@@ -45,18 +44,10 @@ def read_stand_table(
     path: Path, kinds: Mapping[str, StandKind] | None = None, *, seed: int = 0, **told: Any
 ) -> StandFile:
     """
-    Read a stand from a table.
+    Read a stand from a table; where no kind stands for a species, its trees are grown.
 
-    Parameters
-    ----------
-    path
-        The file.
-    kinds
-        Trees that stand for a species; others are grown.
-    seed
-        Of the trees that are grown, and of how trees are turned.
-    **told
-        Further arguments of `ForestFile`.
+    The seed is that of the trees that are grown, and of how trees are turned; further arguments are
+    those of `ForestFile`.
 
     Raises
     ------

@@ -10,7 +10,6 @@ Keys, kinds and ranges are those of ``stand_schema.json``::
     kinds:
       - {species: oak, tree: scans/oak.mat}
     convection_ratio: 1.4
-
 """
 
 from __future__ import annotations
@@ -35,13 +34,6 @@ def is_stand_yaml(path: Path) -> bool:
 def read_stand_yaml(path: Path, open_tree: Callable[[str | Path], TreeFile]) -> StandFile:
     """
     Read a stand from a YAML file and the table that it names.
-
-    Parameters
-    ----------
-    path
-        The file.
-    open_tree
-        Opens a tree by its name or path.
 
     Raises
     ------

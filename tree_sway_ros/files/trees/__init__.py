@@ -5,5 +5,4 @@ Tree files: what an opened one is, which reader takes which file, segments to a 
 
 Formats by kind in the rooms below.
 Nothing here computes a frequency.
-
 """

@@ -34,11 +34,7 @@ def checked_order(parent: ArrayLike, labels: Sequence[str]) -> list[int]:
     """
     Order in which parents come before what they carry.
 
-    Raises
-    ------
-    TreeError
-        A parent that does not exist, or a cycle.
-
+    A `TreeError` tells of a parent that does not exist, or a cycle.
     """
     above, n = np.asarray(parent, dtype=np.int64), len(labels)
     for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
@@ -61,21 +57,9 @@ class SegmentTable:
     """
     Segments as a file lists them; filled row by row, then built.
 
-    Parameters
-    ----------
-    start, end
-        Root-side and tip-side node in [m].
-    diameter
-        Diameter at start and at end in [m].
-    parent
-        Segment that each sits on, -1 for the root; empty to find it from the nodes.
-    branch
-        Branch key of each; empty to find it from how the segments go on.
-    branch_names
-        Name of each branch by key 0, 1 ...; empty for ``stem``, ``b1`` ...
-    labels
-        What an error calls each segment, with the line of the file.
-
+    Nodes (root-side, tip-side) and diameters (at both) are in [m]. Empty parents (-1 for the root)
+    are found from the nodes, empty branch keys from how the segments go on; empty names are
+    ``stem``, ``b1`` ... Labels are what an error calls each segment, with the line of the file.
     """
 
     start: list[list[float]] = field(default_factory=list)
@@ -93,8 +77,8 @@ class SegmentTable:
         Raises
         ------
         TreeError
-            What `tree_from_segments` refuses, or coordinates beyond `MAX_COORDINATE`; always with
-            the file.
+            What `tree_from_segments` refuses, or coordinates beyond `MAX_COORDINATE`; with the
+            file.
         FormatError
             If there is no segment.
 

@@ -16,17 +16,7 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 
 @dataclass(frozen=True)
 class FileUnits:
-    """
-    Units and axes of a file.
-
-    Parameters
-    ----------
-    length_unit, diameter_unit
-        Length of the unit of positions and of diameters in [m].
-    up
-        Axis of the file that points up, ``z`` or ``y``.
-
-    """
+    """Units of positions and of diameters in [m], and the axis that points up, ``z`` or ``y``."""
 
     length_unit: float = 1.0
     diameter_unit: float = 1.0

@@ -13,7 +13,7 @@ from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.tree.plausibility import doubts, refuse_nonsense
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -58,13 +58,7 @@ class TreeFile:
 
     def checked(self) -> TreeFile:
         """
-        Return the same tree if its numbers can be those of one.
-
-        Raises
-        ------
-        TreeSwayError
-            As `refuse_nonsense`; names the source.
-
+        Return the same tree if its numbers can be those of one, else raise as `refuse_nonsense`.
         """
         try:
             refuse_nonsense(self.tree, self.species)
@@ -73,40 +67,17 @@ class TreeFile:
         return self
 
     def simulator(
-        self,
-        settings: Settings | None = None,
-        *,
-        tolerance: float = 0.005,
-        **changes: Any,
+        self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
     ) -> TreeSimulator:
-        """
-        Make a simulator of the tree.
-
-        Parameters
-        ----------
-        settings, tolerance, **changes
-            As for `make_simulator`.
-
-        Raises
-        ------
-        TreeSwayError
-            As `make_simulator`.
-
-        """
-        model = replace(settings or Settings(), **changes)
+        """Make a simulator of the tree; arguments and errors are those of `make_simulator`."""
+        model = settings_with(settings, changes)
         return make_simulator(self.tree, self.species, model, tolerance=tolerance)
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """
-        Place clusters of leaves on it, always the same ones; None without leaves.
+        Place so many clusters of leaves on it, always the same ones; None without leaves.
 
-        Parameters
-        ----------
-        told
-            Whether the tree bears leaves; None leaves it to the species.
-        count
-            How many clusters.
-
+        Whether it bears them is told, or left to the species by None.
         """
         if not is_in_leaf(self.species, told) or count < 1:
             return None

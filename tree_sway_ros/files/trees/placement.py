@@ -18,17 +18,9 @@ def placed_scene(
     source: Scene, *, x: float = 0.0, y: float = 0.0, z: float = 0.0, yaw: float = 0.0
 ) -> Scene:
     """
-    Return a tree or a forest where it stands.
+    Return a tree or a forest, in the frame of its file, where that frame's origin lies in [m].
 
-    Parameters
-    ----------
-    source
-        As opened, in the frame of its file.
-    x, y, z
-        Where the origin of that frame lies in [m].
-    yaw
-        How far the frame is turned about the vertical, counterclockwise seen from above, in [rad].
-
+    The frame is turned about the vertical, counterclockwise seen from above, by ``yaw`` in [rad].
     """
     if (x, y, z, yaw) == (0.0, 0.0, 0.0, 0.0):
         return source

@@ -5,7 +5,6 @@ Read a tree from a file of any known format.
 
 The content decides before the suffix: files of the field come with the suffix of the day. A new
 format is one module in `formats`, with a `TreeFormat`.
-
 """
 
 from __future__ import annotations
@@ -44,17 +43,11 @@ def options_of(known: TreeFormat) -> tuple[str, ...]:
 
 def read_trees(path: str | Path, format: str | None = None, **options: Any) -> tuple[TreeFile, ...]:
     """
-    Read every tree of a file.
+    Read every tree of a file, of a format that is named or found from content and suffix.
 
-    Parameters
-    ----------
-    path
-        The file.
-    format
-        Name of its format; found from content and suffix if None.
-    **options
-        What the reader of the format takes, such as ``species``; for cylinder and skeleton formats
-        also those of `CylinderOptions`; for all, those of `FileUnits` that it does not have itself.
+    Options are what the reader of the format takes, such as ``species``; for cylinder and skeleton
+    formats also those of `CylinderOptions`; for all, those of `FileUnits` that it does not have
+    itself.
 
     Raises
     ------
@@ -85,7 +78,6 @@ def read_tree(path: str | Path, format: str | None = None, **options: Any) -> Tr
     Read the tree of a file, the first if it holds several; see `read_trees`.
 
     The notes of the result say how many others there are.
-
     """
     first, *others = read_trees(path, format, **options)
     if not others:

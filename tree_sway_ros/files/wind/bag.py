@@ -7,7 +7,6 @@ Any of the wind's four message types: Vector3Stamped, TwistStamped, TwistWithCov
 (linear part) and Vector3, all of geometry_msgs. The time is the header's; a zero stamp or a message
 without a header has the time it was recorded at. Vectors point where the wind blows, east, north,
 up (REP-103); ``direction_convention`` and ``yaw`` say otherwise.
-
 """
 
 from __future__ import annotations
@@ -32,18 +31,11 @@ def read_bag_wind(
     path: Path, topic: str | None = None, yaw: float = 0.0, direction_convention: str = "to"
 ) -> WindRecord:
     """
-    Read the wind of a bag.
+    Read the wind of a bag: its folder, or its ``.db3`` or ``.mcap`` file.
 
-    Parameters
-    ----------
-    path
-        The bag's folder, or its ``.db3`` or ``.mcap`` file.
-    topic
-        Topic of the wind; may be None if only one topic has one of `WIND_TYPES`.
-    yaw
-        From east to the sensor's x axis, counter-clockwise, in [rad].
-    direction_convention
-        ``to`` where vectors point where the wind blows, ``from`` where it comes from.
+    The topic may be None if only one has one of `WIND_TYPES`. ``yaw`` is from east to the sensor's
+    x axis, counter-clockwise, in [rad]; vectors point ``to`` where the wind blows, or ``from``
+    where it comes from.
 
     Raises
     ------
@@ -75,10 +67,7 @@ def read_bag_wind(
     if n_unstamped:
         notes.append(f"{n_unstamped} messages without a stamp have the time they were recorded at")
     return rows.record(
-        epoch=epoch * 1e-9,
-        notes=tuple(notes),
-        yaw=yaw,
-        direction_convention=direction_convention,
+        epoch=epoch * 1e-9, notes=tuple(notes), yaw=yaw, direction_convention=direction_convention
     )
 
 

@@ -14,7 +14,6 @@ NMEA 0183: the wind sentences of an instrument on a mast or a boat.
 
 The bow has to be told: option ``heading``. A mast instrument aligned to north has 0. A wrong
 checksum, a status that is not A, an empty field: the sentence is refused.
-
 """
 
 from __future__ import annotations
@@ -44,23 +43,18 @@ def parse_nmea(
     line: str, heading: float = 0.0, declination: float = 0.0, *, need_checksum: bool = False
 ) -> SensorLine | None:
     """
-    Parse a line of NMEA 0183.
+    Parse a line of NMEA 0183, to the wind of a kind of `SENTENCES`; None for any other line.
+
+    A logger may have put something of its own before the sentence.
 
     Parameters
     ----------
-    line
-        The line; a logger may have put something of its own before the sentence.
     heading
         Of the bow, clockwise from true north, in [rad].
     declination
         Of the magnetic needle, east positive, in [rad]; for a MWD without a true direction.
     need_checksum
         Whether to refuse a sentence without a checksum, which is optional in the standard.
-
-    Returns
-    -------
-    SensorLine | None
-        The wind, of a kind of `SENTENCES`; None for any other line.
 
     """
     sentence = _SENTENCE.match(line, max(line.rfind("$"), 0))
@@ -88,18 +82,10 @@ def read_nmea_wind(
     declination: float = 0.0,
 ) -> WindRecord:
     """
-    Read the wind of an NMEA 0183 log, whose sentences are taken as evenly spaced.
+    Read the wind of an NMEA 0183 log, whose sentences are taken as evenly spaced, ``rate`` in [Hz].
 
-    Parameters
-    ----------
-    path
-        The file; other sentences in it are passed over.
-    sentence
-        One of `SENTENCES`, or ``auto``: the first of these with a good sentence.
-    rate
-        Sentences of that kind per second in [Hz].
-    heading, declination
-        As of `parse_nmea`.
+    The sentence is one of `SENTENCES`, or ``auto``: the first of these with a good one; others are
+    passed over. ``heading`` and ``declination`` are those of `parse_nmea`.
 
     Raises
     ------

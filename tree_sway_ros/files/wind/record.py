@@ -6,7 +6,6 @@ A wind record: velocity over time, as every reader gives it.
 Velocities blow TO where they point, in m/s, in the frame east, north, up (REP-103), whatever the
 file says it in. A row that cannot be used is refused and counted, never guessed and never filled
 in: a gap stays a gap in the times.
-
 """
 
 from __future__ import annotations
@@ -82,18 +81,8 @@ class WindRows:
     """
     Rows on their way to a record, and those refused.
 
-    Parameters
-    ----------
-    source
-        The file, for the errors.
-    row_name
-        What a row is called: line, sentence, message.
-    time, velocity, number
-        Time in [s], components of the velocity one row after the other in [m/s], and the number of
-        the row in the file.
-    refused, first_refused
-        As in `WindRecord`.
-
+    A row is a line, a sentence or a message by ``row_name``. Times are in [s]; components of the
+    velocity stand one row after the other in [m/s]; numbers are those of the rows in the file.
     """
 
     source: str
@@ -133,22 +122,10 @@ class WindRows:
         direction_convention: str = "to",
     ) -> WindRecord:
         """
-        Check times and speeds and return the record.
+        Check times and speeds and return the record, its velocities turned as of `WindConvention`.
 
-        Parameters
-        ----------
-        epoch
-            What the times count from, in seconds after 1970-01-01; None if that is not known.
-        notes
-            Notes of the record.
-        yaw, direction_convention
-            How the rows' velocities are to be turned; see `WindConvention`.
-
-        Raises
-        ------
-        FormatError
-            If no good row is left.
-
+        ``epoch`` is what the times count from, in seconds after 1970-01-01, None if that is not
+        known. A `FormatError` tells that no good row is left.
         """
         time = np.array(self.time, dtype=np.float64)
         velocity = np.array(self.velocity, dtype=np.float64).reshape(-1, 3)
@@ -181,15 +158,7 @@ class WindRows:
 
 
 def increasing(time: Floats) -> NDArray[np.bool_]:
-    """
-    Mark a longest increasing run of samples, so that one wrong stamp costs one sample.
-
-    Parameters
-    ----------
-    time
-        Times in the order of the file in [s], (n,).
-
-    """
+    """Mark a longest increasing run of times (n,), so that one wrong stamp costs one sample."""
     keep = np.ones(len(time), dtype=np.bool_)
     if bool((np.diff(time) > 0.0).all()):
         return keep

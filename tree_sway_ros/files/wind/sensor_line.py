@@ -22,17 +22,9 @@ MAX_LINE = 1024
 @dataclass(frozen=True, slots=True)
 class SensorLine:
     """
-    What a line says.
+    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why it is refused.
 
-    Parameters
-    ----------
-    kind
-        Which sentence or format it is of.
-    velocity
-        Where the wind blows to, east, north, up, in [m/s]; None if the line is refused.
-    refusal
-        Why it is refused; empty if it is not.
-
+    ``kind`` is the sentence or format that it is of.
     """
 
     kind: str
@@ -61,7 +53,6 @@ def line_of(
     """
     Return what `read` finds in a line of so many characters, unless its length or checksum refuses
     it; `told` is the checksum that stands in it, of one of these bodies, None without one.
-
     """
     if length > MAX_LINE:
         found: Velocity | str = f"a line of {length} characters"
@@ -80,25 +71,9 @@ def read_sensor_log(
     """
     Read the wind of a log of an anemometer's lines, which carry no time: they are evenly spaced.
 
-    A line that is refused keeps its place in time.
-
-    Parameters
-    ----------
-    path
-        The file; lines that are not about the wind are passed over.
-    parse
-        Parses a line.
-    kinds
-        Kinds wanted, the best one first; the first with a good line is read.
-    rate
-        Lines of that kind per second in [Hz].
-    notes
-        Notes of the record, besides the one on its times.
-
-    Returns
-    -------
-    tuple
-        The kind that was read, and the record.
+    Lines that are not about the wind are passed over; one that is refused keeps its place in time.
+    Of the kinds wanted, the best one first, the first with a good line is read; its name is
+    returned before the record. ``rate`` is that of its lines in [Hz].
 
     Raises
     ------

@@ -11,7 +11,6 @@ Lines of ASCII that sonic anemometers send: Gill's and TriSonica's.
 
 North is the instrument's marker: option ``heading`` says where that points. A wrong checksum, a
 status other than good, a value that is missing: the line is refused.
-
 """
 
 from __future__ import annotations
@@ -43,22 +42,11 @@ def parse_sonic(
     line: str, heading: float = 0.0, *, need_checksum: bool = False
 ) -> SensorLine | None:
     """
-    Parse a line of a sonic anemometer.
+    Parse a line of a sonic anemometer, with or without STX, ETX and what follows it.
 
-    Parameters
-    ----------
-    line
-        The line, with or without STX, ETX and what follows it.
-    heading
-        Where the instrument's north marker points, clockwise from true north, in [rad].
-    need_checksum
-        Whether to refuse a Gill line without a checksum; a TriSonica has none.
-
-    Returns
-    -------
-    SensorLine | None
-        The wind, of a kind of `KINDS`; None for any other line.
-
+    The wind is of a kind of `KINDS`; any other line is None. ``heading`` is where the instrument's
+    north marker points, clockwise from true north, in [rad]. A Gill line without a checksum may be
+    refused; a TriSonica has none.
     """
     begin = line.rfind("\x02") if "\x02" in line else len(line) - len(line.lstrip())
     gill = _GILL.match(line, begin)
@@ -77,16 +65,7 @@ def parse_sonic(
 
 def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> WindRecord:
     """
-    Read the wind of a log of a sonic anemometer's lines, taken as evenly spaced.
-
-    Parameters
-    ----------
-    path
-        The file.
-    rate
-        Lines per second in [Hz].
-    heading
-        As of `parse_sonic`.
+    Read the wind of a log of a sonic anemometer's lines, taken as evenly spaced, ``rate`` in [Hz].
 
     Raises
     ------

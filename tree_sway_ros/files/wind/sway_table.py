@@ -10,7 +10,6 @@ follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units only bring the 
 scale, as frequency and damping do not depend on it. Comma, semicolon or tab between cells; lines
 with # are comments. Other columns are left alone. A row that is no number is refused with its line
 and never filled in.
-
 """
 
 from __future__ import annotations
@@ -80,11 +79,6 @@ class SwayRecord:
 def read_csv_sway(path: Path) -> SwayRecord:
     """
     Read the motion of a tree from a table.
-
-    Parameters
-    ----------
-    path
-        The file.
 
     Raises
     ------

@@ -13,7 +13,6 @@ TOA5 has four header lines: the logger, the names, their units, how they were pr
 components of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument
 (CSAT3 manual, 2.3); ``yaw`` turns them to east and north. Diagnostic words differ from instrument
 to instrument and are not read. A row that holds no number is refused.
-
 """
 
 from __future__ import annotations
@@ -52,23 +51,12 @@ def read_csv_wind(
     path: Path, direction_convention: str | None = None, yaw: float = 0.0
 ) -> WindRecord:
     """
-    Read the wind of a table.
+    Read the wind of a table, of components (``to``) or a direction (``from``) if no convention is
+    told.
 
-    Parameters
-    ----------
-    path
-        The file.
-    direction_convention
-        ``to`` or ``from``; None for ``to`` with components and ``from`` with a direction.
-    yaw
-        From east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from north
-        to the sensor's zero, likewise counter-clockwise.
-
-    Raises
-    ------
-    FormatError
-        A column that is missing, a unit that is not known, or no good row.
-
+    ``yaw`` is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from
+    north to the sensor's zero, likewise. A `FormatError` tells of a column that is missing, a unit
+    that is not known, or no good row.
     """
     WindConvention(direction_convention or "to")  # refused before the file is read
     return _wind(parse_table(read_lines(path), str(path)), direction_convention, yaw)
@@ -81,22 +69,11 @@ def read_toa5_wind(
     direction_convention: str | None = None,
 ) -> WindRecord:
     """
-    Read the wind of a TOA5 table.
+    Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant of them if no columns are
+    named.
 
-    Parameters
-    ----------
-    path
-        The file.
-    columns
-        Names of the three components; ``Ux Uy Uz`` or a usual variant of them if None.
-    yaw, direction_convention
-        As of `read_csv_wind`.
-
-    Raises
-    ------
-    FormatError
-        Not TOA5, no such columns, or no good row.
-
+    ``yaw`` and the convention are as of `read_csv_wind`. A `FormatError` tells of what is not TOA5,
+    of no such columns, or no good row.
     """
     WindConvention(direction_convention or "to")  # refused before the file is read
     lines, split = read_lines(path), partial(split_row, separator=",")

@@ -4,7 +4,6 @@
 Read a wind record from a file of any known format.
 
 The content decides before the suffix. A new format is one file with a reader, and one line here.
-
 """
 
 from __future__ import annotations

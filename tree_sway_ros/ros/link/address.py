@@ -17,17 +17,10 @@ _BAUD = 4800  # of NMEA 0183
 @dataclass(frozen=True)
 class Address:
     """
-    One end of a link.
+    One end of a link: ``tcp``, ``udp`` or ``serial``; a host to call or to listen on, or a serial
+    port.
 
-    Parameters
-    ----------
-    kind
-        ``tcp``, ``udp`` or ``serial``.
-    place
-        Host to call (tcp), or to listen on (udp, all if empty), or the serial port.
-    number
-        Port, or baud rate of the serial port.
-
+    For udp an empty place is all; the number is the port, or the baud rate of the serial port.
     """
 
     kind: str
@@ -42,15 +35,7 @@ class Address:
 
 
 def read_address(text: str) -> Address:
-    """
-    Read an address.
-
-    Raises
-    ------
-    ParameterError
-        If it is none.
-
-    """
+    """Read an address; a `ParameterError` if it is none."""
     network, serial = _NETWORK.fullmatch(text), _SERIAL.fullmatch(text)
     if network is not None and 0 < int(network[3]) < 65_536 and (network[2] or network[1] == "udp"):
         return Address(network[1], network[2], int(network[3]))

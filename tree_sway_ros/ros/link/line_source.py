@@ -24,26 +24,10 @@ _BACKLOG = 64  # datagrams
 
 class LineSource:
     """
-    Listens to an instrument.
+    Listens to an instrument at an address; hands each line to `take`, in a thread of its own.
 
-    Parameters
-    ----------
-    address
-        Where it is heard.
-    take
-        Called with each line, in the thread of the source.
-    log
-        Called with a line when a link is made or lost.
-    silence
-        A link without a byte for so long is given up and made anew [s].
-    first_pause
-        Before the first new attempt [s].
-
-    Raises
-    ------
-    MissingDependencyError
-        If the address is a serial port and pyserial is not there.
-
+    A link without a byte for the time of `silence` [s] is given up and made anew, first after
+    `first_pause` [s]. A `MissingDependencyError` tells that a serial port needs pyserial.
     """
 
     def __init__(

@@ -20,15 +20,8 @@ class Lines:
 
     def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[str]:
         """
-        Take bytes and return the lines they complete.
-
-        Parameters
-        ----------
-        data
-            Of any length.
-        is_whole
-            Whether they end a line, as a datagram does.
-
+        Take bytes, which end a line where they are a whole datagram; return the lines they
+        complete.
         """
         *whole, begun = (self._begun + data).replace(b"\r", b"\n").split(b"\n")
         if is_whole:

@@ -5,5 +5,4 @@ Parameters of nodes: one table each, from which declaration, checks and document
 
 A refused value keeps the old one.
 What a parameter does is written where it is used.
-
 """

@@ -7,7 +7,6 @@ it runs.
 ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently
 ignores a misspelt name. Parameters are therefore declared with dynamic typing; kinds, ranges and
 names are checked here, and a refused change keeps the old value and says why.
-
 """
 
 from __future__ import annotations

@@ -4,7 +4,6 @@
 The parameters of each node, one table per node.
 
 Defaults stand here and nowhere else: the files in ``config/`` hold overrides only.
-
 """
 
 from __future__ import annotations

@@ -6,7 +6,6 @@ fact.
 
 The ROS declaration, the check of values and of YAML files, and the table in the README come from
 the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
-
 """
 
 from __future__ import annotations
@@ -67,11 +66,8 @@ class Parameter:
         """
         Convert a value to the parameter's kind.
 
-        Raises
-        ------
-        ParameterError
-            Wrong kind, not finite, out of range, or not among the choices; says what is right.
-
+        A `ParameterError` says what is right: another kind, not finite, out of range, not among the
+        choices.
         """
         kind = type(self.default)
         if kind is tuple:

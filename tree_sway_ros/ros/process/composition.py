@@ -6,7 +6,6 @@ Several nodes in one process, over real DDS: for the demo, for tests, for progra
     with Composition({"anemometer": {}, "wind": {}, "solver": {"tree": "goldcrest"}}) as nodes:
         ...
         nodes.check()
-
 """
 
 from __future__ import annotations
@@ -32,17 +31,10 @@ NODE_CLASSES = {
 
 class Composition:
     """
-    Nodes that share a process and an executor.
+    Nodes that share a process and an executor, in the order and with the values of their
+    parameters.
 
-    Parameters
-    ----------
-    parameters
-        Which nodes to start, in this order, each with the values of its parameters that differ from
-        the defaults.
-    namespace
-        Of every node.
-    domain_id
-        ROS domain; the environment's if None.
+    The ROS domain is the environment's if None.
 
     Raises
     ------
@@ -83,19 +75,7 @@ class Composition:
         self._thread.start()
 
     def add(self, name: str, values: Mapping[str, Value], namespace: str = "") -> Any:
-        """
-        Start another node.
-
-        Parameters
-        ----------
-        name
-            One of `NODE_CLASSES`.
-        values
-            Of its parameters.
-        namespace
-            Of the node; two trees need two of them.
-
-        """
+        """Start another node of `NODE_CLASSES` in a namespace, with values of its parameters."""
         from rclpy.parameter import Parameter
 
         module, class_name = NODE_CLASSES[name]

@@ -7,7 +7,6 @@ Ctrl-C and SIGTERM set a flag that a loop looks at, or break into what runs befo
 Python looks at signals between two of its own instructions, and the compiler of the kernels may not
 come back to one for seconds; so a thread watches as well, and ends the process when the time is
 over.
-
 """
 
 from __future__ import annotations
@@ -32,9 +31,7 @@ class Ending:
     """
     A context that hears SIGINT and SIGTERM; in the main thread only, elsewhere it does nothing.
 
-    Once told to end, nothing that is raised leaves it: what is broken off amid its work may
-    complain of anything.
-
+    Once told to end, nothing that is raised leaves it: what is broken off may complain of anything.
     """
 
     def __init__(self) -> None:

@@ -6,7 +6,6 @@ on.
 
 An exception that leaves a callback ends the executor, and with it every node that shares it; one
 that leaves the callback of a service leaves its caller without an answer.
-
 """
 
 from __future__ import annotations
@@ -20,12 +19,6 @@ from typing import Any
 class CallbackGuard:
     """
     Wraps callbacks; each place that raises is logged once, with its trace, and counted ever after.
-
-    Parameters
-    ----------
-    log
-        Called with a text.
-
     """
 
     def __init__(self, log: Callable[[str], None]) -> None:
@@ -40,7 +33,6 @@ class CallbackGuard:
 
         Where the wrapped one raises, it returns its last argument: of a service this is the
         response as it was made, so that the caller gets an answer.
-
         """
 
         @functools.wraps(callback)

@@ -16,14 +16,8 @@ _Own = TypeVar("_Own", bound="Listener")
 
 class Listener:
     """
-    A node with an executor of its own.
-
-    Parameters
-    ----------
-    name, namespace
-        Of the node.
-    context
-        Of rclpy; one of its own, which ends with it, if None.
+    A node with an executor of its own, in a context of its own, which ends with it, if none is
+    given.
 
     Raises
     ------

@@ -44,18 +44,10 @@ def _nobody(_message: Any) -> None:
 
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
-    A node with a table of parameters.
+    A node with a table of parameters, found under its name, whatever the node is remapped to.
 
     It is made in two stages, `configure` and `activate`: at once, or one by one by a manager where
-    the parameter `lifecycle` says so.
-
-    Parameters
-    ----------
-    name
-        Of the node; its table is found under this name, whatever the node is remapped to.
-    options
-        For `rclpy.node.Node`: context, namespace, parameter_overrides, ...
-
+    the parameter `lifecycle` says so. Options are those of `rclpy.node.Node`.
     """
 
     def __init__(self, name: str, **options: Any) -> None:
@@ -160,17 +152,9 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def publisher(self, topic: Topic, kind: Any = None, *, alone: bool = False) -> Any:
         """
-        Publisher of a topic of the table.
+        Publisher of a topic of the table, of a kind of messages where a parameter chooses it.
 
-        Parameters
-        ----------
-        topic
-            Of the table.
-        kind
-            Class of the messages, where a parameter chooses it.
-        alone
-            Whether a second publisher on the topic is a fault, to be told of.
-
+        ``alone``: a second publisher on the topic is a fault, to be told of.
         """
         made = self.create_publisher(
             kind or message_class(topic),
@@ -194,7 +178,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """
         Subscription to a topic of the table; `kind` where a parameter chooses the type, `raw` for
         bytes, `alone` where a second publisher is a fault.
-
         """
         made = self.create_subscription(
             kind or message_class(topic),
@@ -214,7 +197,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
         No executor comes between a thread that keeps time and its messages: what came before the
         clock went on is there when the tick is.
-
         """
         made = self.create_subscription(
             message_class(topic),

@@ -14,15 +14,10 @@ AGAIN = 5.0
 
 class Progress:
     """
-    A context for a start that may take long.
+    A context for a start that may take long: a stage that goes on is said again after ``again``
+    [s].
 
-    Parameters
-    ----------
-    log
-        Called with a line, from another thread as well.
-    again
-        Time after which a stage that goes on is said again [s].
-
+    It is logged from another thread as well.
     """
 
     def __init__(self, log: Callable[[str], None], again: float = AGAIN) -> None:

@@ -5,7 +5,6 @@ The life of a node's process, written once: start, spin, end.
 
 Exit codes: 0 after Ctrl-C, SIGTERM or the end of the work, 2 with one line where the user can do
 something about it. ROS itself may be missing, so nothing here imports it at the top.
-
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
@@ -26,24 +26,15 @@ _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 _M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
 """Of glibc: what is larger [bytes] goes back to the system when it is freed."""
+_PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+"""Name the file of Fast DDS 2 and of 3."""
 
 
 def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
     """
-    Run a node until it is done or told to end.
+    Run a node until it is done or told to end; returns the exit code.
 
-    Parameters
-    ----------
-    module, node_class
-        Where the node is defined and what it is called; imported only if ROS is there.
-    args
-        Command line without the program's name; `sys.argv` if None.
-
-    Returns
-    -------
-    int
-        The exit code.
-
+    Its module is imported only if ROS is there; the command line is `sys.argv` if None.
     """
     gc.disable()  # what a start loads stays
     try:
@@ -58,15 +49,7 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
 
 
 def require_rclpy() -> Any:
-    """
-    Import rclpy.
-
-    Raises
-    ------
-    MissingDependencyError
-        If it is not there, with what to do.
-
-    """
+    """Import rclpy; a `MissingDependencyError` says what to do if it is not there."""
     try:
         return importlib.import_module("rclpy")
     except ImportError as error:
@@ -77,20 +60,14 @@ def require_rclpy() -> Any:
 
 
 def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
-    """
-    Initialise rclpy, with clear errors for what users meet.
-
-    Raises
-    ------
-    TransportError
-        If the domain or the arguments cannot be used.
-
-    """
+    """Initialise rclpy; a `TransportError` if the domain or the arguments cannot be used."""
     # The paced threads must not wait 5 ms for an executor that holds the interpreter.
     sys.setswitchinterval(_SWITCH_INTERVAL)
     # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
     if hasattr(ctypes.pythonapi, "mallopt"):
         ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
+    if not any(os.environ.get(name) for name in _PROFILES):
+        os.environ.update(dict.fromkeys(_PROFILES, str(Path(__file__).with_name("discovery.xml"))))
     domain = os.environ.get("ROS_DOMAIN_ID", "")
     if domain and not (domain.isdecimal() and int(domain) <= 232):
         raise TransportError(
@@ -104,15 +81,7 @@ def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
 
 
 def create(make: Any, **options: Any) -> Any:
-    """
-    Create a node, with a clear error where the middleware refuses.
-
-    Raises
-    ------
-    TransportError
-        If the middleware cannot join the domain.
-
-    """
+    """Create a node; a `TransportError` if the middleware cannot join the domain."""
     try:
         return make(**options)
     except Exception as error:

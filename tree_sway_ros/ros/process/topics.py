@@ -6,7 +6,6 @@ The topics: name, type and quality of service of each, for the nodes and for the
 Names are relative, so that a namespace holds one tree. Poses and markers are RELIABLE because RViz
 and Unity ask for that and see nothing otherwise; queues are short because a reliable queue replays
 everything it holds once a broken link is back.
-
 """
 
 from __future__ import annotations
@@ -19,23 +18,10 @@ from typing import Any
 @dataclass(frozen=True)
 class Topic:
     """
-    One topic.
+    One topic: its relative name, remapped by launch files, and its type ``package/msg/Name``.
 
-    Parameters
-    ----------
-    name
-        Relative name, remapped by launch files.
-    type_name
-        ROS type as ``package/msg/Name``; the default where a parameter chooses.
-    description
-        One sentence for people.
-    reliable
-        Whether a sample that was lost is sent again.
-    latched
-        Whether a late subscriber receives the last sample (TRANSIENT_LOCAL).
-    depth
-        Samples kept.
-
+    ``reliable``: a sample that was lost is sent again; ``latched``: a late subscriber receives the
+    last one (TRANSIENT_LOCAL); ``depth``: samples kept.
     """
 
     name: str
@@ -44,12 +30,6 @@ class Topic:
     reliable: bool = True
     latched: bool = False
     depth: int = 1
-
-    @property
-    def qos_text(self) -> str:
-        """Quality of service, for people."""
-        reliability = "reliable" if self.reliable else "best effort"
-        return f"{reliability}{', latched' if self.latched else ''}, last {self.depth}"
 
 
 WIND = Topic(

@@ -24,19 +24,8 @@ From one report to the next [s], of wall time: reports go on while simulated tim
 @dataclass(frozen=True)
 class Status:
     """
-    One line of a report.
-
-    Parameters
-    ----------
-    name
-        Of what, for example ``wind``; the node's name is put before it.
-    level
-        OK, WARN, ERROR or STALE.
-    message
-        One sentence.
-    values
-        Figures by name, numbers or strings.
-
+    One line of a report of something, for example ``wind``: its level, a sentence, and figures by
+    name.
     """
 
     name: str
@@ -64,17 +53,9 @@ def status_array(statuses: list[Status], *, prefix: str, hardware: str, stamp: A
 
 class Reporter:
     """
-    Publishes what `collect` returns once per second.
+    Publishes the statuses that `collect` returns once per second, by the clock of a node.
 
-    Parameters
-    ----------
-    node
-        Whose clock stamps the reports.
-    hardware
-        What is reported on, for example the tree's name.
-    collect
-        Returns the statuses.
-
+    ``hardware`` is what is reported on, for example the tree's name.
     """
 
     def __init__(self, node: Any, hardware: str, collect: Callable[[], list[Status]]) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import time
 from dataclasses import asdict
 
+from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.scene.demand import adaptive_among
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
@@ -39,19 +40,7 @@ class SwayReport:
     def statuses(
         self, stepper: Stepper, pacer: Pacer, frames: int, counts: GateCounts
     ) -> list[Status]:
-        """
-        Report on the wind, the output and the model.
-
-        Parameters
-        ----------
-        stepper, pacer
-            Of the solver.
-        frames
-            Pose arrays published so far.
-        counts
-            What became of the samples of the wind.
-
-        """
+        """Report on the wind, the output and the model, after so many pose arrays."""
         output = self._output(pacer.pace(), 1e9 / pacer.period, frames, pacer.is_simulated)
         statuses = [_wind(stepper.wind_state, counts), output, _model(stepper.simulator)]
         gusts = stepper.simulator.gusts
@@ -100,8 +89,9 @@ def _model(simulator: Simulator) -> Status:
     trees = simulators_of(simulator)
     if trees != (simulator,):
         values |= {f"fidelity of {each.tree.name}": each.model for each in trees}
-    banks = [getattr(each, "shown", each).bank.oscillators for each in trees]
-    outside = [bank.n_outside for bank in banks if hasattr(bank, "n_outside")]
+    used = [each.shown if isinstance(each, AdaptiveSimulator) else each for each in trees]
+    banks = [each.bank.oscillators for each in used]
+    outside = [bank.n_outside for bank in banks if bank.is_tabled]
     if outside:
         values["steps outside of the wind basis"] = sum(outside)
     adaptive = adaptive_among(trees)

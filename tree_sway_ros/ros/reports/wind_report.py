@@ -24,7 +24,6 @@ class WindReport:
     """
     Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with
     stamps.
-
     """
 
     def __init__(self) -> None:
@@ -63,18 +62,10 @@ class WindReport:
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
-        Report.
+        Report, by what the gate refused or found odd, and the types on the topic that are not read.
 
-        Parameters
-        ----------
-        timeout
-            Age of the last good sample from which on the wind counts as lost [s]; three periods of
-            a sensor that is slower.
-        gate
-            Which counted what was refused or odd.
-        types_not_read
-            Message types on the topic that the node is not set to read.
-
+        The wind counts as lost when its last good sample is older than a timeout [s]; three periods
+        of a sensor that is slower.
         """
         age, timeout = self.age, max(timeout, _PERIODS * self._period)
         values: dict[str, object] = {
@@ -95,4 +86,7 @@ class WindReport:
             return Status("wind", WARN, f"no wind for {age:.1f} s, its force decays", values)
         if gate.is_frozen:
             return Status("wind", WARN, "frozen: the sensor repeats the same sample", values)
+        if gate.is_sluggish:
+            text = "sluggish: the sensor passes slow changes alone, is its bearing free?"
+            return Status("wind", WARN, text, values)
         return Status("wind", OK, f"{self.rate:.1f} Hz", values)

@@ -5,7 +5,6 @@ Who must listen before a record begins, and who must have heard before time goes
 
 A replay is exact where the first tick of the clock finds everybody listening, where every sample
 has reached the solver before it steps to that time, and where it skips no frame to keep up.
-
 """
 
 from __future__ import annotations
@@ -31,11 +30,7 @@ def required(text: str) -> dict[str, int]:
     """
     Read who must listen: topics parted by spaces, each with a number of subscribers if not one.
 
-    Raises
-    ------
-    ParameterError
-        If a number is none.
-
+    A `ParameterError` tells of a number that is none.
     """
     wanted: dict[str, int] = {}
     for word in text.split():
@@ -51,19 +46,7 @@ def required(text: str) -> dict[str, int]:
 
 
 class Audience:
-    """
-    Waits for subscribers.
-
-    Parameters
-    ----------
-    wanted
-        Number of subscribers by topic.
-    count
-        How many a topic has.
-    log
-        Called with a line that says who is missing, when that changes.
-
-    """
+    """Waits for numbers of subscribers by topic; logs who is missing, when that changes."""
 
     def __init__(
         self, wanted: Mapping[str, int], count: Callable[[str], int], log: Callable[[str], None]
@@ -98,15 +81,10 @@ class Audience:
 
 class Answers:
     """
-    Holds the clock until those who follow it have come as far.
+    Holds the clock until those who follow it have come as far, but for a slack [ns] and the last
+    step.
 
-    Parameters
-    ----------
-    slack
-        The clock may be so much ahead of what was heard, and the step between two answers [ns].
-    patience
-        Longest wait in [s]; then time goes on, until something is heard again.
-
+    After the ``patience`` [s] time goes on, until something is heard again.
     """
 
     def __init__(self, slack: int, patience: float = 3.0) -> None:
@@ -150,15 +128,7 @@ class Answers:
 
 
 class Reach:
-    """
-    How far samples reach that are sent ahead of the clock, as those of an exact replay are.
-
-    Parameters
-    ----------
-    patience
-        Longest wait for a sample in [s].
-
-    """
+    """How far samples reach that are sent ahead of the clock, as those of an exact replay are."""
 
     def __init__(self, patience: float = 3.0) -> None:
         self._patience = patience
@@ -176,7 +146,6 @@ class Reach:
         Take samples until they reach a time in [ns]; just once before the first two of them.
 
         What was refused on the way never comes: there the clock is let go on, and so is the wait.
-
         """
         end = time.monotonic() + self._patience
         take()

@@ -8,7 +8,6 @@ tick at the same times. The number of periods since the last tick is counted fro
 from the calls: a late tick reports how many it stands for, and what was missed is skipped, never
 made up for in a burst. Simulated time is followed: paused, nothing ticks; set back, the next tick
 says so.
-
 """
 
 from __future__ import annotations
@@ -33,17 +32,9 @@ _log = logging.getLogger(__name__)
 
 class Tick(NamedTuple):
     """
-    One tick.
+    One tick: its time on the grid [ns], and the periods since the last one, 1 unless late.
 
-    Parameters
-    ----------
-    time
-        Time on the grid in [ns].
-    periods
-        How many periods have passed since the last tick: 1 unless late.
-    restarted
-        True for the first tick, and for the first after the clock was set back.
-
+    ``restarted`` is true for the first, and for the first after the clock was set back.
     """
 
     time: int
@@ -58,7 +49,6 @@ class Pace(NamedTuple):
 
     `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
     the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
-
     """
 
     rate: float
@@ -75,21 +65,10 @@ class Pace(NamedTuple):
 
 class Pacer:
     """
-    Calls `work` at a fixed rate in a thread of its own.
+    Calls `work` with each tick at a fixed rate [Hz] in a thread of its own, by a node's clock.
 
-    Parameters
-    ----------
-    clock
-        A node's clock, wall or simulated.
-    rate
-        In [Hz].
-    work
-        Called with each tick.
-    on_error
-        Called with what `work` raised in `PATIENCE` ticks one after another; the thread then ends.
-    on_slip
-        Called with what `work` raised before that; the next tick comes as if nothing had been.
-
+    What it raised in `PATIENCE` ticks one after another goes to `on_error`, and the thread ends;
+    what it raised before that goes to `on_slip`, and the next tick comes as if nothing had been.
     """
 
     def __init__(

@@ -5,7 +5,6 @@ A wind record in time: when each sample is due, at any speed, around and around.
 
 Time goes on over the seam of a loop: a period after the last sample of one round comes the first of
 the next, so whoever follows the stamps or /clock never sees time go back.
-
 """
 
 from __future__ import annotations
@@ -31,17 +30,10 @@ _MARGIN = 86_400.0
 
 class Event(NamedTuple):
     """
-    Something to publish.
+    Something to publish: its time since the playback began and when it is due, in the record's time
+    [s].
 
-    Parameters
-    ----------
-    time
-        Since the playback began, in the record's time [s].
-    row
-        Of the record; -1 for a tick of /clock.
-    due
-        When to publish it, on the same scale; before its time where samples go ahead.
-
+    The row is -1 for a tick of /clock; what goes ahead is due before its time.
     """
 
     time: float
@@ -51,15 +43,7 @@ class Event(NamedTuple):
 
 def is_ros_time(epoch: float | None, time: NDArray[np.float64]) -> bool:
     """
-    Return whether a record can be played with its own dates.
-
-    Parameters
-    ----------
-    epoch
-        Date of the record's time 0 in [s] after 1970; None, which can, if it has none.
-    time
-        Of its samples in [s], (n,).
-
+    Whether a record can be played with its own dates: the times [s] after an epoch, or without one.
     """
     if epoch is None or not len(time):
         return True
@@ -123,7 +107,6 @@ class Playback:
     def epoch(self) -> int:
         """
         Time of the first event in [ns], for /clock: the record's own, or 1 s if it has no date.
-
         """
         if self._epoch is None:
             return 1_000_000_000
@@ -132,7 +115,6 @@ class Playback:
     def events(self) -> Iterator[Event]:
         """
         Events in the order of their times; a tick of /clock comes after the sample of its time.
-
         """
         if not self.has_clock:
             return self._samples()

@@ -17,24 +17,12 @@ _POLL = 0.02
 
 class PlaybackThread:
     """
-    Plays a record.
+    Plays the events of a record at so many times real time, once ``may_start`` is true.
 
     Stamps are the record's own time where it drives /clock, else the wall time at which each sample
     is due. Should the machine sleep, the playback goes on from where it was, without a burst.
-
-    Parameters
-    ----------
-    playback
-        The events.
-    speed
-        Times real time.
-    publish
-        Called with the row of the record (-1: a tick of /clock) and the stamp in [ns].
-    may_start
-        Polled until true.
-    on_end, on_error
-        Called when the record has ended, or with what `publish` raised.
-
+    `publish` is called with the row of the record (-1: a tick of /clock) and the stamp in [ns];
+    `on_error` with what it raised.
     """
 
     def __init__(

@@ -10,7 +10,6 @@ did.
 A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace
 in the motion; only where a step costs more than half a period are they joined to one long step,
 which the exact propagator takes without harm, so that a slow machine never falls further behind.
-
 """
 
 from __future__ import annotations
@@ -18,9 +17,12 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
 
+from numpy.typing import ArrayLike
+
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.simulator.protocol import Simulator
+from tree_sway_ros.core.wind.averaging import WindAverage
 
 _BLOCK = 10_000_000_000_000
 """
@@ -36,26 +38,20 @@ _NEWEST = 0.02
 
 class Stepper:
     """
-    Steps a simulator through the wind.
+    Steps a simulator through the wind on a grid of a period [ns].
 
-    Parameters
-    ----------
-    simulator
-        Of a tree or a forest.
-    make_wind
-        Makes an empty `WindAverage`; called again whenever the clock was set back.
-    period
-        Of the grid in [ns].
-
+    ``make_wind`` makes an empty `WindAverage`; it is called again whenever the clock was set back.
     """
 
-    def __init__(self, simulator: Simulator, make_wind: Callable[[], Any], period: int) -> None:
+    def __init__(
+        self, simulator: Simulator, make_wind: Callable[[], WindAverage], period: int
+    ) -> None:
         self.simulator = simulator
         self.is_paused = False
         self._make_wind = make_wind
         self._wind = make_wind()
         self._period = period
-        self._samples: deque[tuple[int, Any]] = deque(maxlen=_QUEUE)
+        self._samples: deque[tuple[int, ArrayLike]] = deque(maxlen=_QUEUE)
         self._requests: deque[Callable[[], None]] = deque(maxlen=_QUEUE)
         self._origin = 0
         self._felt = 0.0
@@ -67,7 +63,6 @@ class Stepper:
         """
         Have the kernels compiled or loaded before the first frame is due; return what a frame takes
         in [us].
-
         """
         wind = self._make_wind()
         wind.add(0.0, (1.0, 0.0, 0.0))
@@ -81,7 +76,7 @@ class Stepper:
         self.simulator.reset()
         return 1e6 * min(spent)
 
-    def add_wind(self, time_ns: int, vector: Any) -> None:
+    def add_wind(self, time_ns: int, vector: ArrayLike) -> None:
         """Take a sample of the wind; any thread may call this."""
         self._samples.append((time_ns, vector))
 
@@ -98,19 +93,9 @@ class Stepper:
 
     def advance(self, time_ns: int, periods: int, delay: float, *, may_join: bool = True) -> None:
         """
-        Solve up to a time.
+        Solve so many periods up to a time [ns], with the wind felt later by a delay [s].
 
-        Parameters
-        ----------
-        time_ns
-            End of the last period in [ns].
-        periods
-            How many periods to solve.
-        delay
-            The wind is felt so much later [s].
-        may_join
-            Whether periods may be joined to one step; a replay that is to be exact may not.
-
+        Periods may be joined to one step, unless a replay is to be exact.
         """
         while self._requests:
             self._requests.popleft()()
@@ -127,7 +112,7 @@ class Stepper:
         # Asked for here, in the thread that changes it: reports come from another.
         self.wind_state = str(self._wind.state(self._felt))
 
-    def _mean_wind(self, end: float, dt: float) -> Any:
+    def _mean_wind(self, end: float, dt: float) -> Floats:
         samples = self._samples
         while samples and self._seconds(samples[0][0]) <= end:
             time_ns, vector = samples.popleft()

@@ -5,5 +5,4 @@ Messages on the wire: CDR blocks, poses, markers, the description, wind.
 
 Arrays become bytes here without one Python object per pose.
 When to send is decided in ``timing``.
-
 """

@@ -8,7 +8,6 @@ message of the right size is serialised once, with sentinels where its stamps an
 stand; the sentinels are looked up in the bytes, whatever the layout, and become array views. Every
 float64 of CDR lies 8-aligned from byte 4 on; the buffer is shifted so that the views are aligned in
 memory as well.
-
 """
 
 from __future__ import annotations
@@ -116,22 +115,7 @@ def block_mark(number: int = 0) -> float:
 
 
 def pose_array_template(n_poses: int, frame_id: str) -> CdrTemplate:
-    """
-    Make the bytes of a ``geometry_msgs/PoseArray``.
-
-    Parameters
-    ----------
-    n_poses
-        Number of poses; may be 0.
-    frame_id
-        Of the header.
-
-    Returns
-    -------
-    CdrTemplate
-        Whose one block holds the poses as x y z qx qy qz qw, (n_poses, 7).
-
-    """
+    """Bytes of a ``geometry_msgs/PoseArray``, whose block (n_poses, 7) holds x y z qx qy qz qw."""
     from geometry_msgs.msg import Pose, PoseArray
 
     message = PoseArray()

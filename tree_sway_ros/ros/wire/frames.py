@@ -4,7 +4,6 @@
 Rotations between frames, from what is said on /tf and /tf_static: a sensor on a boat or a robot.
 
 Read here and not by tf2's buffer, so that its messages are all that is needed.
-
 """
 
 from __future__ import annotations
@@ -63,21 +62,11 @@ class Frames:
 
     def rotation(self, frame: str, base: str, stamp: int) -> Floats | None:
         """
-        Return the rotation that turns vectors of a frame into those of another.
+        Rotation (3, 3) that turns vectors of a frame into those of another; None where no way leads
+        there.
 
-        Parameters
-        ----------
-        frame, base
-            From the one into the other.
-        stamp
-            Time in [ns], between two transforms by interpolation; the nearest beyond them, and the
-            latest at 0.
-
-        Returns
-        -------
-        Floats or None
-            (3, 3); None where no way leads from one to the other.
-
+        The stamp is in [ns]: between two transforms by interpolation; the nearest beyond them, and
+        the latest at 0.
         """
         down = self._way_up(base.strip("/"), stamp)
         for ancestor, turn in self._way_up(frame.strip("/"), stamp).items():
@@ -97,17 +86,7 @@ class Frames:
 
 
 class FrameListener:
-    """
-    Hears /tf from when it is made, and says once what it makes of each frame.
-
-    Parameters
-    ----------
-    node
-        A `TreeSwayNode`.
-    base
-        The frame that others are turned into.
-
-    """
+    """Hears /tf from when it is made, and says once what it makes of each frame."""
 
     def __init__(self, node: Any, base: str) -> None:
         self._log, self._base = node.get_logger(), base

@@ -5,7 +5,6 @@ The tree for RViz: one LINE_LIST per radius class, with fixed ids, as bytes.
 
 One marker per segment brings RViz to its knees, and DELETEALL makes it flicker. A handful of line
 lists whose points are overwritten in place costs less than the poses do.
-
 """
 
 from __future__ import annotations
@@ -21,19 +20,7 @@ _TWIG = (0.30, 0.45, 0.20, 1.0)
 
 
 class TreeMarkers:
-    """
-    The markers of one tree.
-
-    Parameters
-    ----------
-    tree
-        Whose segments are drawn.
-    frame_id
-        Of the poses.
-    n_classes
-        Most line widths that are used; classes without a segment are left out.
-
-    """
+    """The markers of one tree, with so many line widths; classes without a segment are left out."""
 
     def __init__(self, tree: Tree, frame_id: str, n_classes: int) -> None:
         from geometry_msgs.msg import Point
@@ -60,20 +47,7 @@ class TreeMarkers:
 
     def to_bytes(self, poses: NDArray[np.float64], stamp: int) -> bytes:
         """
-        Draw the poses.
-
-        Parameters
-        ----------
-        poses
-            Pose block, (n_segments, 7), x y z qx qy qz qw.
-        stamp
-            In [ns].
-
-        Returns
-        -------
-        bytes
-            A ``visualization_msgs/MarkerArray``.
-
+        Draw a pose block (n_segments, 7) at a stamp [ns] as a ``visualization_msgs/MarkerArray``.
         """
         tips = poses[:, :3] + self._length[:, None] * x_axes(poses[:, 3:])
         for block, members in zip(self._template.blocks, self._members, strict=True):

@@ -24,19 +24,7 @@ from tree_sway_ros.ros.wire.wind_messages import fill_stamp
 
 
 class PoseStream:
-    """
-    Publishes one tree, or a forest as one; what nobody subscribes to is not computed.
-
-    Parameters
-    ----------
-    node
-        A `TreeSwayNode` with the solver's parameters.
-    tree
-        The tree.
-    leaves
-        Clusters of leaves that the description tells of; none if None.
-
-    """
+    """Publishes one tree, or a forest as one; what nobody subscribes to is not computed."""
 
     def __init__(self, node: Any, tree: Tree, leaves: LeafClusters | None = None) -> None:
         values = node.values
@@ -73,17 +61,8 @@ class PoseStream:
 
     def publish(self, simulator: Any, index: int, stamp: int, every: int) -> None:
         """
-        Publish what is due.
-
-        Parameters
-        ----------
-        simulator
-            Is asked for the poses if somebody wants them.
-        index, stamp
-            The tick's number, and its time in [ns].
-        every
-            One in so many ticks is published.
-
+        Publish what is due at a tick, every so many; the simulator is asked if somebody wants the
+        poses.
         """
         poses_due = self._pose_divider.is_due(index, every)
         markers_due = self._marker_every > 0 and self._marker_divider.is_due(

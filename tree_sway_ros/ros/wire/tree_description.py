@@ -5,7 +5,6 @@ The tree as JSON: what the poses do not say, once, for whoever draws them.
 
 Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of the
 old form would go wrong; new keys alone do not raise it.
-
 """
 
 from __future__ import annotations
@@ -31,15 +30,7 @@ def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> s
     """
     Describe a tree as JSON of ``doc/tree_description.schema.json``.
 
-    Parameters
-    ----------
-    tree
-        The tree, or trees joined to one record: each begins with a segment whose parent is -1.
-    frame_id
-        Frame of the poses.
-    leaves
-        Its clusters of leaves; left out if None.
-
+    Of trees joined to one record, each begins with a segment whose parent is -1.
     """
     return json.dumps(
         {

@@ -5,7 +5,6 @@ The state of a tree as `sensor_msgs/JointState`: a name per coordinate, the wind
 
 With the ``state`` of `tree_description` it is all that poses are rebuilt from; a bag of it plots
 anywhere and takes some 50 MB per hour.
-
 """
 
 from __future__ import annotations
@@ -27,7 +26,6 @@ WIND_NAMES = ("wind/x", "wind/y", "wind/z")
 def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
     """
     Make the bytes of a state, whose one block holds the wind [m/s] and the coordinates, (3 + m,).
-
     """
     message = JointState()
     message.header.frame_id = frame_id
@@ -40,13 +38,8 @@ def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
 
 def read_state(message: Any) -> tuple[Floats, Floats]:
     """
-    Wind (3,) in [m/s] and coordinates (m,) of a state.
-
-    Raises
-    ------
-    FormatError
-        Names that are not those of a state, or as many numbers as names.
-
+    Wind (3,) in [m/s] and coordinates (m,) of a state; a `FormatError` for names that are not its
+    own.
     """
     if tuple(message.name[:3]) != WIND_NAMES or len(message.name) != len(message.position):
         raise FormatError(
@@ -69,11 +62,7 @@ def read_state_entry(content: Any) -> bytes | None:
     """
     Binary description in a `tree_description`; None where it tells of no state yet.
 
-    Raises
-    ------
-    FormatError
-        An entry that is not what `state_entry` writes.
-
+    A `FormatError` tells of what `state_entry` does not write.
     """
     entry = content.get("state") if isinstance(content, dict) else None
     if entry is None:

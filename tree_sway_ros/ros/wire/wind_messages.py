@@ -5,7 +5,6 @@ The wind in a message: the four types of common_interfaces that drivers use, to 
 
 There is no standard wind message. All four hold a vector of three numbers; what they mean (unit,
 sign, frame) is for `core.wind_convention` to know.
-
 """
 
 from __future__ import annotations
@@ -32,17 +31,9 @@ _SECOND = 1_000_000_000
 
 class WindSample(NamedTuple):
     """
-    A wind vector as a message holds it.
+    A wind vector as a message holds it, in whatever unit and convention the sender uses.
 
-    Parameters
-    ----------
-    stamp
-        In [ns]; 0 where the message has none.
-    frame_id
-        Empty where the message has none.
-    u, v, w
-        The vector, in whatever unit and convention the sender uses.
-
+    The stamp [ns] is 0, and the frame empty, where the message has none.
     """
 
     stamp: int
@@ -69,13 +60,8 @@ _VECTORS: dict[Any, Callable[[Any], Any]] = {
 
 def wind_class(type_name: str) -> Any:
     """
-    Class of a wind message by its name, ``geometry_msgs/Vector3Stamped``.
-
-    Raises
-    ------
-    ParameterError
-        If it is none of the four.
-
+    Class of a wind message by its name, as ``geometry_msgs/Vector3Stamped``; else a
+    `ParameterError`.
     """
     try:
         return _CLASSES[type_name]
@@ -91,7 +77,6 @@ def wind_from_message(message: Any) -> WindSample:
 
     A covariance that begins with -1 says that there is no reading, as REP-145 has it of an IMU:
     then the vector is not a number, for the gate to refuse and count.
-
     """
     vector = _VECTORS[type(message)](message)
     if type(message) is TwistWithCovarianceStamped and message.twist.covariance[0] == -1.0:
@@ -115,17 +100,8 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
 
 class WindWriter:
     """
-    Writes wind the way a driver would.
-
-    Parameters
-    ----------
-    output_type
-        One of the four types.
-    direction_convention
-        ``to`` or ``from``: whether vectors point where the wind goes or where it comes from.
-    frame_id
-        Of the messages.
-
+    Writes wind the way a driver would: one of the four types, vectors that point ``to`` or
+    ``from``.
     """
 
     def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:

@@ -38,7 +38,7 @@ RTOL, ATOL, NO_TEST = 1e-5, 1e-6, 1e9
 
 
 class IdaRun(NamedTuple):
-    """Angles after each frame in [rad], (frames + 1, n); operations [flop] and time [s] a frame."""
+    """Angles [rad], (frames + 1, n); operations [flop] and time [s] per frame."""
 
     theta: Array
     flops: int

@@ -68,7 +68,9 @@ def unevenness(by_cut: dict[int, float]) -> float:
 def cut_table(rounds: int) -> str:
     """Time all models and lay out what is found."""
     lines = [
-        "solve [us], segments a branch" + "".join(f"{cut:9}" for cut in CUTS) + "   most over least"
+        "solve [us], segments per branch"
+        + "".join(f"{cut:9}" for cut in CUTS)
+        + "   most over least"
     ]
     for model in ("branch", "subtree", "modes"):
         by_cut = time_cuts(model, rounds)

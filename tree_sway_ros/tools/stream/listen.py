@@ -4,7 +4,6 @@
 ``tree-sway listen``: count what a solver in another process streams, by a raw subscription.
 
 `ros2 topic hz` turns every pose into a Python object and cannot keep up with a thousand of them.
-
 """
 
 from __future__ import annotations

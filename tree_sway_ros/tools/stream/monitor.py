@@ -39,18 +39,10 @@ _LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
 @dataclass
 class StreamRecord:
     """
-    What was received in the last seconds, one item per message.
+    What was received in the last seconds, one item per message: arrivals and stamps in [s].
 
-    Parameters
-    ----------
-    arrival, stamp
-        When each pose array arrived and what time it shows, in [s].
-    tip
-        Displacement of the highest tip from rest in each pose array in [m], (3,); empty if no tree
-        is followed.
-    wind_arrival, wind
-        When each wind sample arrived in [s], and the sample in [m/s], (3,).
-
+    The displacement of the highest tip from rest [m], (3,), is empty if no tree is followed; wind
+    is in [m/s], (3,).
     """
 
     arrival: deque[float] = field(default_factory=deque)
@@ -94,18 +86,7 @@ def rate_of(times: Sequence[float]) -> float:
 
 class StreamMonitor(Listener):
     """
-    A node that receives poses and wind.
-
-    Parameters
-    ----------
-    context
-        ROS context to live in; one of its own if None.
-    tree
-        The tree that sways, for its rest shape; without it poses are counted and its tip is not
-        followed.
-    namespace
-        Of the tree's nodes.
-
+    A node that receives poses and wind; without a tree, poses are counted and no tip is followed.
     """
 
     def __init__(self, context: Any, tree: Tree | None, namespace: str = "") -> None:
@@ -123,13 +104,8 @@ class StreamMonitor(Listener):
 
     def expect_silence(self) -> None:
         """
-        Look around before publishing: a second wind or tree on the same topics would mix with ours.
-
-        Raises
-        ------
-        TransportError
-            If somebody publishes there already.
-
+        Raise a `TransportError` if somebody publishes already: a second wind or tree would mix with
+        ours.
         """
         self.spin(_LOOK_AROUND)
         for topic in (WIND, SEGMENT_POSES):

@@ -17,16 +17,10 @@ from tree_sway_ros.errors import TransportError
 @contextmanager
 def only_demo() -> Iterator[None]:
     """
-    Hold the place of the demo in this ROS domain, seen at once by others on this machine.
+    Hold the place of the demo in this ROS domain, else raise a `TransportError`.
 
     Discovery takes from nothing to seconds, so that looking around misses a demo that runs. A name
     for a socket, without a file, is free again whatever its process died of.
-
-    Raises
-    ------
-    TransportError
-        If another one holds it.
-
     """
     if not sys.platform.startswith("linux"):
         yield

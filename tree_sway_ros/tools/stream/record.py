@@ -4,7 +4,6 @@
 ``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
 
 The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved anew.
-
 """
 
 from __future__ import annotations
@@ -40,17 +39,12 @@ _LOOK = 0.2
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="bag to make")
-    parser.add_argument(
-        "--format", choices=FORMATS, default=FORMATS[0], help="of the bag (%(default)s)"
-    )
-    parser.add_argument("--namespace", default="", help="of the tree's nodes")
-    parser.add_argument(
-        "--poses", action="store_true", help="also poses, markers and diagnostics: GB per hour"
-    )
-    parser.add_argument(
-        "--seconds", type=float, metavar="N", help="so long from the first message; else by Ctrl-C"
-    )
+    add = parser.add_argument
+    add("-o", "--output", required=True, metavar="FOLDER", help="bag to make")
+    add("--format", choices=FORMATS, default=FORMATS[0], help="of the bag (%(default)s)")
+    add("--namespace", default="", help="of the tree's nodes")
+    add("--poses", action="store_true", help="also poses, markers and diagnostics: GB per hour")
+    add("--seconds", type=float, metavar="N", help="so long from the first message; else by Ctrl-C")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -72,19 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 class Recorder(Listener):
     """
-    Writes what a tree's nodes send into a bag, message by message as bytes.
-
-    Parameters
-    ----------
-    context
-        Of rclpy; one of its own if None.
-    bag
-        To write to.
-    topics
-        What to record.
-    namespace
-        Of the nodes.
-
+    Writes what the nodes of a tree send on some topics into a bag, message by message as bytes.
     """
 
     def __init__(

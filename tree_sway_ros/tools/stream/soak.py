@@ -5,7 +5,6 @@
 
 Every node is a process of its own, or all are in one, as the demo has them. A page is followed, so
 that the viewer has something to do.
-
 """
 
 from __future__ import annotations
@@ -51,22 +50,19 @@ class Health(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("--hours", type=float, default=1.0, help="how long (%(default)s)")
-    parser.add_argument("--tree", default="goldcrest", help="what sways (%(default)s)")
-    parser.add_argument(
-        "--demo", action="store_true", help="all in one process, as the demo; else one per node"
-    )
-    parser.add_argument(
-        "--every", type=float, default=20.0, help="seconds from fault to fault (%(default)s)"
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("--hours", type=float, default=1.0, help="how long (%(default)s)")
+    add("--tree", default="goldcrest", help="what sways (%(default)s)")
+    add("--demo", action="store_true", help="all in one process, as the demo; else one per node")
+    add("--every", type=float, default=20.0, help="seconds from fault to fault (%(default)s)")
+    add(
         "--speed",
         type=float,
         default=1.0,
         metavar="K",
         help="K times as many frames and faults (%(default)s)",
     )
-    parser.add_argument(
+    add(
         "--slope",
         type=float,
         default=1.0,
@@ -128,7 +124,6 @@ def growth(seen: list[Health]) -> tuple[float, float]:
     """
     Slope of the memory after the warm-up, and its standard error, in [MB/h]; NaN from fewer than
     ten looks.
-
     """
     table = np.array([(each.time, each.memory) for each in seen])
     if len(table):

@@ -20,7 +20,6 @@ class Spread:
     Quantiles of times, to 0.6 %: counts of times that are alike, from 1 us to 1000 s.
 
     Shorter times count as the shortest, longer ones as the longest; the largest is kept as it is.
-
     """
 
     def __init__(self) -> None:
@@ -102,15 +101,8 @@ class StreamTotals:
 
     def add_poses(self, arrival: float, stamp: float, tip: Floats | None = None) -> None:
         """
-        Count a pose array.
-
-        Parameters
-        ----------
-        arrival, stamp
-            When it arrived and what time it shows in [s].
-        tip
-            Displacement of the highest tip from rest in [m], (3,); None if no tree is followed.
-
+        Count a pose array: its arrival, the time it shows [s], and the highest tip's displacement
+        [m].
         """
         self.arrivals.add(arrival)
         self.stamps.add(stamp)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 Watching a stream: until its time is over or somebody ends it, with a line that follows what comes.
-
 """
 
 from __future__ import annotations
@@ -31,31 +30,13 @@ def checked_seconds(seconds: float | None) -> float:
 
 
 def watch(
-    monitor: StreamMonitor,
-    seconds: float,
-    check: Callable[[], bool],
-    *,
-    patience: float = 30.0,
+    monitor: StreamMonitor, seconds: float, check: Callable[[], bool], *, patience: float = 30.0
 ) -> None:
     """
-    Receive for a time, and print how it goes.
+    Receive for so many seconds from when poses come, and print how it goes.
 
-    Parameters
-    ----------
-    monitor
-        Who receives; its totals begin when the time begins to count.
-    seconds
-        From when poses come and what had queued up at the start is through; may be infinite.
-    check
-        Called now and then; raises if something failed, returns True to go on.
-    patience
-        How long to wait for the first poses in [s].
-
-    Raises
-    ------
-    TransportError
-        If no poses come.
-
+    ``check`` is called now and then: it raises if something failed, and returns True to go on. A
+    `TransportError` tells that no poses came within the ``patience`` [s].
     """
     deadline = time.monotonic() + patience
     while not monitor.record.arrival and check():

@@ -84,25 +84,7 @@ class AnemometerModel:
         return self._rate
 
     def sample(self, tick: int) -> Floats:
-        """
-        Return the wind at a tick.
-
-        Parameters
-        ----------
-        tick
-            Count of sample periods since the start, not negative.
-
-        Returns
-        -------
-        Floats
-            Wind velocity, blowing to, ENU in [m/s], (3,).
-
-        Raises
-        ------
-        ParameterError
-            If the tick is negative.
-
-        """
+        """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""
         within("tick", tick, 0, 2**63)
         wind = self._mean if self._stream is None else self._mean + self._stream.at(tick)
         enu = along_bearing(wind, self._bearing_to)

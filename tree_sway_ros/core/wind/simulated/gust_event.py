@@ -5,7 +5,6 @@ A gust, step or turn of the wind as data: what happens, when, and how often.
 
 Speeds add along the wind in [m/s]; angles turn it about the vertical in [rad], counter-clockwise
 seen from above (REP-103). Gusts pass; steps and turns last.
-
 """
 
 from __future__ import annotations
@@ -154,22 +153,8 @@ def with_events(
     """
     Add events to a wind: the speeds along the mean wind, then the turns of the whole.
 
-    Parameters
-    ----------
-    time
-        Times in [s], (n,) or a scalar.
-    base
-        Wind without events, blowing to, ENU in [m/s], (n, 3) or (3,).
-    events
-        The events; speeds add up and angles add up.
-    bearing_to
-        Where the mean wind blows to, clockwise from north in [rad].
-
-    Returns
-    -------
-    Floats
-        Wind with events, the shape of `base`.
-
+    The wind blows to ENU in [m/s] at times in [s], (n, 3) or (3,); its mean to a bearing clockwise
+    from north in [rad].
     """
     wind = np.array(base, dtype=np.float64)
     angle = np.zeros(wind.shape[:-1])

@@ -6,7 +6,6 @@ What anemometers do when they fail, as a change of what they send: for rehearsal
 Each fault is one that was seen on sensors in the field: a wet sonic sends a code for no reading, a
 driver repeats its last value with new stamps, a logger sends a batch at once, a sensor starts
 again.
-
 """
 
 from __future__ import annotations
@@ -74,17 +73,8 @@ class SensorFaults:
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
         """
-        Return what is sent for one sample, in the order of sending.
-
-        Parameters
-        ----------
-        time
-            Since the sensor was started in [s].
-        stamp
-            Of the sample in [ns].
-        vector
-            What a sensor without a fault reads in [m/s], (3,).
-
+        What is sent, in order, for a sample at a time since the start [s], of a stamp [ns] and wind
+        [m/s].
         """
         fault = self.at(time)
         if fault != "freeze":

@@ -5,7 +5,6 @@ Spectra of turbulence: how the variance of the wind at a point is shared by freq
 
 A new model of the wind is one function here and its entry in `SPECTRA`: the simulated anemometer,
 its node and the command line offer what stands there.
-
 """
 
 from __future__ import annotations
@@ -32,27 +31,15 @@ class ComponentSpectrum(Protocol):
         across: bool,
     ) -> Floats:
         """
-        Power spectral density, one-sided, of integral ``deviation**2``.
-
-        Parameters
-        ----------
-        frequency, mean_speed, deviation, scale, across
-            As of `von_karman_spectrum`.
-
+        Power spectral density, one-sided, of integral ``deviation**2``; see `von_karman_spectrum`.
         """
 
 
 class Spectrum(NamedTuple):
     """
-    A model of turbulence.
+    A model of turbulence: the spectrum of a component, and integral scales of u, v, w, (3,).
 
-    Parameters
-    ----------
-    of_component
-        Spectrum of a component.
-    scales
-        Integral scales of u, v, w over the turbulence scale Lambda1 of IEC 61400-1 in [-], (3,).
-
+    These are over the turbulence scale Lambda1 of IEC 61400-1.
     """
 
     of_component: ComponentSpectrum
@@ -94,21 +81,10 @@ def von_karman_spectrum(
     frequency: ArrayLike, mean_speed: float, deviation: float, scale: float, *, across: bool = False
 ) -> Floats:
     """
-    Von Karman spectrum of one component, one-sided.
+    Von Karman spectrum of one component, one-sided; arguments as of `kaimal_spectrum`.
 
-    Parameters
-    ----------
-    frequency, mean_speed, deviation, scale
-        As of `kaimal_spectrum`.
-    across
-        False for u, true for v and w.
-
-    Returns
-    -------
-    Floats
-        Power spectral density in [m^2/s^2/Hz], (n,); its integral from 0 is ``deviation**2``
-        (to 2e-4, for the rounding of the constants). Source: von Karman (1948) as in ESDU 85020.
-
+    Its integral from 0 is ``deviation**2`` to 2e-4, for the rounding of the constants. Source: von
+    Karman (1948) as in ESDU 85020.
     """
     time = scale / mean_speed
     x2 = (np.asarray(frequency, dtype=np.float64) * time) ** 2

@@ -17,7 +17,6 @@ spectra from a slow record.
 Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard
 deviation [m/s], Lambda1 turbulence scale of IEC 61400-1 [m]. Axes of a record: u along the mean
 wind, v to its left, w up.
-
 """
 
 from __future__ import annotations
@@ -97,7 +96,6 @@ class Turbulence:
     def deviations(self) -> Floats:
         """
         Standard deviations of u, v, w in [m/s], (3,): IEC 61400-1:2005, equation 11 and table B.1.
-
         """
         if self.intensity is not None:
             along = self.intensity * self.mean_speed
@@ -113,7 +111,6 @@ class Turbulence:
     def spectrum(self, frequency: ArrayLike) -> Floats:
         """
         Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3).
-
         """
         of_component = SPECTRA[self.model].of_component
         columns = [
@@ -128,21 +125,8 @@ class Turbulence:
         """
         Draw one period of the turbulence; joined end to start it goes on without a seam.
 
-        Parameters
-        ----------
-        n_samples
-            Number of samples in the period, at least 4.
-        rate
-            Samples per second in [Hz].
-        rng
-            Source of the phases.
-
-        Returns
-        -------
-        Floats
-            u, v, w about their zero mean in [m/s], (n_samples, 3); each variance is that of
-            `deviations`, exactly.
-
+        At least 4 samples at a rate in [Hz], as u, v, w about their zero mean in [m/s], (n, 3);
+        each variance is that of `deviations`, exactly.
         """
         n_lines = (n_samples - 1) // 2  # without the mean, nor the line at half the rate
         frequency: Floats = np.arange(1, n_lines + 1, dtype=np.float64) * (rate / n_samples)
@@ -163,7 +147,6 @@ class Turbulence:
 
         As the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter 2)
         has it, no more than 1, and in all as much as `STRESS`.
-
         """
         shape = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
         both = np.sqrt(power[:, 0] * power[:, 2])
@@ -193,20 +176,9 @@ def turbulence_scale(height: float) -> float:
 
 def along_bearing(record: Floats, bearing_to: float) -> Floats:
     """
-    Turn u, v, w about a mean wind into east, north, up.
+    Turn velocities along a mean wind, to its left and up, (..., 3), into east, north, up.
 
-    Parameters
-    ----------
-    record
-        Velocities along the mean wind, to its left and up in [m/s], (..., 3).
-    bearing_to
-        Where the mean wind blows to, clockwise from north in [rad]: a westerly has pi/2.
-
-    Returns
-    -------
-    Floats
-        The same velocities in ENU in [m/s], (..., 3).
-
+    The mean wind blows to a bearing clockwise from north in [rad]: a westerly has pi/2.
     """
     sine, cosine = np.sin(bearing_to), np.cos(bearing_to)
     enu_from_wind = np.array([[sine, -cosine, 0.0], [cosine, sine, 0.0], [0.0, 0.0, 1.0]])

@@ -8,7 +8,6 @@ The squares of two neighbouring fades sum to one and the records are independent
 and spectrum are the same at every tick (the spectrum smeared by no more than one line). Block k
 draws its phases from (seed, k) alone: a tick has one value, whichever ticks were asked for before,
 and a change of mean or intensity under the same seed keeps the pattern of the gusts.
-
 """
 
 from __future__ import annotations
@@ -24,22 +23,7 @@ Floats = NDArray[np.float64]
 
 class TurbulenceStream:
     """
-    Endless turbulence, a pure function of seed and tick.
-
-    Parameters
-    ----------
-    turbulence
-        What to draw.
-    rate
-        Ticks per second in [Hz], up to 1000.
-    seed
-        Seed of the phases, 0 to 2^63.
-
-    Raises
-    ------
-    ParameterError
-        If rate or seed is out of its range.
-
+    Endless turbulence, a pure function of seed (0 to 2^63) and tick, up to 1000 of them per second.
     """
 
     def __init__(self, turbulence: Turbulence, rate: float, seed: int) -> None:
@@ -56,25 +40,7 @@ class TurbulenceStream:
         self._tail: Floats = np.empty((0, 3))
 
     def at(self, tick: int) -> Floats:
-        """
-        Return u, v, w about their zero mean at a tick.
-
-        Parameters
-        ----------
-        tick
-            Count of sample periods since the start, not negative.
-
-        Returns
-        -------
-        Floats
-            Along the mean wind, to its left and up in [m/s], (3,); a copy.
-
-        Raises
-        ------
-        ParameterError
-            If the tick is negative.
-
-        """
+        """Return u, v, w about their zero mean in [m/s], (3,), at a tick from 0 on; a copy."""
         within("tick", tick, 0, 2**63)
         hop, offset = divmod(tick, self._n_hop)
         if hop != self._hop:

@@ -7,7 +7,6 @@ A format's own file only parses; what follows is the same for all: branches that
 are set on the nearest cylinder, tiny cylinders are merged, chains of extensions become branches,
 diameters are smoothed if asked for, and the base is moved to the origin. Each step says in a note
 what it did.
-
 """
 
 from __future__ import annotations
@@ -74,11 +73,7 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
     """
     Build a tree from cylinders.
 
-    Raises
-    ------
-    TreeError
-        A tree that cannot be: no root, a cycle, several trees, numbers that are not finite.
-
+    A `TreeError` tells of one that cannot be: no root, a cycle, several trees, what is not finite.
     """
     source, notes = str(path), list(cylinders.notes)
     species = species_named(options.species)

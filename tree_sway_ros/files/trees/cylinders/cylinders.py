@@ -18,23 +18,9 @@ class Cylinders:
     """
     Cylinders or cones of one tree, in the order of the file.
 
-    Parameters
-    ----------
-    start, end
-        Root-side and tip-side end of the axis in [m], (n, 3).
-    diameter
-        Diameter at start and at end in [m], (n, 2).
-    parent
-        Cylinder that each sits on, -1 at the root, (n,).
-    continues
-        Whether each goes on with its parent's branch, (n,); None if the file does not say.
-    labels
-        What an error calls each one.
-    name
-        Name of the tree, if the file has one.
-    notes
-        What the reader of the format has to say.
-
+    Root-side and tip-side ends (n, 3) and diameters at both (n, 2) are in [m]; the parent is -1 at
+    the root; ``continues`` tells which go on with their parent's branch, None if the file does not
+    say. Labels are what an error calls each one, notes what the reader of the format has to say.
     """
 
     start: Floats

@@ -6,7 +6,6 @@ Diameters that a scan got wrong: a robust taper per branch, and twigs as thin as
 A laser sees a twig as thick as its own spot; cylinders thinner than some 5 cm come out too thick
 (Demol et al. 2022, Methods in Ecology and Evolution, review such errors), and single ones are far
 off.
-
 """
 
 from __future__ import annotations
@@ -30,7 +29,6 @@ def fitted_taper(tree: Tree) -> Tree:
     Fitted by the median of the slopes between all pairs of segments (Theil 1950, Sen 1968), which
     up to 29 % of outliers do not move; never widening to the tip. A branch of one segment is left
     as it is.
-
     """
     base, tip = tree.base_diameter.copy(), tree.tip_diameter.copy()
     for branch in range(tree.n_branches):
@@ -56,22 +54,12 @@ def _median_line(x: Floats, y: Floats) -> tuple[float, float]:
 
 def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -> Tree:
     """
-    Make what is thinner than a scan can see taper to a measured twig diameter.
+    Make what is thinner than a scan can see taper to a measured twig diameter, both in [m].
 
     From the place where a branch first gets thinner than is trusted, its diameter falls in a
     straight line to that of a twig at its tip; it begins no thicker than what it sits on. After the
     idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of untrusted cylinders
     by a taper towards twigs measured by hand.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    twig_diameter
-        Diameter at the tips in [m].
-    trusted_diameter
-        Diameter from which on the given ones are kept in [m].
-
     """
     base, tip = tree.base_diameter.copy(), tree.tip_diameter.copy()
     for branch in range(tree.n_branches):

@@ -30,11 +30,7 @@ def join_loose_branches(cylinders: Cylinders) -> JoinedBranches | None:
     """
     Set branches that have no parent on the nearest cylinder of the stem; None if there are none.
 
-    Raises
-    ------
-    TreeError
-        As `checked_order`; also if a loose part is so large that it is a tree of its own.
-
+    Raises as `checked_order`; also if a loose part is so large that it is a tree of its own.
     """
     parent = cylinders.parent
     roots = np.flatnonzero(parent == -1)
@@ -71,7 +67,6 @@ def heirs(cylinders: Cylinders) -> Ints:
     Which child goes on with each cylinder's branch, -1 where none does, (n,).
 
     Where the file does not say, the thickest child. Where it names several, the thickest of them.
-
     """
     heir = np.full(len(cylinders.parent), -1, dtype=np.int64)
     width = cylinders.diameter[:, 0]

@@ -6,7 +6,6 @@ Variables of a MATLAB file, read by scipy (versions 4 to 7) or h5py (7.3) within
 A few bytes can claim gigabytes, nest without end or point to other files; so what a file claims is
 held against its own size before a library acts on it. Source of the layout: MathWorks, MAT-File
 Format (level 5), chapter 1.
-
 """
 
 from __future__ import annotations
@@ -46,12 +45,8 @@ def looks_like_mat(head: str) -> bool:
 
 def read_mat(path: Path) -> Variables:
     """
-    Read the variables of a MATLAB file.
-
-    Returns
-    -------
-    dict
-        Numbers as arrays; a struct as a dictionary of such values, an array of structs as a list.
+    Read the variables of a MATLAB file: numbers as arrays, structs as dictionaries, several as
+    lists.
 
     Raises
     ------
@@ -85,15 +80,7 @@ def read_mat(path: Path) -> Variables:
 
 
 def numbers(value: Any, name: str) -> Floats:
-    """
-    Return a variable as numbers, without axes of length 1.
-
-    Raises
-    ------
-    FormatError
-        If it is none.
-
-    """
+    """Return a variable as numbers, without axes of length 1; a `FormatError` if it is none."""
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub":
         raise FormatError(f"'{name}' is not numeric")
     return value.astype(np.float64).squeeze()
@@ -158,7 +145,6 @@ def _readable(data: bytes, body: range, order: str, depth: int) -> bytes:
     Return an array, an empty one in place of each that is neither numbers, text, cell nor struct.
 
     A damaged one, on which scipy may end the process, is refused.
-
     """
     if depth > _MAX_DEPTH:
         raise FormatError(f"nested deeper than {_MAX_DEPTH}")

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """
 Merge cylinders that are too short to have a direction into their neighbours of the same branch.
-
 """
 
 from __future__ import annotations
@@ -28,20 +27,11 @@ class MergedCylinders(NamedTuple):
 
 def merge_tiny(cylinders: Cylinders, order: list[int], below: float) -> MergedCylinders:
     """
-    Merge cylinders shorter than a length.
+    Merge cylinders of one tree, numbered parents first in ``order``, that are below a length in
+    [m].
 
     A tiny one goes to the cylinder before it in its branch, which is drawn out to its end; the
     first of a branch to the one after it. The volume is kept. What grew on it grows on the other.
-
-    Parameters
-    ----------
-    cylinders
-        Cylinders of one tree.
-    order
-        Their numbers, parents first.
-    below
-        Length in [m].
-
     """
     tiny = np.linalg.norm(cylinders.end - cylinders.start, axis=1) < max(below, 1e-9)
     if not tiny.any() or tiny.all():

@@ -15,21 +15,7 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
 @dataclass(frozen=True)
 class Skeleton:
-    """
-    Nodes of a tree.
-
-    Parameters
-    ----------
-    point
-        Position of each node in [m], (n, 3).
-    diameter
-        Diameter at each node in [m], (n,).
-    parent
-        Row of each one's parent, -1 at the root, (n,).
-    labels
-        What an error calls each.
-
-    """
+    """Nodes of a tree: positions (n, 3) and diameters (n,) in [m], parents (n,), -1 at the root."""
 
     point: Floats
     diameter: Floats
@@ -41,19 +27,8 @@ class Skeleton:
         Segments of a tree with one root: one from its parent to each node but the root.
 
         Several segments may begin at the root node: the thickest is the stem, the others sit on it.
-
-        Parameters
-        ----------
-        source
-            The file.
-        cones
-            Whether a segment has the diameters of its two nodes, or that of its outer node only.
-
-        Raises
-        ------
-        FormatError
-            If there is nothing but a root.
-
+        Cones have the diameters of their two nodes, others that of the outer one. A `FormatError`
+        tells of nothing but a root.
         """
         outer = np.flatnonzero(self.parent >= 0)
         if len(outer) == 0:

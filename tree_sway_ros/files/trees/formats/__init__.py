@@ -5,5 +5,4 @@ Formats of tree files: one file per kind, with its sniffer and its reader.
 
 Each module here has a `TreeFormat` or more; the registry finds them by itself.
 What formats share does not live here.
-
 """

@@ -9,7 +9,6 @@ numbers from 0, the root's parent -1, and has no column for the extension. The b
 much: of the children of a cylinder the one of the same order goes on; ``branchID`` numbers whole
 limbs with all they carry, not chains. Of several of the same order, the one with the greatest
 growth length, all that hangs on it, goes on.
-
 """
 
 from __future__ import annotations

@@ -12,7 +12,6 @@ diameter there in millimetres, as AMAPmod's digitising has them; ``length_unit``
 ``diameter_unit`` say otherwise. A vertex of a coarser scale, such as an axis, has the position of
 its base. A segment goes from the vertex before, or from the base of its axis, to each vertex of the
 finest scales.
-
 """
 
 from __future__ import annotations
@@ -36,11 +35,7 @@ _CODE = re.compile(r"([/<+])([A-Za-z]\w*)(?=[/<+]|$)", re.ASCII)
 @dataclass(slots=True)
 class _Vertex:
     """
-    A vertex of the graph: the vertex it is a part of and the one it sits on, -1 for none.
-
-    It is on scale 1 for the plant, more for its parts; ``edge`` ties it to the vertex that it was
-    written after.
-
+    A vertex on its scale, tied by ``edge`` to the one before it: what it is a part of, and sits on.
     """
 
     label: str
@@ -118,7 +113,6 @@ def _before(vertices: list[_Vertex], vertex: _Vertex, placed: list[bool], place:
     Vertex at whose position another one begins, -1 if there is none.
 
     The base of the axis that it is the first part of, if that has a position; else what it sits on.
-
     """
     whole = vertex.complex if vertex.edge == "/" else -1
     while whole >= 0:

@@ -5,7 +5,6 @@ SWC, the skeleton format of neuroscience, which tree reconstructions use too.
 
 A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of its
 own. SWC has no unit: ``unit`` says how many metres one is.
-
 """
 
 from __future__ import annotations

@@ -7,7 +7,6 @@ After comments a header, such as ``height,crown_radius, x,y,z,radius,parent_id,s
 attributes of the tree, if any, then the fields of a node. The first node of a line is the root,
 parent -1, and has no volume; each other one is a cylinder from its parent's point to its own, of
 its own radius.
-
 """
 
 from __future__ import annotations

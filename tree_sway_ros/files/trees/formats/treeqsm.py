@@ -12,7 +12,6 @@ MATLAB: structs with a field ``cylinder``; version 2.0 saves loose variables, ol
 ``CylData`` of a row per cylinder. A file may hold several models, as variables or as an array of
 structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which names start
 and axis once, though each has three columns; tabs, spaces, commas or semicolons between the cells.
-
 """
 
 from __future__ import annotations

@@ -5,5 +5,4 @@ Trees, forests and species written by people, as YAML with schemas.
 
 Each schema stands beside its reader.
 Other formats have rooms of their own.
-
 """

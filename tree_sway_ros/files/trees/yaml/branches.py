@@ -29,12 +29,7 @@ class _Placed:
 
 def branch_segments(document: YamlDocument) -> SegmentTable:
     """
-    Join named branches to one table of segments.
-
-    Parameters
-    ----------
-    document
-        A tree with ``branches``.
+    Join the named branches of a tree to one table of segments.
 
     Raises
     ------

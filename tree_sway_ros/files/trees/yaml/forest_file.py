@@ -31,23 +31,11 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 @dataclass(frozen=True, eq=False)
 class ForestFile:
     """
-    A forest.
+    A forest: its trees, each with its name, its place and its wood.
 
-    Parameters
-    ----------
-    name
-        Of all together.
-    trees
-        Each with its name, its place and its wood.
-    source
-        The file.
-    notes
-        What the importer changed or left out, one sentence each.
-    anemometer
-        Where the wind is measured in [m], (3,); where it reaches the forest if None.
-    convection_ratio
-        Speed at which gusts travel over the mean wind speed in [-].
-
+    Notes say what the importer changed or left out, one sentence each. The wind is measured at the
+    ``anemometer`` [m], where it reaches the forest if None; gusts travel at ``convection_ratio``
+    times the mean wind speed.
     """
 
     name: str
@@ -62,7 +50,6 @@ class ForestFile:
         """
         All trees as one record where they stand, names as ``tree/branch``; to be described, drawn,
         written.
-
         """
         return joined([each.placed() for each in self.trees], self.name)
 
@@ -95,25 +82,11 @@ class ForestFile:
         return replace(self, trees=tuple(trees))
 
     def simulator(
-        self,
-        settings: Settings | None = None,
-        *,
-        tolerance: float = 0.005,
-        **changes: Any,
+        self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
     ) -> Forest:
         """
-        Make a simulator of all trees.
-
-        Parameters
-        ----------
-        settings, tolerance, **changes
-            As for `make_simulator`, for every tree.
-
-        Raises
-        ------
-        TreeSwayError
-            As `make_simulator`; names the tree.
-
+        Make a simulator of all trees; arguments and errors, which name the tree, as of
+        `make_simulator`.
         """
         return Forest(
             self.trees,
@@ -126,15 +99,10 @@ class ForestFile:
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """
-        Place clusters of leaves, as many on a tree as its leaf area is of all; None without leaves.
+        Place so many clusters of leaves, on each tree by its leaf area; None without leaves.
 
-        Parameters
-        ----------
-        told
-            Whether trees bear leaves of which the file does not say; None leaves it to the species.
-        count
-            How many clusters on all trees.
-
+        Whether trees bear leaves of which the file does not say is told, or left to the species by
+        None.
         """
         area = np.array(
             [

@@ -11,7 +11,6 @@ Keys, kinds and ranges are those of ``forest_schema.json`` beside this file::
       - {name: fig, tree: benjamina, x: 0, y: 0, leaf_on: true}
       - {name: cypress, tree: goldcrest, x: 1.5, y: 0.4, yaw: 2.1, seed: 7}
       - {name: old oak, tree: ../scans/oak.mat, species: oak, x: 9, y: 3}
-
 """
 
 from __future__ import annotations
@@ -28,11 +27,7 @@ from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, refuse_same_names
 from tree_sway_ros.files.trees.yaml.species_yaml import open_species
-from tree_sway_ros.files.yaml_document import (
-    begins_with_key,
-    packaged_schema,
-    read_yaml,
-)
+from tree_sway_ros.files.yaml_document import begins_with_key, packaged_schema, read_yaml
 
 OpenTree = Callable[[str, int], TreeFile]
 OpenSpecies = Callable[[str], Species]
@@ -45,14 +40,7 @@ def is_forest(path: Path) -> bool:
 
 def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) -> ForestFile:
     """
-    Read a forest from a YAML file.
-
-    Parameters
-    ----------
-    path
-        The file.
-    open_tree
-        Opens a tree by its name or path, with a seed.
+    Read a forest from a YAML file, its trees opened by their names or paths, with a seed.
 
     Raises
     ------

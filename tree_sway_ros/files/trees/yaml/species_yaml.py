@@ -9,7 +9,6 @@ keys of a tree's YAML; leaves are those of that entry::
     name: elm of the park
     species: ash
     wood: {modulus: 7.2e9, density: 980, damping_bare: 0.03}
-
 """
 
 from __future__ import annotations
@@ -26,12 +25,7 @@ from tree_sway_ros.files.yaml_document import YAML_SUFFIXES, Schema, read_yaml, 
 
 def open_species(key_or_path: str | Path) -> Species:
     """
-    Open a species.
-
-    Parameters
-    ----------
-    key_or_path
-        Key in the species table, or a YAML file.
+    Open a species by its key in the species table, or from a YAML file.
 
     Raises
     ------

@@ -16,7 +16,6 @@ by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` besid
         parent: stem
         at: 0.5                               # half way up the stem; nodes are offsets from there
         nodes: [[0, 0, 0, 0.006], [0.2, 0, 0.1, 0.002]]
-
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ def spatial_error(size: float) -> tuple[float, float]:
 
 
 def precession(a: float, b: float) -> float:
-    """Turn of a free elliptic swing in [rad] a cycle, over (2 pi / 3) a b."""
+    """Turn of a free elliptic swing in [rad] per cycle, over (2 pi / 3) a b."""
     branch = Branch(2.0, 0.0, 1 / 240)
     states = branch.run(np.zeros((24000, 3)), np.array([a, 0.0, 0.0, b * branch.w]))
     x, y = states[:, 0], states[:, 1]

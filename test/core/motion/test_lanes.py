@@ -1,0 +1,33 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Test that lanes come to their rows and back."""
+
+import numpy as np
+
+from tree_sway_ros.core.kernel import fused
+from tree_sway_ros.core.motion.lanes import put_four, take_four
+
+
+@fused
+def _there(lanes, row, lane, rows, which, first):
+    a, b, c, d = rows[which[0]], rows[which[1]], rows[which[2]], rows[which[3]]
+    put_four(lanes, row, lane, a, b, c, d, first)
+
+
+@fused
+def _back(rows, which, first, lanes, row, lane):
+    a, b, c, d = rows[which[0]], rows[which[1]], rows[which[2]], rows[which[3]]
+    take_four(a, b, c, d, first, lanes, row, lane)
+
+
+def test_four_lanes_go_to_four_rows_and_back_compiled_and_plain() -> None:
+    lanes = np.arange(7 * 16.0).reshape(7, 16)
+    which = np.array([5, 0, 3, 8])
+    for there, back in ((_there, _back), (_there.py_func, _back.py_func)):
+        rows, found = np.full((9, 7), -1.0), np.full((7, 16), -1.0)
+        there(lanes, 2, 9, rows, which, 1)
+        assert (rows[which, 1:5] == lanes[2:6, 9:13].T).all()
+        assert (rows == -1.0).sum() == rows.size - 16
+        back(rows, which, 1, found, 3, 4)
+        assert (found[3:7, 4:8] == lanes[2:6, 9:13]).all()
+        assert (found == -1.0).sum() == found.size - 16

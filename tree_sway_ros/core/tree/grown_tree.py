@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree with the species it is made of: what may stand where a tree is asked for."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from tree_sway_ros.core.tree.species import Species, species_named
+from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.errors import ParameterError
+
+
+@runtime_checkable
+class GrownTree(Protocol):
+    """A tree with the species it is made of, as `open_tree` gives."""
+
+    @property
+    def tree(self) -> Tree:
+        """The segments."""
+
+    @property
+    def species(self) -> Species:
+        """The wood."""
+
+
+def tree_and_species(
+    tree: Tree | GrownTree, species: Species | None = None
+) -> tuple[Tree, Species]:
+    """
+    Return a tree and its species: the one that is given, else its own, else the table's.
+
+    Raises
+    ------
+    ParameterError
+        If one of the two is something else.
+    SpeciesError
+        A species that no table knows.
+
+    """
+    if not isinstance(tree, Tree):
+        if isinstance(tree, GrownTree):
+            return tree_and_species(tree.tree, tree.species if species is None else species)
+        raise ParameterError(
+            f"a {type(tree).__name__}, where a tree is asked for",
+            where="tree",
+            cure="give what open_tree, grow or tree_from_segments returns",
+        )
+    if species is None:
+        return tree, species_named(tree.species)
+    if not isinstance(species, Species):
+        raise ParameterError(
+            f"a {type(species).__name__}, where a Species is asked for",
+            where="species",
+            cure="leave it out or give species_named('oak'); settings go in as settings=...",
+        )
+    return tree, species
