@@ -1,9 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The ways a branch moves: orthogonal, right-handed, the static one first, and closer to the truth the
-more there are.
-
+The fields by which a branch moves: orthogonal, right-handed, the static one first, and closer to
+the truth the more there are.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ def test_an_enriched_branch_has_pairs_and_what_carries_turns(fork):
         assert 2 * N_PAIRS <= len(model.fields) <= 2 * N_PAIRS + turns
 
 
-def test_further_ways_are_orthogonal_in_energy(fork):
+def test_further_fields_are_orthogonal_in_energy(fork):
     for model in branch_models(fork(), 900.0, carries=True, enriched=frozenset(range(4))):
         energy = energies(model.fields, 1.0, 1.0 / 14.0)
         scale = 1.0 / np.sqrt(np.diag(energy))

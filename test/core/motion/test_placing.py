@@ -57,8 +57,8 @@ class Puppet:
 
     def random(self, seed, largest=1.5):
         """
-        Key rotations of up to a size in every branch, and of a tenth of it in its further ways to
-        move.
+        Key rotations of up to a size in every branch, and of a tenth of it in its further
+        fields.
 
         """
         rng = np.random.default_rng(seed)

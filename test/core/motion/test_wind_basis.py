@@ -96,6 +96,18 @@ def test_a_steep_wind_is_outside_of_the_table_and_stepped_by_branches(fork):
     assert one.bank.oscillators.n_outside == 200
 
 
+def test_a_gentle_wind_from_any_elevation_is_in_the_table(fork):
+    one, other = (SwaySimulator(fork(), model=model) for model in ("wind_basis", "modes"))
+    for k in range(200):
+        turn = 0.05 * k
+        wind = [0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.6 * (-1.0) ** (k // 50)]
+        one.step(wind, DT), other.step(wind, DT)
+    assert one.bank.oscillators.n_outside == 0
+    rest = one.tree.start
+    gap, moved = one.place()[:, :3] - other.place()[:, :3], other.place()[:, :3] - rest
+    assert np.abs(gap).max() < 0.05 * np.abs(moved).max()
+
+
 def test_a_storm_beyond_the_table_is_stepped_by_branches_and_stays_bounded(fork):
     sim = SwaySimulator(fork(), model="wind_basis")
     for wind in gusty(40.0):

@@ -264,7 +264,7 @@ class BranchBeam:
 
 class SlopeShape:
     """
-    A way for a branch to bend: slope psi(s) per unit of its coordinate.
+    A shape in which a branch bends: slope psi(s) per unit of its coordinate.
 
     Parameters
     ----------
@@ -320,7 +320,7 @@ class SlopeShape:
 
 class RotationField:
     """
-    A way for a branch to bend and twist in space: rotation phi(s) per unit of its coordinate.
+    A field by which a branch bends and twists in space: rotation phi(s) per unit of its coordinate.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Every branch as a bending body: its axes, its mass and load along it, the ways it bends and twists.
+Every branch as a bending body: its axes, its mass and load along it, the fields it bends by.
 
 A branch turns about two fixed axes across its chord. Its coordinates are the components of a
 rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What a
@@ -28,7 +28,7 @@ from tree_sway_ros.core.branch.shapes import (
     N_PAIRS,
     N_TURNS,
     Carried,
-    ways_to_move,
+    shape_fields,
     wind_loads,
 )
 from tree_sway_ros.core.checks import one_of_each
@@ -95,7 +95,7 @@ def branch_models(
     root_compliance: float = 0.0,
 ) -> list[BranchModel]:
     """
-    Model each branch of a tree in one way; parameters are those of `TreeBeams` and its `models`.
+    Model each branch of a tree for one model; parameters are those of `TreeBeams` and its `models`.
 
     """
     beams = TreeBeams(
@@ -112,7 +112,7 @@ def branch_models(
 
 class TreeBeams:
     """
-    Every branch of a tree as a beam, and what it hands down: the same for all ways to model it.
+    Every branch of a tree as a beam, and what it hands down: the same for every model.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ class TreeBeams:
 
     def models(self, *, carries: bool, enriched: frozenset[int] = frozenset()) -> list[BranchModel]:
         """
-        Model each branch; where two ways do not differ, the models are the same.
+        Model each branch; where two models of the sway do not differ, it is the same.
 
         Parameters
         ----------
@@ -217,18 +217,18 @@ class TreeBeams:
 
     def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
         """Model a branch, unless that is done."""
-        way = branch, n_carried, n_pairs, n_turns
-        if way not in self._known:
+        key = branch, n_carried, n_pairs, n_turns
+        if key not in self._known:
             beam, drag_area, mass, children = self._bare[branch]
             carried = self._sums[children[:n_carried]]
-            shape, fields = ways_to_move(
+            shape, fields = shape_fields(
                 beam, drag_area, mass, carried, self._shear_ratio, n_pairs, n_turns
             )
-            self._known[way] = BranchModel(beam, drag_area, mass, shape, fields, children)
-        return self._known[way]
+            self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
+        return self._known[key]
 
     def _richness(self, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
-        """Pairs of a branch, and further ways by what turns about its chord."""
+        """Pairs of a branch, and further fields by what turns about its chord."""
         if branch not in enriched:
             return 1, 0
         return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS

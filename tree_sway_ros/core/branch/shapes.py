@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The ways a branch bends and twists in space.
+The fields of rotation by which a branch bends and twists in space.
 
 A plain branch has two: those in which winds bend and twist it with all that it carries, so that its
 chord turns about one axis or the other. An enriched branch has further ones: what the inertia of
@@ -28,15 +28,15 @@ from tree_sway_ros.core.branch.beam import (
 )
 
 N_PAIRS = 3
-"""Pairs of ways of an enriched branch: the static ones, then by inertia."""
+"""Pairs of fields of an enriched branch: the static ones, then by inertia."""
 
 N_TURNS, FEWER_TURNS = 3, 1
-"""Further ways by what turns about the chord: of a stem, and of any other branch."""
+"""Further fields by what turns about the chord: of a stem, and of any other branch."""
 
 MAX_COORDINATES = 2 * N_PAIRS + N_TURNS
 
 _NEGLIGIBLE = 1e-4
-"""Share of a way that must be new."""
+"""Share of a field that must be new."""
 
 _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
@@ -92,7 +92,7 @@ def across(chord: Floats) -> tuple[Floats, Floats]:
     return e1, cross_matrix(chord) @ e1
 
 
-def ways_to_move(
+def shape_fields(
     beam: BranchBeam,
     drag_area: Floats,
     mass: Floats,
@@ -102,7 +102,7 @@ def ways_to_move(
     n_turns: int = 0,
 ) -> tuple[SlopeShape, tuple[RotationField, ...]]:
     """
-    Find the ways a branch moves.
+    Find the fields by which a branch moves.
 
     Parameters
     ----------
@@ -175,10 +175,10 @@ def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -
     slopes = beam.from_base(curvatures)[0]
     ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
     turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
-    sides, largest, ways = np.linalg.svd(turns, full_matrices=False)
+    sides, largest, winds = np.linalg.svd(turns, full_matrices=False)
     if not largest[-1] > 0.02 * largest[0]:
         return None
-    mix = (ways.T / largest) @ sides.T * _WIND_WEIGHTS
+    mix = (winds.T / largest) @ sides.T * _WIND_WEIGHTS
     pair: Floats = np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0))
     return pair
 
@@ -225,12 +225,12 @@ def _further(
     sources: list[RotationField | None] = list(pair)
     turning: list[RotationField | None] = [None] if len(carried.area) else []
     for block in range(1, max(n_pairs, n_turns + 1)):
-        ways = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
+        parts = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
         bent = [
             [rest_of(beam.curvature_in_space(
                 inertial_moment(beam, mass, carried, one)[:, :, None], shear_ratio
             )[:, :, 0]) for one in part]
-            for part in ways
+            for part in parts
         ]  # fmt: skip
         new = [[one for one in part if one is not None] for part in bent]
         found += [*new[0], *new[1]]
@@ -242,7 +242,7 @@ def inertial_moment(
     beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
 ) -> Floats:
     """
-    Internal moment by the inertia of a field and of all that rides on it, (p, 5, 3); of all that is
+    Internal moment by the inertia of a field and of all that it carries, (p, 5, 3); of all that is
     carried turning about the chord as one where there is no field.
     """
     places = beam.child_point[: len(carried.area)]

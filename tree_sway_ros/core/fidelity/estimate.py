@@ -42,28 +42,11 @@ def choose(
     estimates: Sequence[Estimate], *, tolerance: float | None = None, budget: float | None = None
 ) -> Estimate:
     """
-    Choose the least model that a scene needs.
+    Choose the least model that a scene needs: the cheapest within the tolerance in [m].
 
-    Parameters
-    ----------
-    estimates
-        Of all models.
-    tolerance
-        Largest error in [m]; the cheapest model within it is chosen.
-    budget
-        Largest cost of a step in [us]; the most accurate model within it is chosen. With both, the
-        cheapest within the tolerance among those within the budget.
-
-    Returns
-    -------
-    Estimate
-        The choice.
-
-    Raises
-    ------
-    ParameterError
-        A tolerance or budget that no model meets; the error names the nearest.
-
+    With a budget alone, in [us] per step, the most accurate within it; with both, the cheapest
+    within the tolerance among those within the budget. A `ParameterError` names the nearest model
+    if none is.
     """
     within = [e for e in estimates if budget is None or e.cost <= budget]
     if not within:

@@ -29,26 +29,11 @@ def quiet_sets(
     shares: Sequence[float],
 ) -> list[Bools]:
     """
-    Find the branches to freeze.
+    Find the branches to freeze for each share of the motion of the tips that the error may be,
+    (b,).
 
-    Parameters
-    ----------
-    tree
-        The tree.
-    branches
-        Records of `BRANCH`, (b,).
-    rotations
-        `key_response` of the tree, (N, 2, f).
-    frequencies
-        In [Hz], (f,), the first of them 0.
-    shares
-        Error that freezing may make, over the motion of the tips, both root mean square, in [-].
-
-    Returns
-    -------
-    list of Bools
-        For each share, the branches that may be frozen, (b,); with each, all that it carries.
-
+    With each branch goes all that it carries. Rotations are the `key_response` (N, 2, f) at
+    frequencies in [Hz], (f,), the first of them 0.
     """
     swing, motion = _swings(tree, branches, rotations * np.sqrt(_weights(frequencies)))
     per_tip = swing / (tree.subtree_end - np.arange(tree.n_branches))

@@ -60,31 +60,20 @@ def grow_axis(
     floor: float = -np.inf,
 ) -> Floats:
     """
-    Draw the nodes of a shoot whose elevation turns evenly from one angle to another.
+    Draw the nodes (n_segments + 1, 3) [m] of a shoot whose elevation turns evenly.
 
     Parameters
     ----------
-    origin
-        First node in [m], (3,).
     azimuth, elevation
         Heading of the first segment, and elevation of the first and the last one, in [rad].
     length
         Length along the nodes in [m].
-    n_segments
-        How many segments.
-    rng
-        Source of randomness.
     wander
         Standard deviation of the change of heading per segment in [rad].
     unevenness
         Largest relative deviation of a segment's length from the mean.
     floor
         The shoot ends before it would sink below this height in [m]; it keeps one segment.
-
-    Returns
-    -------
-    array
-        Nodes in [m], (n_segments + 1, 3) or fewer.
 
     """
     steps = 1.0 + unevenness * rng.uniform(-1.0, 1.0, n_segments)

@@ -30,24 +30,18 @@ def add_twigs(
     outer_ratio: float = 0.75,
 ) -> None:
     """
-    Put twigs on the nodes of a shoot.
+    Put twigs on the nodes of a shoot, from a first one on.
 
     Parameters
     ----------
-    skeleton, shoot
-        The tree, and the number of the shoot that gets them.
     length
-        Length of those on the inner half in [m].
+        Length of those on the inner half in [m]; on the outer half `outer_ratio` times that.
     polar
         Angle from the shoot in [rad].
     sides
         Angles about the shoot in [rad], as `aim` takes them: two for a flat spray.
-    first_node
-        First node that carries any.
     lift
         How much they turn up (positive) or hang (negative), in [-]; 1 is half-way.
-    outer_ratio
-        Length on the outer half over that on the inner half in [-].
 
     """
     parent = skeleton.shoots[shoot]

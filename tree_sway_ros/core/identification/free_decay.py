@@ -36,21 +36,11 @@ _LATER_STARTS = (0.5, 1.0, 1.5)
 @dataclass(frozen=True)
 class FreeDecay(SwayEstimate):
     """
-    One decaying mode.
+    One decaying mode, fitted from a time ``start`` [s] after the record's beginning on.
 
-    Parameters
-    ----------
-    start
-        Time from the record's beginning to where the fit starts in [s].
-    explained
-        Share of all motion's energy, within the fit, that decaying modes explain in [-].
-    quiet
-        Largest amplitude around the frequency before and after the decay, over the largest of all,
-        in [-].
-    speed
-        Largest amplitude around the frequency times that frequency, in the unit of the motion per
-        second.
-
+    ``explained`` is the share of all motion's energy within the fit that decaying modes explain;
+    ``quiet`` the largest amplitude around the frequency before and after the decay, over the
+    largest of all; ``speed`` the largest amplitude around the frequency times that, per second.
     """
 
     kind: ClassVar[str] = "release"

@@ -246,9 +246,9 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> Non
     record["projector"] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     exposed = exposure(beam)
     exposed /= float(share.sum(axis=1) @ exposed)
-    amounts, ways = np.linalg.eigh(across)
+    amounts, axes = np.linalg.eigh(across)
     kept = amounts > _STRAIGHT * amounts[-1]
-    into_push = ways[:, kept] / amounts[kept] @ ways[:, kept].T
+    into_push = axes[:, kept] / amounts[kept] @ axes[:, kept].T
     n = len(model.fields)
     fields = np.stack([one.points for one in model.fields])
     own = exposed[:, None] * (share[..., None] * fields).sum(axis=2)

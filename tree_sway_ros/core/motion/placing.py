@@ -74,19 +74,10 @@ def place_standing_at(
     east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
-    Place every segment of a tree that is turned and scaled.
+    Place every segment of a tree that is turned and scaled, with its root node at east, north, up.
 
-    Parameters
-    ----------
-    branches, segments, heads, work, x, out
-        As for `place`.
-    east, north, up
-        Root node.
-    cosine, sine
-        Of half the angle that the tree is turned by about the vertical.
-    scale
-        Its size over that of its records.
-
+    ``cosine`` and ``sine`` are of half the angle that it is turned by about the vertical, ``scale``
+    its size over that of its records; the rest is as for `place`.
     """
     last = len(heads) - 1
     scratch = heads[last]

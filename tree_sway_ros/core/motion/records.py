@@ -199,7 +199,7 @@ WORK = np.dtype(
         ("base", "f8", (8,)),
     ]
 )
-"""What a step computes on the way, kept from one step to the next."""
+"""What a step computes in between, kept from one step to the next."""
 
 
 def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:

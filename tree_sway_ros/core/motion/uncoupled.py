@@ -33,19 +33,10 @@ from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_
 
 class UncoupledBank:
     """
-    Oscillators of all branches.
+    Oscillators of all branches, in [kg m^2], [N m s/rad] and [N m/rad], (b,).
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    inertia, damping, stiffness
-        In [kg m^2], [N m s/rad] and [N m/rad], (b,).
-    carries
-        Whether branches carry their children (model 2) or are alone (model 1).
-    integrator
-        Method of the oscillators, one of `REAL_TIME`.
-
+    ``carries`` tells whether branches carry their children (model 2) or are alone (model 1); the
+    integrator is one of `REAL_TIME`.
     """
 
     is_tabled = False

@@ -31,7 +31,7 @@ from tree_sway_ros.core.motion.wind_basis_force import (
     wind_force,
     wind_rest,
 )
-from tree_sway_ros.core.motion.wind_basis_table import STEEPEST, WindBasisTable
+from tree_sway_ros.core.motion.wind_basis_table import GENTLE, STEEPEST, WindBasisTable
 
 
 def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
@@ -308,7 +308,8 @@ def step_instance(
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
     inside = push <= table.most_pressure and energy <= table.most_energy
-    instance.outside = 0 if is_held or (inside and abs(z) * push <= STEEPEST * push) else 1
+    is_steep = abs(z) > STEEPEST and push > GENTLE * table.levels[1]
+    instance.outside = 0 if is_held or (inside and not is_steep) else 1
     if instance.outside:
         return 1
     diagonal = instance.scratch[2]

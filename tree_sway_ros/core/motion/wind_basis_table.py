@@ -54,7 +54,14 @@ levels further down.
 """
 
 STEEPEST = np.sin(np.deg2rad(45.0))
-"""Sine of the elevation up to which a wind is in the table."""
+"""Sine of the elevation up to which a wind is in the table, unless it is gentle."""
+
+GENTLE = 0.05
+"""
+Dynamic pressure, over that of the lowest lean, up to which a wind is in the table whatever its
+elevation: some 1 m/s, as turbulence lets it blow straight up in a calm.
+
+"""
 
 BEYOND = 1.6
 """Dynamic pressure up to which the table goes on, over that of the last level."""

@@ -182,8 +182,6 @@ def accelerate(
 
     Parameters
     ----------
-    bodies, motion
-        The tree and how it moves now.
     torque
         Torque of the joints, body axes, (n, 3) in [N m].
     twist_axis
@@ -192,8 +190,6 @@ def accelerate(
         Inertia added to the joints by their stiffness in [s^2]: it makes the springs implicit.
     scratch
         From `load`, with every force pushed.
-    out
-        Where the accelerations go.
 
     """
     n = len(bodies.mass)

@@ -65,20 +65,8 @@ def pose_block(
     Fill poses (m, 7): start node, and as ``xyzw`` the turn that lays x along the chord.
 
     The roll is the body's own: x turns with the segment, then takes the shortest way to the chord.
-
-    Parameters
-    ----------
-    bodies, turn
-        The tree, and quaternions of its joints, (n, 4).
-    rest
-        Orientation of each segment at rest, quaternions wxyz, (m, 4).
-    rotation, start, end
-        From `place_bodies`.
-    pieces
-        Bodies per segment, n / m.
-    out
-        Pose block to write.
-
+    Rotations and nodes are those of `place_bodies`; ``rest`` is the orientation of each segment at
+    rest, wxyz, (m, 4).
     """
     q = np.empty((len(turn), 4))
     for i in range(len(turn)):

@@ -210,23 +210,11 @@ def respond(
     out: Floats,
 ) -> None:
     """
-    Accelerations of the joints (n, 3) in [rad/s^2], body axes.
+    Accelerations of the joints (n, 3) in [rad/s^2], body axes, in air (n, 3) in [m/s].
 
-    Parameters
-    ----------
-    bodies, laws
-        The tree and what acts on it.
-    turn, rate
-        Quaternions (n, 4) and angular velocities (n, 3) of the joints.
-    wind
-        Air at each segment in [m/s], (n, 3).
-    implicit
-        gamma h in [s]; 0 is the plain equation of motion.
-    motion, articulation, scratch
-        Filled on the way; `scratch.pull` is read.
-    out
-        Where the accelerations go.
-
+    Joints have quaternions (n, 4) and angular velocities (n, 3). ``implicit`` is gamma h in [s]; 0
+    is the plain equation of motion. What is filled on the way is scratch, but for its `pull`, which
+    is read.
     """
     late = laws.stiffness_damping + implicit
     for i in range(len(turn)):

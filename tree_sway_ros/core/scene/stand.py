@@ -108,15 +108,7 @@ class StandTree:
 @dataclass(frozen=True)
 class StandKind:
     """
-    What trees of one kind share.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    species
-        Its wood, damping and drag; looked up by the tree's own species if None.
-
+    What trees of one kind share: the tree, and its species, looked up by the tree's own if None.
     """
 
     tree: Tree

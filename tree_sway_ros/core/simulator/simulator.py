@@ -39,10 +39,11 @@ OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
 @dataclass
 class Counts:
     """
-    Steps since the start; those whose wind was refused, so that the one before was kept; and more.
+    What became of the steps since the start.
 
-    ``held`` are loads at the limit of the model, ``restarted`` steps whose motion was not finite,
-    so that the tree went on from rest.
+    ``refused``: the wind was not finite or faster than the limit, and the one before was kept;
+    ``held``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
+    tree went on from rest.
     """
 
     steps: int = 0

@@ -21,18 +21,10 @@ _SHARED = ("*", "**")
 
 def own_names(arguments: Sequence[str], node: str) -> frozenset[str]:
     """
-    Names of parameters that a command line tells a node by the node's own name.
+    Names of parameters that a command line (`sys.argv`) tells a node by the node's own name.
 
     ``-p name:=value`` counts where it was typed for this one process; a launch file, which names
     the node it starts by ``__node:=``, may have put it there for every node.
-
-    Parameters
-    ----------
-    arguments
-        Of the process, as in `sys.argv`.
-    node
-        Name of the node, without its namespace.
-
     """
     given = list(_ros_arguments(arguments))
     is_launched = any(value.startswith("__node:=") for flag, value in given if flag in _REMAP)

@@ -31,12 +31,6 @@ class Topic:
     latched: bool = False
     depth: int = 1
 
-    @property
-    def qos_text(self) -> str:
-        """Quality of service, for people."""
-        reliability = "reliable" if self.reliable else "best effort"
-        return f"{reliability}{', latched' if self.latched else ''}, last {self.depth}"
-
 
 WIND = Topic(
     "wind",

@@ -27,7 +27,10 @@ _INSERTION = (0.0, np.radians(55.0), np.radians(50.0), np.radians(45.0))
 
 
 def bench_tree(
-    segments_a_branch: int = SEGMENTS_A_BRANCH, children: tuple[int, ...] = _CHILDREN
+    segments_a_branch: int = SEGMENTS_A_BRANCH,
+    children: tuple[int, ...] = _CHILDREN,
+    *,
+    bears: bool = False,
 ) -> Tree:
     """
     Build the benchmark tree.
@@ -38,6 +41,10 @@ def bench_tree(
         How finely each branch is cut; its shape stays the same.
     children
         How many branches sit on one of each order, but the last.
+    bears
+        Whether branches that carry more are thicker, so that their section grows as that of all
+        they carry (da Vinci's rule), and longer, by the power 2/3 of the thickness (elastic
+        similarity: McMahon & Kronauer, 1976). Else a tree of more branches is ever more slender.
 
     Returns
     -------
@@ -52,11 +59,17 @@ def bench_tree(
     parent: list[int] = []
     branch: list[int] = []
     cuts = np.linspace(0.0, 1.0, segments_a_branch + 1)
+    thicker = np.ones(len(_LENGTH) + 1)
+    if bears:
+        for order in range(len(children) - 1, -1, -1):
+            more = children[order] / _CHILDREN[order]
+            thicker[order] = thicker[order + 1] * np.sqrt(more)
     # Base, direction, order and the segment it sits on, of the branches that are still to be built.
     waiting = [(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0, -1)]
     for number, (base, direction, order, carrying) in enumerate(waiting):
-        nodes = base + np.outer(cuts, _LENGTH[order] * direction)
-        thick = np.interp(cuts, [0.0, 1.0], _DIAMETER[order])
+        length = thicker[order] ** (2.0 / 3.0) * _LENGTH[order]
+        nodes = base + np.outer(cuts, length * direction)
+        thick = np.interp(cuts, [0.0, 1.0], thicker[order : order + 2] * _DIAMETER[order])
         first = len(parent)
         start += list(nodes[:-1])
         end += list(nodes[1:])

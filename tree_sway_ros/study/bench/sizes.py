@@ -26,7 +26,10 @@ from tree_sway_ros.study.bench.step import gusts
 from tree_sway_ros.tools.progress import bar
 
 SIZES = {121: (12, 3, 2), 1201: (12, 11, 8), 10105: (24, 20, 20)}
-"""Branches of the trees, and how many of them sit on one of each order."""
+"""
+Branches of the trees, and how many of them sit on one of each order; what carries more is thicker.
+
+"""
 
 _DT = 1.0 / 60.0
 _STEPS, _ROUNDS = 5000, 20
@@ -50,7 +53,7 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
 
     """
     if not trees:
-        trees = [bench_tree(2, children) for children in SIZES.values()]
+        trees = [bench_tree(2, children, bears=True) for children in SIZES.values()]
     SwaySimulator(bench_tree(2), model="wind_basis")  # kernels are there
     simulators, set_up = [], []
     for tree in bar(trees, "tables of winds"):

@@ -150,7 +150,9 @@ def topics_table() -> str:
     """Type, quality of service and content of each topic."""
     lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
     for topic in TOPICS:
-        cells = (f"`{topic.name}`", f"`{topic.type_name}`", topic.qos_text, topic.description)
+        reliability = "reliable" if topic.reliable else "best effort"
+        service = f"{reliability}{', latched' if topic.latched else ''}, last {topic.depth}"
+        cells = (f"`{topic.name}`", f"`{topic.type_name}`", service, topic.description)
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 

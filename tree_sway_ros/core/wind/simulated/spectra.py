@@ -81,21 +81,10 @@ def von_karman_spectrum(
     frequency: ArrayLike, mean_speed: float, deviation: float, scale: float, *, across: bool = False
 ) -> Floats:
     """
-    Von Karman spectrum of one component, one-sided.
+    Von Karman spectrum of one component, one-sided; arguments as of `kaimal_spectrum`.
 
-    Parameters
-    ----------
-    frequency, mean_speed, deviation, scale
-        As of `kaimal_spectrum`.
-    across
-        False for u, true for v and w.
-
-    Returns
-    -------
-    Floats
-        Power spectral density in [m^2/s^2/Hz], (n,); its integral from 0 is ``deviation**2``
-        (to 2e-4, for the rounding of the constants). Source: von Karman (1948) as in ESDU 85020.
-
+    Its integral from 0 is ``deviation**2`` to 2e-4, for the rounding of the constants. Source: von
+    Karman (1948) as in ESDU 85020.
     """
     time = scale / mean_speed
     x2 = (np.asarray(frequency, dtype=np.float64) * time) ** 2
