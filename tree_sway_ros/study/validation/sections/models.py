@@ -56,6 +56,7 @@ def measure(effort: Effort) -> Section:
         for model, limit in LIMITS.items()
         if (errors := [one.error for each in untried for one in each if one.model == model])
     ]
+    tried = ", ".join(each[0].tree.split()[-1] for each in untried)
     models = list(dict.fromkeys(one.model for one in found[0] if "frozen" not in one.model))
     rows = [
         [f"`{model}`", *(_cell(verdicts, model) for verdicts in trees.values())] for model in models
@@ -66,7 +67,7 @@ def measure(effort: Effort) -> Section:
         " of simulated wind of 3 and 9 m/s. Straight trees are those of 40 branches whose children"
         " have 0.65, 0.5 and 0.4 of their parent's length; crooked ones are random, of 40 to 120 "
         "branches and three habits, told by the seed of their random numbers. No model was made "
-        f"with the untried ones, of seeds {', '.join(each[0].tree.split()[-1] for each in untried)}."
+        f"with the untried ones, of seeds {tried}."
     )
     return Section(
         "Models on straight and on crooked trees", text, checks, markdown_table(
