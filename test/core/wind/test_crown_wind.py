@@ -7,7 +7,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.crown_wind import LONGEST_DELAY, N_DELAYS, CrownWind, crown_delays
+from tree_sway_ros.core.wind.crown_wind import (
+    LONGEST_DELAY,
+    N_DELAYS,
+    CrownWind,
+    crown_delays,
+    shared_power,
+)
 from tree_sway_ros.errors import ParameterError
 
 DT = 0.02
@@ -49,6 +55,25 @@ def test_limbs_share_long_gusts_and_not_short_ones():
     assert far == pytest.approx(0.5, abs=0.05)  # c^2 of c^2 + (1 - c)^2
     slow = fast.reshape(-1, 1000, N_DELAYS).mean(axis=1)
     assert np.corrcoef(slow[:, 3], slow[:, 11])[0, 1] > 0.95
+
+
+def test_the_power_that_limbs_share_is_that_of_their_winds():
+    speed, spread, coherence, n = 7.0, 10.0, 0.4, 8192
+    rng = np.random.default_rng(4)
+    gusts = np.zeros((2 * n, 3))
+    gusts[:, 0] = speed + 0.2 * rng.standard_normal(2 * n)
+    winds = felt(CrownWind(spread, coherence), gusts)[n:, :, 0]
+    lines = np.fft.rfft(winds - winds.mean(axis=0), axis=0)
+    given = np.fft.rfft(gusts[n:, 0] - gusts[n:, 0].mean())
+    f = np.fft.rfftfreq(n, DT)
+    for low, high in ((0.02, 0.1), (0.25, 0.45), (0.6, 0.8)):
+        band = (f > low) & (f < high)
+        power = np.square(np.abs(given[band])).sum()
+        alike = np.square(np.abs(lines[band].mean(axis=1))).sum() / power
+        each = np.square(np.abs(lines[band])).mean(axis=1).sum() / power
+        told = shared_power(coherence, spread, speed, f[band]).mean(axis=1)
+        assert (alike, each - alike) == pytest.approx(tuple(told), abs=0.08)
+    assert shared_power(coherence, spread, speed, np.zeros(1))[:, 0] == pytest.approx([1.0, 0.0])
 
 
 @pytest.mark.parametrize("dt", [0.004, 1 / 60, 0.11])

@@ -12,6 +12,10 @@ Between the models stand those in which the quietest branches are frozen and mov
 as one body; they are models like any other, as the response of a tree with frozen branches is known
 too.
 
+Where gusts reach limb by limb, limbs are also loaded against each other, in four patterns of signs
+that their delays deal them; what those differ by counts with the power that each limb feels by
+itself.
+
 Symbols: D(f) difference of two tip responses, S(f) spectrum of the load, C its covariance.
 
 """
@@ -29,12 +33,13 @@ from tree_sway_ros.core.fidelity.frame_cost import frame_cost
 from tree_sway_ros.core.fidelity.quiet_branches import quiet_sets
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.motion.response import Complexes, key_response, tip_motion
-from tree_sway_ros.core.simulator.assembly import CalibratedTree
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree
 from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
+from tree_sway_ros.core.wind.crown_wind import shared_power
 
 MARGIN = 1.3
 """Estimated over computed error: the wind is not quite linear in its effect."""
@@ -90,13 +95,14 @@ class FidelityLadder:
         whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
         self._drag_law = whole.drag_law
         best, best_modes = _best(tree)
+        self._coherence = settings.crown_coherence
         bank = whole.bank(best, best_modes)
-        rotations = key_response(bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES)
+        rotations = self._response(whole, bank)
         self._truth = tip_motion(bank.branches, rotations)
         self._motion = _gram(self._truth)
         shares = sorted({share for *_, share in LADDER} - {0.0, math.inf})
         few = slice(None, None, _SPARSE)
-        sets = quiet_sets(tree, bank.branches, rotations[:, :, few], _FREQUENCIES[few], shares)
+        sets = quiet_sets(tree, bank.branches, rotations[:, :2, few], _FREQUENCIES[few], shares)
         all_still = np.ones(tree.n_branches, dtype=np.bool_)
         self._trees = {0.0: whole, math.inf: PartlyFrozenTree(whole, all_still)}
         for share, quiet in zip(shares, sets, strict=True):
@@ -142,9 +148,13 @@ class FidelityLadder:
 
         """
         load = pressure(climate.speed, *self._drag_law)
-        power = climate.power(_FREQUENCIES)
+        power = climate.power(_FREQUENCIES)[None]
+        if self._coherence < 1.0:
+            spread = self.whole.crown_delays.spread
+            shares = shared_power(self._coherence, spread, climate.speed, _FREQUENCIES)
+            power = shares[:, :, None, None] * power
         swings = np.maximum(_mean_squares(self._grams, power), 0.0)
-        power[0] += np.outer(climate.mean, climate.mean)
+        power[0, 0] += np.outer(climate.mean, climate.mean)
         squares = np.maximum(_mean_squares(self._grams, power), 0.0)
         swing, offset = load * math.sqrt(swings[0]), load * math.sqrt(squares[0])
         errors = MARGIN * load * np.sqrt(squares[1:])
@@ -171,15 +181,26 @@ class FidelityLadder:
         moving = np.arange(n)
         if isinstance(calibrated, PartlyFrozenTree):
             moving = calibrated.pruning.coordinates(whole.reduction)
-        rotations = np.zeros((n, 2, len(_FREQUENCIES)), dtype=np.complex128)
-        rotations[moving] = key_response(
-            bank.oscillators, _n_coordinates(bank.branches), _FREQUENCIES
-        )
+        rotations = np.zeros((n, *self._truth.shape[2:]), dtype=np.complex128)
+        rotations[moving] = self._response(calibrated, bank)
         error = _gram(tip_motion(whole.branches, rotations) - self._truth)
         cost = frame_cost(bank, self.tree)
         of = bank.oscillators
         told = TABLE_FLOOR + TABLE_MARGIN * of.table_error if of.is_tabled else 0.0
         self._models[name] = _Model(model, n_modes, share, bank.n_frozen, cost, error, told)
+
+    def _response(self, calibrated: CalibratedTree, bank: Bank) -> Complexes:
+        """Answers of a model to an even wind and to limbs against each other, (N, 2 p, f)."""
+        n = _n_coordinates(bank.branches)
+        if self._coherence == 1.0:
+            return key_response(bank.oscillators, n, _FREQUENCIES)
+        delays = calibrated.crown_delays
+        if not bank.oscillators.is_tabled:
+            patterns = [np.ones(len(bank.branches)), *_signs(delays.of_branch)]
+            return key_response(bank.oscillators, n, _FREQUENCIES, patterns)
+        even = key_response(bank.oscillators, n, _FREQUENCIES)
+        means = _signs(np.arange(len(delays.share))) @ delays.share
+        return np.concatenate([even, *(mean * even for mean in means)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -204,13 +225,24 @@ def _n_coordinates(branches: Records) -> int:
     return int(branches["n_coordinates"].sum())
 
 
+def _signs(delay: Ints) -> Floats:
+    """Four patterns of plus and minus one, by the bits of delays (b,), (4, b)."""
+    return np.asarray(1.0 - 2.0 * (delay >> np.arange(4)[:, None] & 1))
+
+
 def _gram(response: Complexes) -> Floats:
-    """Mean over tips of the inner products of the answers along x and y, (f, 2, 2)."""
-    gram = np.einsum("bkif,bkjf->fij", response.conj(), response).real / len(response)
-    return np.asarray(gram, dtype=np.float64)
+    """
+    Mean over tips of the inner products of the answers (b, 3, 2 p, f) along x and y to an even wind
+    and to patterns, of those in the mean, (1 or 2, f, 2, 2).
+
+    """
+    b, _, columns, f = response.shape
+    by_pattern = response.reshape(b, 3, columns // 2, 2, f)
+    grams = np.einsum("bkpif,bkpjf->pfij", by_pattern.conj(), by_pattern).real / b
+    return np.stack([grams[0], *([grams[1:].mean(axis=0)] if len(grams) > 1 else [])])
 
 
 def _mean_squares(grams: Floats, power: Floats) -> Floats:
-    """Mean squares that the power of a load (f, 2, 2) makes of responses (k, f, 2, 2), (k,)."""
+    """Mean squares that the power of a load makes of `_gram` of each, both (..., f, 2, 2), (k,)."""
     squares: Floats = grams.reshape(len(grams), -1) @ power.ravel()
     return squares

@@ -14,7 +14,7 @@ how the error of the lesser one is known without running the greater.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -37,9 +37,14 @@ class Responding(Protocol):
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
 
 
-def key_response(oscillators: Responding, n_coordinates: int, frequencies: Floats) -> Complexes:
+def key_response(
+    oscillators: Responding,
+    n_coordinates: int,
+    frequencies: Floats,
+    patterns: Sequence[Floats | float] = (1.0,),
+) -> Complexes:
     """
-    Key rotations under an even wind load of 1 N/m^2 drag pressure that swings.
+    Key rotations under a wind load of 1 N/m^2 drag pressure that swings.
 
     Parameters
     ----------
@@ -49,16 +54,21 @@ def key_response(oscillators: Responding, n_coordinates: int, frequencies: Float
         N.
     frequencies
         In [Hz], (f,); 0 is the static answer.
+    patterns
+        Loads of branches over those of an even wind, p of them, each (b,).
 
     Returns
     -------
     Complexes
-        Per unit of load along x and along y, (N, 2, f), in [m^2/N].
+        Per unit of load along x and along y of each pattern, (N, 2 p, f), in [m^2/N].
 
     """
-    branches = oscillators.branches
-    moments = even_wind_moments(branches, n_coordinates, carries=oscillators.carries)
-    return oscillators.response(moments, 2.0 * np.pi * np.asarray(frequencies))
+    moments = []
+    for pattern in patterns:
+        branches = oscillators.branches.copy()
+        branches["area"] *= pattern
+        moments.append(even_wind_moments(branches, n_coordinates, carries=oscillators.carries))
+    return oscillators.response(np.hstack(moments), 2.0 * np.pi * np.asarray(frequencies))
 
 
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:

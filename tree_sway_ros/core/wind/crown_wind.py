@@ -97,6 +97,32 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     return CrownDelays(of_branch, share / max(float(share.sum()), 1e-12), spread)
 
 
+def shared_power(coherence: float, spread: float, speed: float, frequencies: Floats) -> Floats:
+    """
+    Shares of a gust's power that limbs feel alike and each by itself, in the mean over delays.
+
+    Parameters
+    ----------
+    coherence, spread
+        As of `CrownWind`.
+    speed
+        Mean wind speed in [m/s].
+    frequencies
+        In [Hz], (f,).
+
+    Returns
+    -------
+    Floats
+        In [-], (2, f): 1 and 0 for the slowest gusts.
+
+    """
+    longest = min(spread / max(speed, _SLOWEST), LONGEST_DELAY)
+    turned = np.sinc(frequencies * longest) * np.exp(-1j * np.pi * frequencies * longest)
+    rest = 1.0 - coherence
+    alike = np.abs(coherence + rest * turned) ** 2
+    return np.stack([alike, rest**2 * (1.0 - np.abs(turned) ** 2)])
+
+
 class CrownWind:
     """
     The wind of the last seconds, and what of it each limb feels now.
