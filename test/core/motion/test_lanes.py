@@ -5,7 +5,7 @@
 import numpy as np
 
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.lanes import put_four, take_four
+from tree_sway_ros.core.motion.lanes import put_four, settle, take_four, write_past_caches
 
 
 @fused
@@ -31,3 +31,22 @@ def test_four_lanes_go_to_four_rows_and_back_compiled_and_plain() -> None:
         back(rows, which, 1, found, 3, 4)
         assert (found[3:7, 4:8] == lanes[2:6, 9:13]).all()
         assert (found == -1.0).sum() == found.size - 16
+
+
+@fused
+def _write(of, into):
+    write_past_caches(of, into)
+    settle()
+
+
+def test_what_is_written_past_the_caches_is_all_there_wherever_it_begins() -> None:
+    of = np.arange(1.0, 42.0)
+    memory = np.zeros(8 * 80 + 4, dtype=np.uint8)
+    for offset in (0, 4):
+        whole = memory[offset : offset + 8 * 80].view(np.float64)
+        for first in range(9):
+            for n in (0, 1, 7, 8, 9, 40, 41):
+                whole[:] = -1.0
+                _write(of[:n], whole[first : first + n])
+                assert (whole[first : first + n] == of[:n]).all()
+                assert (whole == -1.0).sum() == 80 - n

@@ -31,6 +31,20 @@ def take_four(a: Any, b: Any, c: Any, d: Any, first: int, lanes: Any, row: int, 
         lanes[row : row + 4, j] = of[first : first + 4]
 
 
+def write_past_caches(of: Any, into: Any) -> None:
+    """
+    Copy an array (n,) to memory that is not read soon, without reading it first.
+
+    What is written to memory beyond the caches is else fetched from there before. `settle` makes it
+    seen by other threads.
+    """
+    into[:] = of
+
+
+def settle() -> None:
+    """Wait until all that was written is seen by other threads."""
+
+
 if not WHY_PLAIN:
     from numba.core import cgutils, types
     from numba.extending import intrinsic, overload
@@ -38,10 +52,13 @@ if not WHY_PLAIN:
     ir = cgutils.ir
     _VECTOR = ir.VectorType(ir.DoubleType(), 4)
 
+    def _element(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
+        array = context.make_array(kind)(context, builder, array)
+        return cgutils.get_item_pointer(context, builder, kind, array, index)
+
     def _place(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
         """Where four numbers begin."""
-        array = context.make_array(kind)(context, builder, array)
-        element = cgutils.get_item_pointer(context, builder, kind, array, index)
+        element = _element(context, builder, kind, array, *index)
         return builder.bitcast(element, _VECTOR.as_pointer())
 
     def _turned(builder: Any, rows: list[Any]) -> tuple[Any, ...]:
@@ -94,3 +111,45 @@ if not WHY_PLAIN:
         return lambda a, b, c, d, first, lanes, row, lane: _take(
             lanes, row, lane, a, b, c, d, first
         )
+
+    _LINE = ir.VectorType(ir.DoubleType(), 8)
+
+    @intrinsic
+    def _write_line(typing, into, at, of, row):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            kinds, line = signature.args, _LINE.as_pointer()
+            to = builder.bitcast(_element(context, builder, kinds[0], *values[:2]), line)
+            read = builder.bitcast(_element(context, builder, kinds[2], *values[2:]), line)
+            written = builder.store(builder.load(read, align=8), to, align=64)
+            told = builder.module.add_metadata([ir.IntType(32)(1)])
+            written.set_metadata("nontemporal", told)
+            return context.get_dummy_value()
+
+        return types.none(into, types.intp, of, types.intp), generate
+
+    @intrinsic
+    def _fence(typing):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            builder.fence("seq_cst")
+            return context.get_dummy_value()
+
+        return types.none(), generate
+
+    @overload(settle, inline="always")
+    def _settle():  # type: ignore[no-untyped-def]
+        return lambda: _fence()
+
+    @overload(write_past_caches)
+    def _write_past_caches(of, into):  # type: ignore[no-untyped-def]
+        def write(of, into):  # type: ignore[no-untyped-def]
+            n, address = len(of), into.ctypes.data
+            first = min((64 - address % 64) % 64 // 8, n) if address % 8 == 0 else n
+            for i in range(first):
+                into[i] = of[i]
+            last = first + (n - first) // 8 * 8
+            for i in range(first, last, 8):
+                _write_line(into, i, of, i)
+            for i in range(last, n):
+                into[i] = of[i]
+
+        return write

@@ -19,6 +19,7 @@ import numpy as np
 from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.drag import pressure
+from tree_sway_ros.core.motion.lanes import settle, write_past_caches
 from tree_sway_ros.core.motion.placing import place_standing_at
 from tree_sway_ros.core.motion.wind_basis import expand, find_rest, step_instance
 from tree_sway_ros.core.motion.wind_basis_table import STEEPEST
@@ -37,6 +38,9 @@ STANDING = np.dtype(
     ]
 )
 """How a tree of a stand stands."""
+
+_CACHED = 1 << 21
+"""Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
 
 _LEVEL = math.sqrt(1.0 - STEEPEST * STEEPEST)
 _pressure = inlined(pressure)
@@ -150,5 +154,8 @@ def place_standing(
             here.cosine, here.sine, here.scale, poses,
         )  # fmt: skip
         into = whole[7 * first : 7 * first + len(block)]
-        for i in range(len(block)):
-            into[i] = block[i]
+        if len(whole) > _CACHED:
+            write_past_caches(block, into)
+        else:
+            into[:] = block
+    settle()
