@@ -38,9 +38,13 @@ class Processes:
 
     def start(self, name, *parameters):
         self._arguments.setdefault(name, parameters)
-        # With bytecode, as where it is installed, whatever the tests themselves run with.
-        bytecode = {"PYTHONDONTWRITEBYTECODE": ""}
-        self._running[name] = self._run(name, *self._arguments[name], **bytecode)
+        # As where it is installed, whatever the tests themselves run with: with bytecode, and
+        # without the tool that numba loads where it finds it.
+        bytecode, bare = (
+            {"PYTHONDONTWRITEBYTECODE": ""},
+            "import sys; sys.modules['coverage'] = None; ",
+        )
+        self._running[name] = self._run(name, *self._arguments[name], before=bare, **bytecode)
 
     def kill(self, name):
         process = self._running.pop(name)

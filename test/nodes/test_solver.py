@@ -21,6 +21,7 @@ from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.ros.process.topics import (  # noqa: E402
     MARKERS,
     SEGMENT_POSES,
+    TF,
     TREE_DESCRIPTION,
     WIND_FILTERED,
     qos_profile,
@@ -267,6 +268,18 @@ def test_transforms_need_their_message(compose, tree_file):
             compose(solver={"tree": tree_file, "publish_tf": True})
     else:
         pytest.skip("tf2_msgs is installed")
+
+
+def test_transforms_are_published_where_their_message_is(compose, observer, tree_file):
+    kind = pytest.importorskip("tf2_msgs.msg", reason="tf2_msgs is not installed").TFMessage
+    compose(solver={"tree": tree_file, "publish_tf": True, "frame_id": "site"})
+    frames, moved = observer.listen(SEGMENT_POSES), observer.listen(TF, kind)
+    observer.until(lambda: frames and moved, "transforms")
+    transforms = moved[0].transforms
+    assert {each.header.frame_id for each in transforms} == {"site"}
+    assert len({each.child_frame_id for each in transforms}) == len(frames[0].poses)
+    at = np.array([[getattr(each.transform.translation, k) for k in "xyz"] for each in transforms])
+    np.testing.assert_allclose(at, block(frames[0])[:, :3], atol=1e-12)
 
 
 def test_a_parameter_of_another_kind_names_itself(compose):

@@ -97,7 +97,8 @@ def test_a_steep_wind_is_outside_of_the_table_and_stepped_by_branches(fork):
 
 
 def test_a_gentle_wind_from_any_elevation_is_in_the_table(fork):
-    one, other = (SwaySimulator(fork(), model=model) for model in ("wind_basis", "modes"))
+    one = SwaySimulator(fork(), model="wind_basis")
+    other = SwaySimulator(fork(), model="modes", n_modes=len(one.bank.frequencies) - 3)
     for k in range(200):
         turn = 0.05 * k
         wind = [0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.6 * (-1.0) ** (k // 50)]

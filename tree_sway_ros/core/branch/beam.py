@@ -11,7 +11,6 @@ one.
 
 Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M
 / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
-
 """
 
 from __future__ import annotations
@@ -223,7 +222,6 @@ class BranchBeam:
         """
         Curvature by an internal moment, for a modulus of 1: bent by what acts across the branch,
         twisted by what acts about it, both (p, 5, k, 3).
-
         """
         along = self.tangent[:, None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
@@ -236,7 +234,6 @@ class BranchBeam:
         """
         Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (p,
         5, c).
-
         """
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         return lever, (lever > 0.0).astype(np.float64)
@@ -313,7 +310,6 @@ class SlopeShape:
         """
         Integral of the slope along the branch: its cross product with a rotation is the
         displacement.
-
         """
         return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
 
@@ -371,7 +367,6 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
     """
     Energy between fields of one branch in [N m/rad], (k, k): E I of bending, across the branch as
     it runs in space, and G J of twist about it, J = 2 I.
-
     """
     beam, n = fields[0].beam, len(fields)
     curvature = np.stack([one.curvature for one in fields])

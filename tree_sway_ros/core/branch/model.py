@@ -10,7 +10,6 @@ at the child's place.
 
 Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass
 per length [kg/m].
-
 """
 
 from __future__ import annotations
@@ -71,7 +70,6 @@ class BranchModel:
         shape [-].
 
         Inverse iteration from the static shape: each turn bends the branch by its own inertia.
-
         """
         beam, shape = self.beam, self.shape
         static = _square_frequency(beam, shape, self.mass)
@@ -96,7 +94,6 @@ def branch_models(
 ) -> list[BranchModel]:
     """
     Model each branch of a tree for one model; parameters are those of `TreeBeams` and its `models`.
-
     """
     beams = TreeBeams(
         tree,

@@ -17,7 +17,6 @@ that their delays deal them; what those differ by counts with the power that eac
 itself.
 
 Symbols: D(f) difference of two tip responses, S(f) spectrum of the load, C its covariance.
-
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ from tree_sway_ros.core.wind.crown_wind import shared_power
 MARGIN = 1.3
 """Estimated over computed error: the wind is not quite linear in its effect."""
 
-FLOOR = 0.06
+FLOOR = 0.05
 """Share of the motion by which even the coupled model may err against every segment solved."""
 
 TABLE_FLOOR, TABLE_MARGIN = 0.02, 7.0
@@ -133,20 +132,7 @@ class FidelityLadder:
         return np.arange(self.tree.n_branches)
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
-        """
-        Judge every model in a wind.
-
-        Parameters
-        ----------
-        climate
-            The wind.
-
-        Returns
-        -------
-        list of Estimate
-            From the cheapest to the dearest.
-
-        """
+        """Judge every model in a wind; the one of least cost first."""
         load = pressure(climate.speed, *self._drag_law)
         power = climate.power(_FREQUENCIES)[None]
         if self._coherence < 1.0:
@@ -234,7 +220,6 @@ def _gram(response: Complexes) -> Floats:
     """
     Mean over tips of the inner products of the answers (b, 3, 2 p, f) along x and y to an even wind
     and to patterns, of those in the mean, (1 or 2, f, 2, 2).
-
     """
     b, _, columns, f = response.shape
     by_pattern = response.reshape(b, 3, columns // 2, 2, f)

@@ -462,7 +462,6 @@ def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
     Slope of each segment as its branch is drawn, and under a load at the tip, both (n,).
 
     The latter is the mean over the segment of 1.5 (2 u - u^2), u the arc length over the length.
-
     """
     first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
     whole = np.repeat(np.add.reduceat(tree.length, first), size)

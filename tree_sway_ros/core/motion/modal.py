@@ -36,21 +36,9 @@ from tree_sway_ros.core.reduction.modes import Modes
 
 class ModalBank:
     """
-    Oscillators of natural modes.
+    Oscillators of natural modes of a tree, its slowest or all, of one damping ratio.
 
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    reduction
-        Matrices of the tree.
-    modes
-        Its slowest modes, or all.
-    damping_ratio
-        Of every mode in [-].
-    integrator
-        Method of the oscillators, one of `REAL_TIME`.
-
+    The integrator is one of `REAL_TIME`.
     """
 
     carries = True

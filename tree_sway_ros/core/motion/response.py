@@ -8,7 +8,6 @@ Loads are split as turbulence is: along the mean wind, where the load goes with 
 speed, and across it. The gain of a model is the motion of the tips of all branches, joined from the
 root, per unit of load at each frequency. Gains of two models can be set against each other; that is
 how the error of the lesser one is known without running the greater.
-
 """
 
 from __future__ import annotations
@@ -44,24 +43,9 @@ def key_response(
     patterns: Sequence[Floats | float] = (1.0,),
 ) -> Complexes:
     """
-    Key rotations under a wind load of 1 N/m^2 drag pressure that swings.
+    Key rotations (N, 2, f) [m^2/N] under an even load of 1 N/m^2 along x and y that swings.
 
-    Parameters
-    ----------
-    oscillators
-        A model of a tree.
-    n_coordinates
-        N.
-    frequencies
-        In [Hz], (f,); 0 is the static answer.
-    patterns
-        Loads of branches over those of an even wind, p of them, each (b,).
-
-    Returns
-    -------
-    Complexes
-        Per unit of load along x and along y of each pattern, (N, 2 p, f), in [m^2/N].
-
+    The frequencies are in [Hz], (f,); 0 is the static answer.
     """
     moments = []
     for pattern in patterns:
@@ -73,20 +57,8 @@ def key_response(
 
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """
-    Join small rotations from the root to motions of the tips.
-
-    Parameters
-    ----------
-    branches
-        Records of `BRANCH`, (b,).
-    rotations
-        On the coordinates, (N, ...).
-
-    Returns
-    -------
-    ndarray
-        Displacement of the tip of each branch, (b, 3, ...).
-
+    Join small rotations (N, ...) from the root to displacements of the tip of each branch, (b, 3,
+    ...).
     """
     tips = carried_to(base_motion(branches, rotations), branches["tip"])
     for own, rows in _moved(branches, rotations):
@@ -112,7 +84,6 @@ def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """
     Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6,
     ...).
-
     """
     base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches["parent"]
@@ -131,7 +102,6 @@ def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
     """
     Displacement of points (p, 3) of bodies moving by (v, w) about the root, (p, 6, ...),
     (p, 3, ...).
-
     """
     x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
     wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]

@@ -180,10 +180,9 @@ def fill_pace(pace: np.void, modal: ModalBank) -> None:
 
 def step_outside(instance: Record, modal: ModalBank, shapes: Floats, rotations: Floats) -> int:
     """
-    Step a tree that is outside of its table on the loads of its branches; returns how many were
-    held.
+    Step a tree that is outside of its table on the loads of its branches, and write its rotations.
 
-    Its rotations are written, as by `expand`.
+    Returns how many loads were held at their limit.
     """
     m = modal.shapes.shape[1]
     rotations[:] = instance["eta"][:m] @ shapes[:m] + instance["rest"] @ shapes[m:]

@@ -17,7 +17,6 @@ shape, which is the loaded one, and only its geometric stiffness enters.
 
 Symbols: N coordinates, in the order of branches, shapes, axes; T the twists of the parent's
 coordinates on each child. SI units.
-
 """
 
 from __future__ import annotations
@@ -79,7 +78,6 @@ class Reduction:
         """
         Of each coordinate alone in [rad/(N m)], (N,): both axes as one, so that it does not matter
         how they are laid.
-
         """
         diagonal = np.asarray(self.stiffness.diagonal())
         mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
@@ -188,7 +186,6 @@ class _Blocks:
 def _motions(model: BranchModel) -> tuple[Floats, Floats]:
     """
     Displacement at the points (k, p, 5, 3) and twist on the children (k, c, 6) of each coordinate.
-
     """
     places = model.beam.child_point
     twists = [
@@ -225,7 +222,6 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     Rotations about unlike axes do not add up: what is first bent and then twisted is turned by half
     of the cross product of the two as well, and the weight, whose moment the branch bears at rest,
     does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
-
     """
     beam = model.beam
     own, nodes, _ = beam.from_base(model.mass)

@@ -439,7 +439,7 @@ class CalibratedTree:
         if model == "wind_basis":
             chosen = most_driven(modes, loads, moved, n_modes - n_static)
         else:
-            further = min(n_modes, _FURTHER // n)
+            further = min(n_modes, _FURTHER // n) if n_modes >= USUAL_MODES else 0
             chosen = most_driven(modes, loads, moved, n_modes, further)
         return with_static(chosen, reduction, loads)
 

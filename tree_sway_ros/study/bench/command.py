@@ -38,8 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "to 24 segments per branch; forest: 20 trees of 10,200 segments at 60 Hz; setup: set trees "
         "of 121 and 1,021 branches up; sizes: wind_basis on trees of 121 to 10,105 "
         "branches, its cost and its error; stand: 1,000 trees of 1,000 segments; stream: 10,000 "
-        "poses at 60 Hz to another process; latency: from a wind's stamp to its pose; "
-        "engines: beside MuJoCo; "
+        "poses at 60 Hz to another process; latency: from a start to its first pose, from a wind's "
+        "stamp to its pose; engines: beside MuJoCo; "
         "shards: a stand on two hosts, cut apart and with a shard killed",
     )
     parser.add_argument("--rounds", type=int, default=20, help="of 200 steps each (%(default)s)")

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 from scipy import linalg
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
@@ -120,7 +121,7 @@ class MujocoTree:
             tree, species.modulus, species.density, subdivisions=4, shear_ratio=species.shear_ratio
         )
         self._momentum, self._gain = np.zeros((0, self.model.nv)), np.zeros(0)
-        self._mass, self._stiffness = self._matrices(mujoco)
+        self._stiffness = np.array(self.model.jnt_stiffness)
         self._expected = self._beam_sway()
         self._stiffness *= self._sway() / self._expected if match_beam else 1.0
         self.model.jnt_stiffness[:] = self._stiffness
@@ -248,12 +249,13 @@ class MujocoTree:
         turn = data.xmat.reshape(-1, 3, 3)
         return data.xpos[self._body], turn[self._body], velocity[self._body], spin[self._body]
 
-    def _matrices(self, mujoco: Any) -> tuple[Floats, Floats]:
-        # Row by row: the call for the whole matrix differs between versions.
-        mass = np.zeros((self.model.nv, self.model.nv))
-        for row, unit in zip(mass, np.eye(self.model.nv), strict=True):
-            mujoco.mj_mulM(self.model, self.data, row, unit)
-        return mass, np.array(self.model.jnt_stiffness)
+    def _momenta(self, rates: Floats) -> Floats:
+        """Momenta of the joints by their rates, both (nv, k): the mass matrix times these."""
+        out = np.empty(rates.T.shape)
+        # One by one: the call for the whole matrix differs between versions.
+        for momentum, rate in zip(out, np.ascontiguousarray(rates.T), strict=True):
+            mujoco_module().mj_mulM(self.model, self.data, momentum, rate)
+        return out.T
 
     def _stiffness_of_weight(self) -> Floats:
         """How the moments of the weight about the joints change with their angles, (nv, nv)."""
@@ -275,17 +277,26 @@ class MujocoTree:
 
         """
         root = np.sqrt(self._stiffness)
-        by_springs = np.outer(root, root)
-        inverse_square, vectors = linalg.eigh(
-            self._mass / by_springs, np.eye(len(root)) + weight / by_springs,
-            subset_by_index=(max(len(root) - count, 0), len(root) - 1),
-        )  # fmt: skip
+        n = len(root)
+        if np.ndim(weight) > 0 or n <= 2 * count:
+            by_springs = np.outer(root, root)
+            inverse_square, vectors = linalg.eigh(
+                self._momenta(np.eye(n)) / by_springs, np.eye(n) + weight / by_springs,
+                subset_by_index=(max(n - count, 0), n - 1),
+            )  # fmt: skip
+        else:  # the whole mass matrix takes time with the cube of its size
+            inverse_square, vectors = eigsh(
+                LinearOperator(
+                    (n, n), lambda x: self._momenta(x.reshape(n, 1) / root[:, None])[:, 0] / root
+                ),
+                count, which="LA", v0=np.ones(n),
+            )  # fmt: skip
         self._circular: Floats = 1.0 / np.sqrt(inverse_square[::-1])
         modes = vectors[:, ::-1] / root[:, None] * self._circular
         by_stiffness = 2.0 * ratio / self._circular[-1]
         self.model.dof_damping[:] = by_stiffness * self._stiffness
         gain = 2.0 * ratio * self._circular - by_stiffness * self._circular**2
-        return (self._mass @ modes).T, gain
+        return self._momenta(modes).T, gain
 
 
 def _push(wrench: Floats, body: Any, place: Floats, force: Floats, centre: Floats) -> None:
