@@ -5,12 +5,18 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
+
+import tree_sway_ros
 
 # An int in a float field can end the process: have every field checked.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+# An observer announces itself as often as nodes do.
+PROFILE = Path(tree_sway_ros.__file__).parent / "ros" / "process" / "discovery.xml"
+os.environ.setdefault("FASTRTPS_DEFAULT_PROFILES_FILE", str(PROFILE))
 
 DEADLINE = 10.0
 

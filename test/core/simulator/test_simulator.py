@@ -176,7 +176,7 @@ def test_static_deflection_is_the_beams(stem, model, taper):
 
 def test_the_step_is_of_second_order(fork, model, request):
     if model in ("modes", "wind_basis"):
-        reason = "loads bend with the static rest of the last step: order 1.5, at half a micrometre"
+        reason = "the static rest shown is that of the middle of the step: order 1.5, at 0.5 um"
         request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
 
     def tip_after(n):

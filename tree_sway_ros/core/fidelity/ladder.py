@@ -43,7 +43,7 @@ from tree_sway_ros.core.wind.crown_wind import shared_power
 MARGIN = 1.3
 """Estimated over computed error: the wind is not quite linear in its effect."""
 
-FLOOR = 0.06
+FLOOR = 0.05
 """Share of the motion by which even the coupled model may err against every segment solved."""
 
 TABLE_FLOOR, TABLE_MARGIN = 0.02, 7.0

@@ -60,6 +60,7 @@ def grow_broadleaf(
         at_height=at_height,
         tip_diameter=0.003 * (height / 8.0) ** 0.5,
         exponent=form.exponent,
+        bole_taper=form.taper,
     )
     return skeleton.to_tree(diameters, name, species)
 

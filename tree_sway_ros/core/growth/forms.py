@@ -91,7 +91,11 @@ class BroadleafForm:
     twig
         Length of the twigs.
     exponent
-        Of the pipe model; less makes branches thinner beside their stem.
+        Of the pipe model; less makes branches thinner beside their stem. Trees have 1.8 to 2.3
+        (Eloy 2011, Physical Review Letters 107, 258101).
+    taper
+        Power of the distance from the top that the trunk tapers with on top of that; as a conifer's
+        stem, and hardly where the trunk goes to the very top.
     slenderness
         Height over diameter.
 
@@ -110,7 +114,8 @@ class BroadleafForm:
     branch_turn: float = 0.2
     lift: float = 0.2
     twig: float = 0.045
-    exponent: float = 2.05
+    exponent: float = 2.0
+    taper: float = 0.7
     slenderness: float = 45.0
 
 
@@ -160,7 +165,7 @@ _BROADLEAVES = {
     # White stem to the very top, slender limbs that rise steeply and hang at their ends.
     "birch": BroadleafForm(
         Outline(0.14, 0.24, 0.36, 1.6, 1.5), 0.2, 0.96, 20, (0.75, 1.15), (-0.9, -0.35), 0.05,
-        spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, slenderness=58.0,
+        spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, taper=0.2, slenderness=58.0,
     ),
     # Smooth straight stem, many limbs, dense dome down low.
     "beech": BroadleafForm(
@@ -175,7 +180,7 @@ _BROADLEAVES = {
     # Broad full dome on a stout bole, limbs in pairs.
     "sycamore": BroadleafForm(
         Outline(0.15, 0.41, 0.46, 3.0, 3.0), 0.2, 0.72, 16, (0.3, 1.1), (0.3, 0.1), 0.08, True,
-        spread=0.85, branch_turn=0.3, lift=0.4,
+        spread=0.85, branch_turn=0.3, lift=0.4, exponent=1.98, taper=1.0,
     ),
     # Short bole that parts into few wide limbs; round open crown of coarse twigs.
     "walnut": BroadleafForm(

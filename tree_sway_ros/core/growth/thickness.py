@@ -47,6 +47,7 @@ def node_diameters(
     tip_diameter: float,
     exponent: float = 2.5,
     stem_taper: float | None = None,
+    bole_taper: float = 0.0,
 ) -> list[Floats]:
     """
     Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the first one the stem.
@@ -62,6 +63,10 @@ def node_diameters(
     stem_taper
         Power of the distance from the top that the stem's diameter goes with, if it does not follow
         the pipe model.
+    bole_taper
+        Power of the distance from the top of the tree that the stem's diameter goes with on top of
+        the pipe model, above the height where it is given: pipes of branches that are gone stay in
+        the wood below (Shinozaki et al. 1964).
 
     Raises
     ------
@@ -84,6 +89,9 @@ def node_diameters(
         z = stem.nodes[:, 2] - stem.nodes[0, 2]
         own = diameter * ((1.0 - z / z[-1]) / (1.0 - at_height / z[-1])) ** stem_taper
         diameters[0] = np.maximum(own, tip_diameter)
+    top = max(float(shoot.nodes[:, 2].max()) for shoot in skeleton.shoots)
+    below_top = np.maximum(top - stem.nodes[:, 2], 0.0) / (top - stem.nodes[0, 2] - at_height)
+    diameters[0] = np.maximum(diameters[0] * np.minimum(below_top, 1.0) ** bole_taper, tip_diameter)
     _support(skeleton, diameters)
     # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)
