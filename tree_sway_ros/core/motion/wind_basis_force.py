@@ -17,13 +17,13 @@ N_AZIMUTHS, N_LEVELS, N_REST = 24, 5, 16
 """Azimuths of the wind and levels of the lean in the table, and shapes of the static rest."""
 
 _MODES_TOGETHER = 4
-_LEAST_MODES = 12
+_LEAST_MODES = 20
 
 
 @cache
 def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     """
-    Table of one tree; modes are filled up to a multiple of four, at least twelve.
+    Table of one tree; modes are filled up to a multiple of four, at least twenty.
 
     One layout serves most trees, so that the kernel is compiled once.
     """

@@ -103,7 +103,7 @@ class Oscillators(Protocol):
 
 _COUPLED = ("wind_basis", "modes", "coupled")
 
-USUAL_MODES = 12
+USUAL_MODES, TABLE_MODES = 12, 20
 """Modes that are stepped where no number is asked for."""
 
 _FEW_MODES = 6
@@ -296,7 +296,7 @@ class CalibratedTree:
         """
         Build the oscillators of a model, ``modes`` and ``wind_basis`` with so many modes.
 
-        If None, these are `USUAL_MODES`, or all if there are fewer.
+        If None, these are `USUAL_MODES` or `TABLE_MODES`, or all if there are fewer.
 
         Raises
         ------
@@ -418,7 +418,8 @@ class CalibratedTree:
         """
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
-        n_modes = min(USUAL_MODES, n) if count is None else count
+        usual = TABLE_MODES if model == "wind_basis" else USUAL_MODES
+        n_modes = min(usual, n) if count is None else count
         is_driven = model != "coupled" and self.settings.mode_choice == "driven" and n_modes <= n
         candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
         wanted = n if model == "coupled" else candidates

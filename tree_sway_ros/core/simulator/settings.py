@@ -38,8 +38,8 @@ class Settings:
         ``coupled`` or ``segments``; or ``auto``, which takes the least that will do, and takes some
         seconds to judge them all.
     n_modes
-        How many modes the models ``wind_basis`` and ``modes`` step; 12, or all if there are
-        fewer, if None.
+        How many coordinates the models ``wind_basis`` and ``modes`` step; if None, 20 and 12, or
+        all if there are fewer.
     mode_choice
         Which modes these are: the most ``driven`` by wind among the slow ones, or the ``slowest``.
     degree
