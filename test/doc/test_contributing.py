@@ -42,7 +42,7 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
     [
         (
             "A new species", "tree_sway_ros/core/tree/species.py",
-            [r'^ +_with_broadleaf_drag\(\s*"ash"'], "test/core/tree/test_species.py", "poplar",
+            [r'^ +_species\("ash"'], "test/core/tree/test_species.py", "poplar",
             "from tree_sway_ros import species_named; print(species_named('poplar').title)",
         ),
         (

@@ -20,7 +20,7 @@ import numpy as np
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 tree = builtin_tree("benjamina")
-for model in ("subtree", "modes", "coupled"):
+for model in ("modes", "coupled"):
     sim, digest = SwaySimulator(tree, model=model), hashlib.blake2b(digest_size=8)
     for wind in np.random.default_rng(1).normal(4.0, 2.0, (100, 3)):
         sim.step(wind, 1.0 / 60.0)
@@ -44,7 +44,7 @@ def digests(threads, cache):
 def test_two_processes_give_the_same_bits_on_any_number_of_threads(tmp_path):
     """The first process compiles (where there is a compiler), the second finds it done."""
     first = digests(2, tmp_path)
-    assert first.count("\n") == 3
+    assert first.count("\n") == 2
     assert digests(1, tmp_path) == first
     if not WHY_PLAIN:
         assert list(tmp_path.glob("*.kernel"))
