@@ -69,6 +69,7 @@ def test_an_edited_callee_is_run_by_callers_in_other_files(copy, compiled):
         path.write_text(text, encoding="utf-8")
 
 
+@pytest.mark.long
 def test_damaged_kernels_are_compiled_again(copy, compiled, tmp_path):
     cache, before, said = compiled
     assert not said

@@ -42,6 +42,7 @@ def test_the_errors_of_the_models_are_those_of_the_code() -> None:
     assert {p.model: p.error for p in measured} == pytest.approx(told, rel=0.01), CURE
 
 
+@pytest.mark.long
 def test_the_errors_and_operations_of_the_methods_are_those_of_the_code() -> None:
     names = ("exact_foh", "exact_zoh", "semi_implicit_euler")
     found = {(p.method, p.system, p.wind): p for p in measure(rates=(60,), methods=names)}

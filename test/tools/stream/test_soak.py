@@ -39,7 +39,7 @@ def test_a_process_looks_at_itself() -> None:
 
 @pytest.mark.ros
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
-@pytest.mark.parametrize("kind", ["nodes", "demo"])
+@pytest.mark.parametrize("kind", ["nodes", pytest.param("demo", marks=pytest.mark.long)])
 def test_the_chain_goes_through_all_faults(kind: str, ros_environment: dict[str, str]) -> None:
     command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "soak", "--hours", "0.003"]
     ended = subprocess.run(
