@@ -99,9 +99,12 @@ def machine(tmp_path: Path, ros_environment: dict[str, str]) -> Iterator[Machine
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     own = {"PYTHON": sys.executable, "PYTHONPATH": paths, "BROWSER": "true"}
     made = Machine(tmp_path, {**ros_environment, **own})
+    # Where this runs in the background of a shell, Ctrl-C is ignored, and would be by the commands.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         yield made
     finally:
+        signal.signal(signal.SIGINT, before)
         for _, process in made.running:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
