@@ -9,8 +9,8 @@ segment. Integrals are taken on those points, so the result does not depend on h
 is cut; and as what a child hands over makes a step or a kink at its foot, no panel reaches across
 one.
 
-Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M
-/ EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
+Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa =
+M / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
 """
 
 from __future__ import annotations
@@ -117,8 +117,8 @@ class BranchBeam:
         self.chord = chord / self.chord_length if self.chord_length > 1e-9 else self.tangent[0]
         self.second_moment = np.pi / 64.0 * self.diameter**4
         """
-        Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the first
-        panel, with the spring in series.
+        Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the
+        first panel, with the spring in series.
         """
         if root_compliance > 0.0:
             own = 1.0 / self.second_moment[0, 0] + root_compliance / self.weight[0, 0]
@@ -158,7 +158,7 @@ class BranchBeam:
 
     def over_segments(self, values: Floats) -> Floats:
         """Mean over each segment of values at the points, (p, 5, ...), as (m, ...)."""
-        panels = np.einsum("pg,pg...->p...", self.weight, values)
+        panels = np.einsum('pg,pg...->p...', self.weight, values)
         first = np.searchsorted(self.segment, np.arange(len(self.segment_length)))
         sums = np.add.reduceat(panels, first, axis=0)
         mean: Floats = (sums.T / self.segment_length).T
@@ -199,8 +199,8 @@ class BranchBeam:
         load
             Force per length at the points in [N/m] in each of some cases, (p, 5, k, 3).
         force, moment
-            Force that each child hands over, and its moment about the root of the tree, both (c, k,
-            3).
+            Force that each child hands over, and its moment about the root of the tree, both (c,
+            k, 3).
 
         Returns
         -------
@@ -232,8 +232,8 @@ class BranchBeam:
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
         """
-        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (p,
-        5, c).
+        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both
+        (p, 5, c).
         """
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         return lever, (lever > 0.0).astype(np.float64)
@@ -283,7 +283,9 @@ class SlopeShape:
     def stiffness(self, other: SlopeShape, modulus: float) -> float:
         """Bending energy between two shapes, the integral of E I kappa kappa', in [N m/rad]."""
         return float(
-            self.beam.integral(modulus * self.beam.second_moment * self.curvature * other.curvature)
+            self.beam.integral(
+                modulus * self.beam.second_moment * self.curvature * other.curvature
+            )
         )
 
     def displacement(self, rotation: Floats) -> tuple[Floats, Floats, Floats]:
@@ -316,7 +318,8 @@ class SlopeShape:
 
 class RotationField:
     """
-    A field by which a branch bends and twists in space: rotation phi(s) per unit of its coordinate.
+    A field by which a branch bends and twists in space: rotation phi(s) per unit of its
+    coordinate.
 
     Parameters
     ----------
@@ -345,7 +348,12 @@ class RotationField:
 
 @kernel
 def _integrate(
-    values: Floats, length: Floats, weight: Floats, to_points: Floats, points: Floats, nodes: Floats
+    values: Floats,
+    length: Floats,
+    weight: Floats,
+    to_points: Floats,
+    points: Floats,
+    nodes: Floats,
 ) -> None:
     """Integrate values (p, 5, k) from the base up to points, of the same shape, and nodes."""
     n_panels, n_points, n = values.shape

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.motion.response import Complexes, base_motion, carried_to, tip_motion
+from tree_sway_ros.core.motion.response import base_motion, carried_to, Complexes, tip_motion
 from tree_sway_ros.core.reduction.pruning import Bools, Pruning
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
@@ -68,13 +68,15 @@ def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats
     for branch in range(tree.n_branches):
         those = slice(branch, int(tree.subtree_end[branch]))
         body = np.broadcast_to(base[branch], (those.stop - branch, *base.shape[1:]))
-        own = tips[those] - carried_to(body, branches["tip"][those])
+        own = tips[those] - carried_to(body, branches['tip'][those])
         swing[branch] = np.square(np.abs(own)).sum()
     return swing, float(swing[0])
 
 
 def _weights(frequencies: Floats) -> Floats:
-    """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side, (f,)."""
+    """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side,
+    (f,).
+    """
     climate = WindClimate.steady(1.0, 0.2)
     weights: Floats = np.trace(climate.power(frequencies), axis1=1, axis2=2)
     weights[0] += np.square(climate.mean).sum()

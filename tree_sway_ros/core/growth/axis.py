@@ -3,9 +3,9 @@
 """
 The line a growing shoot draws in space, told by its heading.
 
-A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad]. Habits
-of growth are plain in these terms: a weeping shoot starts above the horizon and ends below it, a
-conifer's starts low and turns up.
+A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad].
+Habits of growth are plain in these terms: a weeping shoot starts above the horizon and ends below
+it, a conifer's starts low and turns up.
 """
 
 from __future__ import annotations
@@ -80,7 +80,8 @@ def grow_axis(
     steps *= length / steps.sum()
     drift = np.cumsum(wander * rng.standard_normal((n_segments, 2)), axis=0)
     elevations = np.linspace(elevation[0], elevation[1], n_segments) + drift[:, 0]
-    # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the vertical.
+    # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the
+    # vertical.
     azimuths = azimuth + drift[:, 1] / np.maximum(np.cos(elevations), 0.3)
     level = np.cos(elevations)
     headings = np.stack(

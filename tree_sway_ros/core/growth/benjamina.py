@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.core.growth.axis import GOLDEN_ANGLE, aim, grow_axis, heading_of
+from tree_sway_ros.core.growth.axis import aim, GOLDEN_ANGLE, grow_axis, heading_of
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
@@ -26,8 +26,8 @@ def grow_benjamina(
     *,
     height: float = 1.3,
     diameter: float = 0.0235,
-    name: str = "benjamina",
-    species: str = "benjamina",
+    name: str = 'benjamina',
+    species: str = 'benjamina',
 ) -> Tree:
     """
     Grow a weeping pot plant with several stems; the diameter is that of the stock at its base.

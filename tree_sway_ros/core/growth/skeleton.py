@@ -3,8 +3,8 @@
 """
 A tree while it grows: shoots as lines of nodes, each on a node of an older one.
 
-Shoots are added parents first, so that a backward pass over them sums from the tips to the root and
-a forward pass goes the other way.
+Shoots are added parents first, so that a backward pass over them sums from the tips to the root
+and a forward pass goes the other way.
 """
 
 from __future__ import annotations

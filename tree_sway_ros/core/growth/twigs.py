@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tree_sway_ros.core.growth.axis import UP, aim
+from tree_sway_ros.core.growth.axis import aim, UP
 from tree_sway_ros.core.growth.skeleton import Skeleton
 
 

@@ -17,7 +17,7 @@ class SwayEstimate:
     `kind` is that of the record, ``release`` or ``ambient``; the answer rests on so many cycles.
     """
 
-    kind: ClassVar[str] = ""
+    kind: ClassVar[str] = ''
     frequency: float
     damping_ratio: float
     frequency_error: float

@@ -51,10 +51,12 @@ def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floa
 
 def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) -> Floats:
     """
-    Pose block (m, 7) of the clusters' centres, from that of the segments, (n, 7), and angles [rad],
-    (m,).
+    Pose block (m, 7) of the clusters' centres, from that of the segments, (n, 7), and angles
+    [rad], (m,).
     """
-    from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
+    from scipy.spatial.transform import (
+        Rotation,  # it takes long to load, and only drawing needs it
+    )
 
     carrier = poses[clusters.segment]
     turn = Rotation.from_quat(carrier[:, 3:])
@@ -81,10 +83,10 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     """
     Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them.
 
-    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law and
-    its two constants.
+    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
+    and its two constants.
     """
     columns = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}
-    law = "largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)"
-    flutter = {"law": law, "gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
-    return {**columns, "flutter": flutter}
+    law = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
+    flutter = {'law': law, 'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
+    return {**columns, 'flutter': flutter}

@@ -3,11 +3,11 @@
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 
-Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A tree
-has as much leaf area as its stem can supply, but no more than six times the ground it covers: few
-stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun would:
-leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in a crown
-of outline F (Monsi & Saeki 1953).
+Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A
+tree has as much leaf area as its stem can supply, but no more than six times the ground it covers:
+few stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun
+would: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in
+a crown of outline F (Monsi & Saeki 1953).
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def leafy_length(tree: Tree) -> Floats:
     """
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
-    thin_first = np.argsort(tree.base_diameter, kind="stable")
+    thin_first = np.argsort(tree.base_diameter, kind='stable')
     reached = np.cumsum(tree.length[thin_first])
     middle = int(np.searchsorted(reached, 0.5 * reached[-1]))
     limit = tree.base_diameter[thin_first[middle]] * (1.0 + 1e-9)
@@ -124,12 +124,12 @@ def leaf_clusters(
     tells of a count that is not positive.
     """
     if count < 1:
-        raise ParameterError(f"{count} leaf clusters", where="count", cure="ask for 1 or more")
+        raise ParameterError(f'{count} leaf clusters', where='count', cure='ask for 1 or more')
     leaf = traits if traits is not None else leaf_traits(tree.species)
     leafy = leafy_length(tree)
     ends = np.cumsum(leafy)
     place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count * ends[-1]
-    segment = np.minimum(np.searchsorted(ends, place, side="right"), tree.n_segments - 1)
+    segment = np.minimum(np.searchsorted(ends, place, side='right'), tree.n_segments - 1)
     along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
     # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a
     # leaf.
@@ -159,7 +159,7 @@ def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int])
         field.name: np.concatenate([getattr(each, field.name) for each in clusters])
         for field in fields(LeafClusters)
     }
-    return LeafClusters(**{**columns, "segment": np.concatenate(carriers)})
+    return LeafClusters(**{**columns, 'segment': np.concatenate(carriers)})
 
 
 def no_clusters() -> LeafClusters:
@@ -174,10 +174,12 @@ def _facing_up(away: Floats, rest: Floats) -> Floats:
     """
     Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
     """
-    from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
+    from scipy.spatial.transform import (
+        Rotation,  # it takes long to load, and only drawing needs it
+    )
 
     up = Rotation.from_quat(rest[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0])
-    z = up - np.einsum("ij,ij->i", up, away)[:, None] * away
+    z = up - np.einsum('ij,ij->i', up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)
     # A leaf that points straight up may look any way across.
     z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])

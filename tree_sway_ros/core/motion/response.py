@@ -5,15 +5,15 @@ How far tips go in a wind that swings at one pace: linear response of every mode
 taken.
 
 Loads are split as turbulence is: along the mean wind, where the load goes with the square of the
-speed, and across it. The gain of a model is the motion of the tips of all branches, joined from the
-root, per unit of load at each frequency. Gains of two models can be set against each other; that is
-how the error of the lesser one is known without running the greater.
+speed, and across it. The gain of a model is the motion of the tips of all branches, joined from
+the root, per unit of load at each frequency. Gains of two models can be set against each other;
+that is how the error of the lesser one is known without running the greater.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
+import math
 from typing import Any, Protocol
 
 import numpy as np
@@ -50,7 +50,7 @@ def key_response(
     moments = []
     for pattern in patterns:
         branches = oscillators.branches.copy()
-        branches["area"] *= pattern
+        branches['area'] *= pattern
         moments.append(even_wind_moments(branches, n_coordinates, carries=oscillators.carries))
     return oscillators.response(np.hstack(moments), 2.0 * np.pi * np.asarray(frequencies))
 
@@ -60,17 +60,17 @@ def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     Join small rotations (N, ...) from the root to displacements of the tip of each branch, (b, 3,
     ...).
     """
-    tips = carried_to(base_motion(branches, rotations), branches["tip"])
+    tips = carried_to(base_motion(branches, rotations), branches['tip'])
     for own, rows in _moved(branches, rotations):
-        tips[rows] += _sums(branches["reach"][rows, : own.shape[1]], own)
+        tips[rows] += _sums(branches['reach'][rows, : own.shape[1]], own)
     return tips
 
 
 def _moved(branches: Records, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
     """Rotations (k, c, ...) of those branches (k,) that have as many coordinates, c."""
-    for count in np.unique(branches["n_coordinates"]):
-        rows = np.flatnonzero(branches["n_coordinates"] == count)
-        yield rotations[branches["coordinate"][rows, None] + np.arange(count)], rows
+    for count in np.unique(branches['n_coordinates']):
+        rows = np.flatnonzero(branches['n_coordinates'] == count)
+        yield rotations[branches['coordinate'][rows, None] + np.arange(count)], rows
 
 
 def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
@@ -86,12 +86,12 @@ def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     ...).
     """
     base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
-    parents = branches["parent"]
+    parents = branches['parent']
     for own, rows in _moved(branches, rotations):
         place = np.full(len(branches) + 1, -1)
         place[rows] = np.arange(len(rows))
         children = np.flatnonzero(place[parents] >= 0)
-        twists = branches["twist"][children, : own.shape[1]]
+        twists = branches['twist'][children, : own.shape[1]]
         base[children] = _sums(twists, own[place[parents[children]]])
     for branch in np.flatnonzero(parents > 0):  # children of the stem have all that is theirs
         base[branch] += base[parents[branch]]

@@ -83,8 +83,8 @@ def wind_forces(
         `pressure` of the wind in [kg/m^3].
 
     """
-    # Each pass goes over all branches: what is written one by one and read as vectors at once would
-    # have to wait.
+    # Each pass goes over all branches: what is written one by one and read as vectors at once
+    # would have to wait.
     n = len(branches)
     if carries:
         for b in range(n):
@@ -176,7 +176,8 @@ def generalised_loads(
     """
     Turn forces into moments on the key rotations.
 
-    Its own force meets a branch where the branch now points; what it carries acts at rest geometry.
+    Its own force meets a branch where the branch now points; what it carries acts at rest
+    geometry.
 
     Parameters
     ----------
@@ -312,8 +313,8 @@ def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats)
 @fused
 def _turned_loads(loads: Record) -> None:
     """
-    Turn the wind's own forces on sixteen branches into loads on their coordinates and moments about
-    their bases.
+    Turn the wind's own forces on sixteen branches into loads on their coordinates and moments
+    about their bases.
     """
     force, push, load, couple = loads.own_force, loads.push, loads.load, loads.couple
     turn, base, moment = loads.turned, loads.base, loads.moment

@@ -28,7 +28,7 @@ from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pas
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
 from tree_sway_ros.core.oscillators.rule_names import DEFAULT
 from tree_sway_ros.core.oscillators.step_rules import fill_steps
-from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
+from tree_sway_ros.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
 
 
 class UncoupledBank:
@@ -78,10 +78,10 @@ class UncoupledBank:
         held = half[:, [0, 1, 2, 4, 5, 6]]
         held[:, [2, 5]] += half[:, [3, 7]]
         block, lane = np.divmod(np.arange(n), LANES)
-        flow = np.square(self.branches["flow"][:, :2]).sum(axis=(1, 2)) / 2.0
-        for name, rows in (("whole", whole), ("half", held), ("guard", guard)):
+        flow = np.square(self.branches['flow'][:, :2]).sum(axis=(1, 2)) / 2.0
+        for name, rows in (('whole', whole), ('half', held), ('guard', guard)):
             self._banks[name][block, :, lane] = rows
-        self._banks["compliance"][block, lane] = flow * held[:, 5]
+        self._banks['compliance'][block, lane] = flow * held[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -111,7 +111,7 @@ class UncoupledBank:
 
     def memory(self) -> tuple[Floats, ...]:
         """Views of what is carried from one step to the next."""
-        return self.x, self.v, self._banks["slip"], self._banks["load"]
+        return self.x, self.v, self._banks['slip'], self._banks['load']
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
@@ -128,14 +128,14 @@ class UncoupledBank:
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
-        forces: Floats = self.work["force"]
+        forces: Floats = self.work['force']
         return forces
 
     def reset(self) -> None:
         """Go back to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._banks["slip"] = self._banks["load"] = 0.0
+        self._banks['slip'] = self._banks['load'] = 0.0
 
 
 @fused

@@ -3,8 +3,8 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the child
-carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
+A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the
+child carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
 (linear, angular) of a unit rate of coordinate j with all that it carries, the entries for an
 ancestor's coordinate i are
 
@@ -145,7 +145,9 @@ def reduce_tree(
             below = slice(int(first[child]), int(first[tree.subtree_end[child]]))
             mass.add(own, below, base_twists @ momentum[below].T)
             lift = momentum[below]
-            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(base_twists[:, 4], lift[:, 0])
+            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(
+                base_twists[:, 4], lift[:, 0]
+            )
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
@@ -200,8 +202,8 @@ def _spatial_inertia(model: BranchModel) -> Floats:
     point = model.beam.point
     dm = model.mass * model.beam.weight
     mass = dm.sum()
-    cross = cross_matrix(np.einsum("sg,sgk->k", dm, point))
-    second = np.einsum("sg,sgi,sgj->ij", dm, point, point)
+    cross = cross_matrix(np.einsum('sg,sgk->k', dm, point))
+    second = np.einsum('sg,sgi,sgj->ij', dm, point, point)
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = mass * np.eye(3)
     inertia[:3, 3:] = -cross
@@ -219,9 +221,9 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each
     child's subtree about its base takes the place of m t for the child.
 
-    Rotations about unlike axes do not add up: what is first bent and then twisted is turned by half
-    of the cross product of the two as well, and the weight, whose moment the branch bears at rest,
-    does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
+    Rotations about unlike axes do not add up: what is first bent and then twisted is turned by
+    half of the cross product of the two as well, and the weight, whose moment the branch bears at
+    rest, does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
     """
     beam = model.beam
     own, nodes, _ = beam.from_base(model.mass)

@@ -50,7 +50,7 @@ class Pruning:
         for branch in range(1, len(frozen)):
             frozen[branch] |= frozen[parent[branch]]
         frozen.setflags(write=False)
-        object.__setattr__(self, "frozen", frozen)
+        object.__setattr__(self, 'frozen', frozen)
 
     @property
     def moving(self) -> Ints:

@@ -20,7 +20,6 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.rotation_kernel import (
-    Vector,
     cross,
     cross_columns,
     dot,
@@ -30,6 +29,7 @@ from tree_sway_ros.core.reference.rotation_kernel import (
     read,
     times,
     times_transposed,
+    Vector,
     write,
 )
 
@@ -103,7 +103,10 @@ def articulation_of(n: int) -> Articulation:
 
 @kernel
 def move(bodies: Bodies, turn: Floats, rate: Floats, motion: Motion) -> None:
-    """Carry rotations (n, 3, 3) and rates (n, 3) of the joints, in body axes, from the root out."""
+    """
+    Carry rotations (n, 3, 3) and rates (n, 3) of the joints, in body axes, from the root
+    out.
+    """
     rotation = motion.rotation
     for i in range(len(turn)):
         p = bodies.carrier[i]

@@ -33,7 +33,7 @@ def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:
         [np.zeros(3), np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)]
     )
     edge = t[0] + dt * np.arange(int((t[-1] - t[0]) / dt + 1e-9) + 1)
-    k = np.clip(np.searchsorted(t, edge, side="right") - 1, 0, len(slope) - 1)
+    k = np.clip(np.searchsorted(t, edge, side='right') - 1, 0, len(slope) - 1)
     past = (edge - t[k])[:, None]
     means: Floats = np.diff(whole[k] + v[k] * past + 0.5 * slope[k] * past**2, axis=0) / dt
     return means

@@ -161,7 +161,7 @@ class BaseMoment:
     def __init__(self, calibrated: CalibratedTree) -> None:
         """Find the moment per unit of each coordinate of the stem."""
         tree, species, model = calibrated.tree, calibrated.species, calibrated.settings.model
-        layer = calibrated.layer(model if model in ("branch", "subtree") else "coupled")
+        layer = calibrated.layer(model if model in ('branch', 'subtree') else 'coupled')
         stem = layer.models[0]
         beam = stem.beam
         along = beam.tangent[0]
@@ -186,23 +186,23 @@ class BaseMoment:
 def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | None) -> Floats:
     """Mean wind of each step in [m/s], (t, 3)."""
     if not (np.isfinite(rate) and 1.0 <= rate <= 10_000.0):
-        raise ParameterError(f"rate {rate:g} Hz", where="rate", cure="give 1 to 10000")
+        raise ParameterError(f'rate {rate:g} Hz', where='rate', cure='give 1 to 10000')
     if isinstance(wind, WindSamples):
         means = frame_means(wind.time, wind.velocity, 1.0 / rate)
     else:
         means = np.asarray(wind, dtype=np.float64)
     if means.ndim != 2 or means.shape[1:] != (3,) or not len(means):
         raise ParameterError(
-            f"wind of shape {means.shape}",
-            where="wind",
-            cure="give a record of two samples or more, or the mean of each step, (t, 3)",
+            f'wind of shape {means.shape}',
+            where='wind',
+            cure='give a record of two samples or more, or the mean of each step, (t, 3)',
         )
     if not np.isfinite(means).all():
-        raise ParameterError("wind that is not finite", where="wind", cure="leave such rows out")
+        raise ParameterError('wind that is not finite', where='wind', cure='leave such rows out')
     if seconds is None:
         return np.asarray(means)
     if not (np.isfinite(seconds) and seconds > 0.0):
-        raise ParameterError(f"{seconds:g} s", where="seconds", cure="give more than 0")
+        raise ParameterError(f'{seconds:g} s', where='seconds', cure='give more than 0')
     return np.asarray(means[: max(round(seconds * rate), 1)])
 
 
@@ -214,6 +214,6 @@ def _chosen(tree: Tree, branches: Sequence[int] | None) -> Ints:
     wrong = chosen[(chosen < 0) | (chosen >= tree.n_branches)]
     if len(wrong):
         raise ParameterError(
-            f"branch {wrong[0]}", where="branches", cure=f"give 0 to {tree.n_branches - 1}"
+            f'branch {wrong[0]}', where='branches', cure=f'give 0 to {tree.n_branches - 1}'
         )
     return chosen

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from tree_sway_ros.core.wind.gust_travel import GustHistory
 
-_One = TypeVar("_One", bound="OneTree")
+_One = TypeVar('_One', bound='OneTree')
 
 
 class OneTree:

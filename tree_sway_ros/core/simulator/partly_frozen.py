@@ -36,7 +36,7 @@ class PartlyFrozenTree(CalibratedTree):
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out the frozen."""
         bank = super().bank(model, n_modes)
-        bank.heads["n_bearing"] = bank.heads["n_lanes"]
+        bank.heads['n_bearing'] = bank.heads['n_lanes']
         return replace(
             bank,
             frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),
@@ -66,13 +66,16 @@ class PartlyFrozenTree(CalibratedTree):
 
     @cached_property
     def coupled(self) -> Layer:
-        """Moving branches that carry the others, those of the enriched ones with further shapes."""
+        """
+        Moving branches that carry the others, those of the enriched ones with further
+        shapes.
+        """
         return self._pruned(self._whole.coupled)
 
     def _pruned(self, layer: Layer) -> Layer:
         models = [layer.models[branch] for branch in self.pruning.moving]
         branches = moving_records(self.pruning, layer.branches)
-        branches["block"], branches["lane"], _ = lanes(self.tree, models)
+        branches['block'], branches['lane'], _ = lanes(self.tree, models)
         segments = segment_records(self.tree, models)
         return Layer(
             models, self.pruning.reduction(layer.reduction), branches, segments, layer.mass

@@ -10,8 +10,8 @@ It is there to compare with, and for a scene that has the time: its steps cost m
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,13 +26,13 @@ from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
+    Counts,
     OK,
+    refuse_time_step,
     RESTARTED,
     WIND_REFUSED,
-    Counts,
-    refuse_time_step,
 )
-from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
+from tree_sway_ros.core.state.tree_state import digest_of, KeepsState
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.crown_wind import CrownWind
@@ -53,11 +53,11 @@ class SegmentsSimulator(OneTree, KeepsState):
     @property
     def model(self) -> str:
         """``segments``."""
-        return "segments"
+        return 'segments'
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
-        if settings.stiffness != "beam":
+        if settings.stiffness != 'beam':
             raise ParameterError(
                 f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
@@ -118,10 +118,10 @@ class SegmentsSimulator(OneTree, KeepsState):
             self._tuning.volume_stiffness,
             self._tuning.volume_damping,
         ):
-            raise ParameterError("the volume rule on model 'segments'", where="tune")
+            raise ParameterError("the volume rule on model 'segments'", where='tune')
         if goal.gravity > 0.0 and not self._tuning.gravity > 0.0:
             raise ParameterError(
-                f"gravity {goal.gravity:g} m/s^2 on a tree without weight", where="gravity"
+                f'gravity {goal.gravity:g} m/s^2 on a tree without weight', where='gravity'
             )
         return goal
 
@@ -142,7 +142,7 @@ class SegmentsSimulator(OneTree, KeepsState):
     @cached_property
     def _joined(self) -> tuple[Bank, RotationFit]:
         """What places key rotations, and what fits them."""
-        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest("coupled")
+        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest('coupled')
         return bank, RotationFit(self.tree, bank.branches, bank.segments)
 
     @property
@@ -171,10 +171,10 @@ class SegmentsSimulator(OneTree, KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         shape = (self.tree.n_segments, 7)
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        poses = np.empty(shape) if out is None else array_to_fill('out', out, shape)
         bank = self._joined[0]
         expected = bank.oscillators.rotations().shape
-        rotations = array_to_read("rotations", rotations, expected)
+        rotations = array_to_read('rotations', rotations, expected)
         bank.place(rotations, self.tree.start[0], poses)
         return poses
 

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+import math
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +21,7 @@ from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
-from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
+from tree_sway_ros.core.state.tree_state import digest_of, KeepsState
 from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -183,7 +183,7 @@ class SwaySimulator(OneTree, KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         out = self._to_fill(out)
-        read = array_to_read("rotations", rotations, self._expected)
+        read = array_to_read('rotations', rotations, self._expected)
         self.bank.place(read, self._origin, out)
         return out
 
@@ -203,8 +203,8 @@ class SwaySimulator(OneTree, KeepsState):
         -------
         int
             0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept),
-            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and `RESTARTED`
-            (the motion was not finite: the tree goes on from rest).
+            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and
+            `RESTARTED` (the motion was not finite: the tree goes on from rest).
 
         Raises
         ------
@@ -278,7 +278,7 @@ class SwaySimulator(OneTree, KeepsState):
         if out is None:
             return np.empty(self._poses.shape)
         if out is not self._filled:
-            self._filled = array_to_fill("out", out, self._poses.shape)
+            self._filled = array_to_fill('out', out, self._poses.shape)
         return out
 
     @property
@@ -298,8 +298,8 @@ class SwaySimulator(OneTree, KeepsState):
         Moment of the last step's wind about the root node, of all branches where they stand at
         rest, in [N m], (3,).
         """
-        couple, force = self.bank.branches["couple"], self.bank.oscillators.forces()
-        moment: Floats = np.einsum("bij,bj->i", couple, force)
+        couple, force = self.bank.branches['couple'], self.bank.oscillators.forces()
+        moment: Floats = np.einsum('bij,bj->i', couple, force)
         return moment
 
     def motion(self) -> tuple[Floats, Floats]:
@@ -385,4 +385,6 @@ _pressure = fused(pressure)
 def refuse_time_step(dt: float) -> None:
     """Refuse a time step [s] that is not finite and above 0."""
     if not (math.isfinite(dt) and dt > 0.0):
-        raise ParameterError(f"time step of {dt} s", where="step", cure="give a finite one above 0")
+        raise ParameterError(
+            f'time step of {dt} s', where='step', cure='give a finite one above 0'
+        )

@@ -99,7 +99,7 @@ def state_basis(
     """
     if n_coordinates is not None and n_coordinates < 1:
         raise ParameterError(
-            f"{n_coordinates} coordinates", where="state_basis", cure="ask for 1 or more"
+            f'{n_coordinates} coordinates', where='state_basis', cure='ask for 1 or more'
         )
     before = simulator.state()
     runs = [
@@ -171,17 +171,17 @@ def tip_moments(joints: Records, forces: Floats) -> Floats:
     """
     Moments on the coordinates (N, m) under forces on the tips (b, 3, m): `tip_motion` transposed.
     """
-    moments = np.zeros((int(joints["n_coordinates"].sum()), forces.shape[-1]))
-    wrench = np.concatenate([forces, np.cross(joints["tip"][:, :, None], forces, axis=1)], axis=1)
+    moments = np.zeros((int(joints['n_coordinates'].sum()), forces.shape[-1]))
+    wrench = np.concatenate([forces, np.cross(joints['tip'][:, :, None], forces, axis=1)], axis=1)
     for b in range(len(joints) - 1, -1, -1):
         joint = joints[b]
-        k, i = int(joint["n_coordinates"]), int(joint["coordinate"])
-        moments[i : i + k] += joint["reach"][:k] @ forces[b]
-        if joint["parent"] >= 0:
-            parent = joints[joint["parent"]]
-            k, i = int(parent["n_coordinates"]), int(parent["coordinate"])
-            moments[i : i + k] += joint["twist"][:k] @ wrench[b]
-            wrench[joint["parent"]] += wrench[b]
+        k, i = int(joint['n_coordinates']), int(joint['coordinate'])
+        moments[i : i + k] += joint['reach'][:k] @ forces[b]
+        if joint['parent'] >= 0:
+            parent = joints[joint['parent']]
+            k, i = int(parent['n_coordinates']), int(parent['coordinate'])
+            moments[i : i + k] += joint['twist'][:k] @ wrench[b]
+            wrench[joint['parent']] += wrench[b]
     return moments
 
 

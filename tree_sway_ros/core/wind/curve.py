@@ -41,7 +41,10 @@ class WindCurve:
         self._knots.clear()
 
     def append(self, time: float, value: Vector) -> None:
-        """Add a knot at the end; it replaces a last one at the same time, and is dropped before."""
+        """
+        Add a knot at the end; it replaces a last one at the same time, and is dropped
+        before.
+        """
         if self._knots and time <= self._knots[-1][0]:
             if time < self._knots[-1][0]:
                 return

@@ -80,14 +80,14 @@ class GustHistory:
         """Allocate the history; nothing is allocated later."""
         points = np.array(places, dtype=np.float64).reshape(-1, 3)
         if not np.isfinite(points).all():
-            raise ParameterError("a place that is not finite", where="places", cure="give metres")
+            raise ParameterError('a place that is not finite', where='places', cure='give metres')
         self._from_first = anemometer is None
-        origin = np.zeros(3) if anemometer is None else three_numbers("anemometer", anemometer)
+        origin = np.zeros(3) if anemometer is None else three_numbers('anemometer', anemometer)
         self._along = points[:, :2] - np.array(origin)[:2]
-        self._ratio = within("convection_ratio", convection_ratio, 0.1, math.inf)
-        self._averaging = within("averaging_time", averaging_time, 0.0, 3600.0, "s", above=True)
-        self._memory = within("memory", memory, 0.0, 600.0, "s")
-        self._run = np.zeros((int(within("capacity", capacity, 8, 1e6)), 4))
+        self._ratio = within('convection_ratio', convection_ratio, 0.1, math.inf)
+        self._averaging = within('averaging_time', averaging_time, 0.0, 3600.0, 's', above=True)
+        self._memory = within('memory', memory, 0.0, 600.0, 's')
+        self._run = np.zeros((int(within('capacity', capacity, 8, 1e6)), 4))
         # Two times that follow each other are together longer than this, so that all are longer
         # than the memory and the steps at its ends.
         self._finest = 2.0 * self._memory / (len(self._run) - 4)
@@ -126,10 +126,10 @@ class GustHistory:
         It is (t, 3), the same array each time. A `ParameterError` tells of a number that is not
         finite, or a step that is not above 0.
         """
-        x, y, z = three_numbers("wind", wind_mean)
+        x, y, z = three_numbers('wind', wind_mean)
         if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):
             raise ParameterError(
-                f"wind ({x}, {y}, {z}) m/s over {dt} s", cure="give finite numbers"
+                f'wind ({x}, {y}, {z}) m/s over {dt} s', cure='give finite numbers'
             )
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
@@ -196,7 +196,8 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
 
 @kernel
 def _feel(
-    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats, ratio: float,
+    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats,
+    ratio: float,
     memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats,
     felt: Floats,
 ) -> None:  # fmt: skip
