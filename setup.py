@@ -18,7 +18,7 @@ LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 def version():
     """Return the version, which is written in the package's ``__init__.py`` and nowhere else."""
     text = (ROOT / PACKAGE / '__init__.py').read_text(encoding='utf-8')
-    return re.search(r'^__version__ = "(.+)"$', text, re.MULTILINE).group(1)
+    return re.search(r"^__version__ = '(.+)'$", text, re.MULTILINE).group(1)
 
 
 def launchers():

@@ -97,8 +97,7 @@ def need_compiler(what: str) -> None:
 
 def like(value: float, model: Any) -> Any:
     """
-    Return a constant in the precision of a model number, so that a kernel serves float32 and
-    float64.
+    Return a constant in the precision of a model number, to serve float32 and float64 alike.
 
     Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
     """

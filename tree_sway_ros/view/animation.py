@@ -45,6 +45,8 @@ def animate_poses(
 
     Parameters
     ----------
+    tree, leaves
+        The tree, and its leaves; none are drawn if None.
     frames
         Pose block of each frame, (n, 7).
     winds

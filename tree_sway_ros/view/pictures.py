@@ -53,6 +53,8 @@ def picture_in_wind(
 
     Parameters
     ----------
+    tree
+        The tree or trees.
     poses
         Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
     wind

@@ -36,8 +36,8 @@ def plot_wind_and_tip(
         Where it blows to in [m/s], (n, 3): east, north, up.
     tip
         Displacement of the tip from rest in [m], (n, 3).
-    path
-        File to write; the suffix names the format.
+    path, title
+        File to write, whose suffix names the format, and what stands above the plot.
 
     Raises
     ------

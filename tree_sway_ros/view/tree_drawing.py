@@ -78,8 +78,10 @@ def draw_tree(
 
     Parameters
     ----------
-    start, end
-        Nodes of its segments as they are now in [m], (n, 3) each.
+    axes, camera, frame
+        Where to draw, from where it is seen, and what is shown of it.
+    tree, start, end
+        The tree, and the nodes of its segments as they are now in [m], (n, 3) each.
     leaves
         Pose block of the leaf clusters, (m, 7), and their diameters in [m], (m,).
 

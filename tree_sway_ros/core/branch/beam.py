@@ -192,7 +192,7 @@ class BranchBeam:
 
     def moment_in_space(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
-        Internal moment under loads from any side.
+        Compute the internal moment under loads from any side.
 
         Parameters
         ----------
@@ -219,10 +219,7 @@ class BranchBeam:
         return out
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
-        """
-        Curvature by an internal moment, for a modulus of 1: bent by what acts across the branch,
-        twisted by what acts about it, both (p, 5, k, 3).
-        """
+        """Curvature by an internal moment, bending and twist, for a modulus of 1, (p, 5, k, 3)."""
         along = self.tangent[:, None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
         bent = moment + (0.5 / shear_ratio - 1.0) * twist
@@ -231,10 +228,7 @@ class BranchBeam:
 
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
-        """
-        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both
-        (p, 5, c).
-        """
+        """Lever [m] from each point to each child beyond it, and whether it is so, (p, 5, c)."""
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         return lever, (lever > 0.0).astype(np.float64)
 
@@ -309,17 +303,13 @@ class SlopeShape:
 
     @cached_property
     def _reach(self) -> tuple[Floats, Floats, Floats]:
-        """
-        Integral of the slope along the branch: its cross product with a rotation is the
-        displacement.
-        """
+        """Integral of the slope along the branch: its product with a turn is the displacement."""
         return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
 
 
 class RotationField:
     """
-    A field by which a branch bends and twists in space: rotation phi(s) per unit of its
-    coordinate.
+    Field by which a branch bends and twists in space: rotation phi(s) per unit of coordinate.
 
     Parameters
     ----------
@@ -373,8 +363,10 @@ def _integrate(
 
 def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:
     """
-    Energy between fields of one branch in [N m/rad], (k, k): E I of bending, across the branch as
-    it runs in space, and G J of twist about it, J = 2 I.
+    Energy between fields of one branch in [N m/rad], (k, k).
+
+    It is E I of bending, across the branch as it runs in space, and G J of twist about it, J = 2
+    I.
     """
     beam, n = fields[0].beam, len(fields)
     curvature = np.stack([one.curvature for one in fields])

@@ -72,8 +72,7 @@ class BranchModel:
     @cached_property
     def inertia_share(self) -> float:
         """
-        Inertia that gives the branch alone its beam's first frequency, over that of its static
-        shape [-].
+        Inertia that gives its beam's first frequency, over that of the static shape [-].
 
         Inverse iteration from the static shape: each turn bends the branch by its own inertia.
         """
@@ -98,10 +97,7 @@ def branch_models(
     leaf_area: Floats | None = None,
     root_compliance: float = 0.0,
 ) -> list[BranchModel]:
-    """
-    Model each branch of a tree for one model; parameters are those of `TreeBeams` and its
-    `models`.
-    """
+    """Model each branch of a tree; parameters are those of `TreeBeams` and its `models`."""
     beams = TreeBeams(
         tree,
         density,

@@ -147,7 +147,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     @property
     def frame_cost(self) -> float:
-        """What a step and a placing of the chosen model take on this machine in [us]."""
+        """Return what a step and a placing of the chosen model take on this machine in [us]."""
         return self.pace * self.choice.cost
 
     @property
@@ -157,7 +157,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     @property
     def shown(self) -> SwaySimulator:
-        """Simulator whose poses are seen, or fade."""
+        """Return the simulator whose poses are seen, or fade."""
         return self._shown
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -185,12 +185,12 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     @cached_property
     def bank(self) -> Bank:
-        """What places the key rotations of the whole tree, whatever the model in use."""
+        """Return what places the key rotations of the whole tree, whatever the model in use."""
         return self.ladder.whole.at_rest('coupled')
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,), whatever the model."""
+        """Return the records of `BRANCH` by which key rotations are told on any model, (b,)."""
         return self.bank.branches
 
     def digest(self) -> str:
@@ -198,10 +198,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         return digest_of(self.tree, self.species, self.settings)
 
     def rotations(self) -> Floats:
-        """
-        Key rotations of the whole tree in [rad], (N,), on the way from one model to the
-        next.
-        """
+        """Key rotations of the whole tree in [rad], (N,), also between one model and the next."""
         shown = self._whole_rotations(self._shown)
         share = self._faded
         if self._next is not None and share > 0.0:
@@ -261,10 +258,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
             each.tune(**changes)
 
     def review(self, *, at_best: bool = False) -> Estimate:
-        """
-        Choose again: call it when the tolerance has changed; with ``at_best`` whatever the
-        tolerance.
-        """
+        """Choose again once the tolerance has changed; with ``at_best`` whatever the tolerance."""
         self._since_review, self._judged = 0.0, self._gust
         climate = self._tracker.climate
         estimates = self._estimates(climate, self._in_gust(climate))
@@ -291,9 +285,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         return poses
 
     def reset(self) -> None:
-        """
-        Go back to rest and to the wind that was expected, at once on the model that it asks for.
-        """
+        """Go back to rest and to the expected wind, at once on the model that it asks for."""
         self.choice = self._expect()
         self._shown, self._next, self._left = self._simulator(self.choice), None, None
         self._shown.reset()
@@ -307,9 +299,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         return self._choose(self.ladder.estimates(self._expected))
 
     def _feel(self, wind_mean: ArrayLike, dt: float) -> None:
-        """Notice a load beyond what the model was chosen for, before the step in which it
-        comes.
-        """
+        """Notice, before its step, a load beyond what the model was chosen for."""
         x, y, z = np.asarray(wind_mean, dtype=np.float64).tolist()
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-How much model a scene needs: what is known of a model before it runs, and the least that will do.
-"""
+"""How much model a scene needs: what is known of a model unrun, and the least that will do."""
 
 from __future__ import annotations
 
@@ -19,8 +17,7 @@ from tree_sway_ros.errors import ParameterError
 @dataclass(frozen=True)
 class Estimate:
     """
-    What a model, with its number of modes, is worth in a wind, and costs per step and placing
-    [us].
+    What a model, its modes counted, is worth in a wind, and costs per step and placing [us].
 
     ``error`` bounds the root mean square over time and tips of the error, ``motion`` is that of
     the motion of the tips about its mean, both in [m].
@@ -71,10 +68,7 @@ def choose(
 
 
 def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> float:
-    """
-    Turn a tolerance [px] on a picture of a focal length [px] into one in the scene, so far away,
-    in [m].
-    """
+    """Turn a tolerance [px] on a picture of a focal length [px] into one at a distance, in [m]."""
     if not (pixels > 0.0 and distance > 0.0 and focal_length > 0.0):
         raise ParameterError(
             f'tolerance of {pixels:g} px at {distance:g} m with a focal length of '
@@ -85,9 +79,7 @@ def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> 
 
 
 def distance_to(tree: Tree, position: Floats) -> float:
-    """
-    Distance from a camera (3,) to the nearest branch tip or to the root in [m], at least 1 cm.
-    """
+    """Distance from a camera (3,) to the nearest branch tip or the root in [m], at least 1 cm."""
     seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
     return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)
 

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a frame costs, from counts: known before a model is run, so that a budget can choose among
-models.
+What a frame costs, from counts: known before a model is run, so that a budget can choose.
 
 Prices are fits to trees of 31 to 261 branches in 3 to 12 segments each, timed on one core of a
 server of 2020; `pace` scales them to the machine at hand.

@@ -121,7 +121,7 @@ class FidelityLadder:
 
     @property
     def whole(self) -> CalibratedTree:
-        """The tree, calibrated, nothing frozen."""
+        """Return the tree, calibrated, nothing frozen."""
         return self._trees[0.0]
 
     def moving(self, name: str) -> Ints:
@@ -220,8 +220,9 @@ def _signs(delay: Ints) -> Floats:
 
 def _gram(response: Complexes) -> Floats:
     """
-    Mean over tips of the inner products of the answers (b, 3, 2 p, f) along x and y to an even
-    wind and to patterns, of those in the mean, (1 or 2, f, 2, 2).
+    Mean over tips of the answers' inner products to an even wind and patterns, (1 or 2, f, 2, 2).
+
+    The answers (b, 3, 2 p, f) are along x and y; of the patterns it is the mean.
     """
     b, _, columns, f = response.shape
     by_pattern = response.reshape(b, 3, columns // 2, 2, f)
@@ -230,8 +231,6 @@ def _gram(response: Complexes) -> Floats:
 
 
 def _mean_squares(grams: Floats, power: Floats) -> Floats:
-    """Mean squares that the power of a load makes of `_gram` of each, both (..., f, 2, 2),
-    (k,).
-    """
+    """Mean squares (k,) that the power of a load makes of each `_gram`, both (..., f, 2, 2)."""
     squares: Floats = grams.reshape(len(grams), -1) @ power.ravel()
     return squares

@@ -29,8 +29,7 @@ def quiet_sets(
     shares: Sequence[float],
 ) -> list[Bools]:
     """
-    Find the branches to freeze for each share of the motion of the tips that the error may be,
-    (b,).
+    Find the branches (b,) to freeze for each share of the tips' motion that the error may be.
 
     With each branch goes all that it carries. Rotations are the `key_response` (N, 2, f) at
     frequencies in [Hz], (f,), the first of them 0.
@@ -42,10 +41,7 @@ def quiet_sets(
 
 
 def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed: float) -> Bools:
-    """
-    Bisect for the highest threshold per tip at which what the frozen subtrees swing is still
-    allowed.
-    """
+    """Bisect for the highest threshold per tip at which the frozen subtrees swing as allowed."""
     low, high = 0, len(order)  # so many of the quietest may surely, may perhaps be frozen
     quiet = np.zeros(tree.n_branches, dtype=np.bool_)
     while low < high:
@@ -59,10 +55,7 @@ def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed:
 
 
 def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats, float]:
-    """
-    Sum over the tips of each subtree of the squared displacement from its base, (b,), and that of
-    all tips from the ground.
-    """
+    """Sum squared displacements of tips: of each subtree from its base, (b,), of all in space."""
     base, tips = base_motion(branches, rotations), tip_motion(branches, rotations)
     swing = np.zeros(tree.n_branches)
     for branch in range(tree.n_branches):
@@ -74,9 +67,7 @@ def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats
 
 
 def _weights(frequencies: Floats) -> Floats:
-    """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side,
-    (f,).
-    """
+    """Mean square (f,) of the load at each frequency, in a wind of intensity 0.2 from any side."""
     climate = WindClimate.steady(1.0, 0.2)
     weights: Floats = np.trace(climate.power(frequencies), axis1=1, axis2=2)
     weights[0] += np.square(climate.mean).sum()

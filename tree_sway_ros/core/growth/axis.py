@@ -21,7 +21,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def direction_of(azimuth: float, elevation: float) -> Floats:
-    """Unit vector (3,) of a heading given in [rad]."""
+    """Return the unit vector (3,) of a heading given in [rad]."""
     across = np.cos(elevation)
     return np.array([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)])
 
@@ -34,7 +34,7 @@ def heading_of(direction: Floats) -> tuple[float, float]:
 
 def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
     """
-    Unit vector (3,) at an angle from an axis, both in [rad].
+    Return the unit vector (3,) at an angle from an axis, both in [rad].
 
     The azimuth about the axis is 0 level and to the right of someone who looks along it, pi/2 up.
     """
@@ -64,10 +64,12 @@ def grow_axis(
 
     Parameters
     ----------
+    origin, length, n_segments
+        First node, (3,), and length along the nodes, both in [m], and how many segments.
     azimuth, elevation
         Heading of the first segment, and elevation of the first and the last one, in [rad].
-    length
-        Length along the nodes in [m].
+    rng
+        Source of what is drawn.
     wander
         Standard deviation of the change of heading per segment in [rad].
     unevenness

@@ -29,9 +29,7 @@ def grow_benjamina(
     name: str = 'benjamina',
     species: str = 'benjamina',
 ) -> Tree:
-    """
-    Grow a weeping pot plant with several stems; the diameter is that of the stock at its base.
-    """
+    """Grow a weeping pot plant with several stems; the diameter is the stock's at its base."""
     skeleton = Skeleton()
     stock = skeleton.add(grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 0.07, 2, rng))
     facing = rng.uniform(0.0, 2.0 * np.pi)

@@ -126,9 +126,7 @@ def _check_stem(wood: Species, height: float, diameter: float) -> None:
 
 
 def _thinnest(wood: Species, height: float) -> float:
-    """
-    Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve.
-    """
+    """Diameter at which a bare stem is of 0.8 of Greenhill's length: the reserve for a crown."""
     # EI and the weight per length of a rod of 1 m; the length goes with the diameter to 2/3.
     area = math.pi / 4.0
     of_one = greenhill_length(wood.modulus * area / 16.0, wood.density * _GRAVITY * area)

@@ -50,13 +50,14 @@ def node_diameters(
     bole_taper: float = 0.0,
 ) -> list[Floats]:
     """
-    Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the first one the
-    stem.
+    Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the stem first.
 
     Parameters
     ----------
-    diameter
-        Diameter of the stem in [m], at `at_height` above the root in [m].
+    skeleton
+        The shoots, the stem first.
+    diameter, at_height
+        Diameter of the stem in [m], at a height above the root in [m].
     tip_diameter
         Diameter of a shoot's tip in [m].
     exponent

@@ -48,8 +48,7 @@ class AmbientSway(SwayEstimate):
 
 def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     """
-    Fit the resonance of an ambient record along the axis that moves most around a rough frequency
-    [Hz].
+    Fit the resonance of an ambient record, along the axis that moves most, near a frequency [Hz].
 
     The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c). A
     `FormatError` tells of fewer than 20 cycles, or no resonance.
@@ -81,10 +80,7 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
 
 
 def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats, int]:
-    """
-    Frequencies, power of mean 1 along the axis that moves most there, and of how many bins each is
-    the mean.
-    """
+    """Frequencies, power of mean 1 along the axis that moves most, and bins averaged in each."""
     taper = signal.windows.tukey(len(motion), 0.1)
     spectrum = np.fft.rfft(taper[:, None] * motion, axis=0)
     frequency = np.fft.rfftfreq(len(motion), dt)
@@ -100,9 +96,7 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
 
 
 def _starts() -> list[Floats]:
-    """
-    Shifts of the first guess: the surface has side valleys where damping and floor trade places.
-    """
+    """Shifts of the first guess, out of side valleys where damping and floor trade places."""
     return [
         np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)
     ]
@@ -157,7 +151,7 @@ def _smooth_loss(frequency: Floats, power: Floats, bins: int) -> float:
 
 
 def _standard_errors(frequency: Floats, bins: int, x: Floats) -> tuple[float, float]:
-    """Standard errors of frequency [Hz] and damping ratio [-] by Fisher's information."""
+    """Return standard errors of frequency [Hz] and damping ratio [-] by Fisher's information."""
     _, slopes = log_spectrum(x, frequency)
     prior = np.diag([0.0, 0.0, 1e-6, 1e-6, 1.0 / _SLOPE**2])
     covariance = linalg.pinvh(bins * slopes.T @ slopes + prior)

@@ -133,10 +133,7 @@ def calibrate(
 
 @dataclass(frozen=True)
 class _Sway:
-    """
-    Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns
-    most.
-    """
+    """Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and what turns most."""
 
     scale: float
     square: float
@@ -190,9 +187,7 @@ class _ScaledTree:
         return _Sway(scale, square, float(energy.sum()), int(np.argmax(energy)))
 
     def swaying_at(self, square: float) -> _Sway | None:
-        """Find the scale for a square circular frequency [1/s^2]; None if the tree would
-        buckle.
-        """
+        """Find the scale for a square circular frequency [1/s^2]; None if the tree buckles."""
         low, high = self.least, math.inf
         sway = self.sway(max(1.0, 2.0 * low))
         while abs(sway.square / square - 1.0) > _TOLERANCE:

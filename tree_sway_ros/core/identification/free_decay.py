@@ -53,9 +53,7 @@ class FreeDecay(SwayEstimate):
 
 @dataclass(frozen=True)
 class _Fit:
-    """
-    Dominant pole of a stretch of motion, its standard error, and the share of energy explained.
-    """
+    """Dominant pole of a stretch of motion, its standard error, and the energy explained [-]."""
 
     pole: complex
     error: float
@@ -112,9 +110,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
 
 
 def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
-    """Motion below three times a frequency, (n, c), and the envelope of what is around it,
-    (n,).
-    """
+    """Motion (n, c) below three times a frequency, and the envelope (n,) of what is around it."""
     nyquist = 0.5 / dt
     slow = motion
     if 3.0 * rough < 0.8 * nyquist:
@@ -167,7 +163,7 @@ def _standard_error(
     decay: NDArray[np.complex128], amplitude: NDArray[np.complex128], dt: float, rest: Floats
 ) -> float:
     """
-    Standard error of a pole's real and imaginary part in [1/s].
+    Return the standard error of a pole's real and imaginary part in [1/s].
 
     A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s
     t)`` can replace.

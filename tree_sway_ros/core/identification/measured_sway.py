@@ -92,9 +92,7 @@ def estimate_sway(
 
 
 def _is_release(decay: FreeDecay) -> bool:
-    """
-    Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it.
-    """
+    """Ambient motion soon swings as far again; a release has a tenth of its swing around it."""
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
 
@@ -171,10 +169,7 @@ def _refuse_coarse(gap: float, rough: float) -> None:
 
 
 def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
-    """
-    Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest
-    does not hide.
-    """
+    """Slowest clear decay at strong peaks of the velocity's spectrum, not hidden by a step."""
     padded = 4 * len(motion)
     frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2

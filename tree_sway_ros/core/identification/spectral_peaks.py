@@ -21,10 +21,7 @@ _PROMINENCE = 1.5
 
 @dataclass(frozen=True)
 class Spectrum:
-    """
-    Power (m,), of any unit, of a record of a duration [s], at even frequencies from 0 in [Hz],
-    (m,).
-    """
+    """Power (m,), of any unit, of a record of a duration [s], at even frequencies [Hz] from 0."""
 
     frequency: Floats
     power: Floats

@@ -33,27 +33,20 @@ LARGEST_ANGLE = 0.7
 
 
 def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
-    """
-    Amplitude of the flutter [rad] in air at a speed [m/s], for a frequency about the stalk [Hz].
-    """
+    """Amplitude of the flutter [rad] in air at a speed [m/s], for a stalk's frequency [Hz]."""
     u = np.asarray(speed, dtype=np.float64)
     free = FLUTTER_GAIN * u * u / np.asarray(frequency, dtype=np.float64)
     return np.asarray(LARGEST_ANGLE * np.tanh(free / LARGEST_ANGLE))
 
 
 def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floats:
-    """
-    Angle of each cluster about its stalk [rad], (m,), at a time [s] in air past each [m/s], (m,).
-    """
+    """Angle of each cluster about its stalk [rad], at a time [s] in air past each [m/s], (m,)."""
     swing = np.sin(2.0 * np.pi * clusters.frequency * time + clusters.phase)
     return np.asarray(flutter_amplitude(speed, clusters.frequency) * swing)
 
 
 def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) -> Floats:
-    """
-    Pose block (m, 7) of the clusters' centres, from that of the segments, (n, 7), and angles
-    [rad], (m,).
-    """
+    """Pose block (m, 7) of the clusters, from the segments' (n, 7) and angles [rad], (m,)."""
     from scipy.spatial.transform import (
         Rotation,  # it takes long to load, and only drawing needs it
     )

@@ -31,10 +31,7 @@ _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
 @dataclass(frozen=True)
 class Foliage:
-    """
-    What leaves add to each branch: fresh mass [kg], leaf area of one side and drag area [m^2],
-    (b,).
-    """
+    """What leaves add to each branch: fresh mass [kg], one-sided and drag area [m^2], (b,)."""
 
     mass: Floats
     area: Floats
@@ -44,8 +41,7 @@ class Foliage:
 @dataclass(frozen=True)
 class LeafClusters:
     """
-    Leaves to be drawn, each cluster carried by one segment; static, as they flutter where they are
-    drawn.
+    Leaves to be drawn, each cluster carried by one segment; they flutter where they are drawn.
 
     Parameters
     ----------
@@ -71,9 +67,7 @@ class LeafClusters:
 
 
 def leafy_length(tree: Tree) -> Floats:
-    """
-    Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood, or 0.
-    """
+    """Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood."""
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
     thin_first = np.argsort(tree.base_diameter, kind='stable')
@@ -85,9 +79,7 @@ def leafy_length(tree: Tree) -> Floats:
 
 
 def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
-    """
-    Mass and area of the leaves on each branch, when there are any; traits of its species if None.
-    """
+    """Mass and area of the leaves on each branch, if any; traits of its species if None."""
     leaf = traits if traits is not None else leaf_traits(tree.species)
     points = np.vstack([tree.start, tree.end])
     wide, deep, _ = np.ptp(points, axis=0)
@@ -105,9 +97,7 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
 
 
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
-    """
-    Area of wood on each branch that is clad in needles, which stand all round it, in [m^2], (b,).
-    """
+    """Area of wood on each branch that needles clad, which stand all round it, in [m^2], (b,)."""
     if not traits.are_needles:
         return np.zeros(tree.n_branches)
     area = 0.5 * (tree.base_diameter + tree.tip_diameter) * leafy_length(tree)
@@ -171,9 +161,7 @@ def no_clusters() -> LeafClusters:
 
 
 def _facing_up(away: Floats, rest: Floats) -> Floats:
-    """
-    Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
-    """
+    """Orientations w x y z whose x runs away from the twig and whose z looks up most."""
     from scipy.spatial.transform import (
         Rotation,  # it takes long to load, and only drawing needs it
     )

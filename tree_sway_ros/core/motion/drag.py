@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What the wind does to a branch: one load centre per branch, so that cost does not depend on how
-finely it is cut.
+What the wind does to a branch: one load centre, so that cost does not depend on how it is cut.
 
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
 piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement
@@ -45,10 +44,7 @@ SHARED_AT = 8.0
 
 
 class DragLaw(NamedTuple):
-    """
-    Drag coefficient of a tree, ``Cd = C U^-N + C0``: C and N of what streamlines, C0 of what does
-    not.
-    """
+    """Drag of a tree, ``Cd = C U^-N + C0``: C and N of what streamlines, C0 of what does not."""
 
     coefficient: float
     exponent: float

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one place where records are filled: what stepping and placing know of a tree, laid out for
-them.
+The one place where records are filled: what stepping and placing know of a tree.
 
 `branch_records` writes all of a branch, `moving_records` what is left when some are frozen,
 `copy_twigs` which of them copy; `segment_records`, `head_records` and `load_records` lay the same
@@ -40,10 +39,7 @@ if TYPE_CHECKING:
 
 
 def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
-    """
-    Fill what placing needs to know of each segment: records of `segment_layout`, in blocks of
-    `lanes`.
-    """
+    """Fill what placing needs of each segment: `segment_layout` records, in blocks of `lanes`."""
     block, lane, n_records = lanes(tree, models)
     is_plain = all(len(model.fields) == 2 for model in models)
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
@@ -66,10 +62,7 @@ def segment_records(tree: Tree, models: list[BranchModel]) -> Records:
 
 
 def turns_of_segments(branch: np.void, segments: Records) -> Floats:
-    """
-    Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate, as placing
-    has it.
-    """
+    """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
     first, count = int(branch['block']), int(branch['n_coordinates'])
     rows = slice(first, first + int(branch['end'] - branch['first']))
     if branch['push'].shape[0] > 2:
@@ -120,8 +113,7 @@ def _joined(segments: Records) -> NDArray[np.bool_]:
 
 def lanes(tree: Tree, models: list[BranchModel]) -> tuple[Ints, Ints, int]:
     """
-    Give each branch a lane of a block: parents in earlier blocks, long branches together, so that
-    few lanes stay empty.
+    Give each branch a lane of a block: parents first, long branches together, few lanes empty.
 
     Returns
     -------
@@ -270,19 +262,13 @@ def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> Non
 
 
 def _cubes(squares: Floats) -> Floats:
-    """
-    Cubes of displacements of both axes together, from the sum of their squares: as if they were
-    alike, so that it does not matter how they are laid.
-    """
+    """Cubes of displacements from the sum of their squares, as if both axes were alike."""
     cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
     return cubes
 
 
 def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
-    """
-    Fit what a crooked branch knows of its load to the drag on each piece of it: the projector in
-    all winds, push and couple (least squares).
-    """
+    """Fit projector, push and couple of a crooked branch to the drag on it (least squares)."""
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
     outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
@@ -305,9 +291,9 @@ def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
 
 def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None:
     """
-    Scale the mean displacement across the branch to that at which drag damps, so that what the
-    drag on it does is the mean square of the displacement: both axes of the first shape as one, so
-    that it does not matter how they are laid.
+    Scale the displacement across the branch to that at which drag damps as its mean square does.
+
+    Both axes of the first shape count as one, so that it does not matter how they are laid.
 
     In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
     speed of mean cube over mean square: what the flow lacks of that is the spread.
@@ -321,10 +307,7 @@ def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None
 
 
 def _fill_axial_levers(records: Records) -> None:
-    """
-    Find how far up the parent's chord each subtree's centre of load swings: its displacement
-    across per unit of rotation.
-    """
+    """Find how far each subtree's load centre swings across per turn of the parent's chord."""
     area = records['area'].copy()
     moment = records['centre'] * area[:, None]
     for b in range(len(records) - 1, 0, -1):
@@ -349,8 +332,7 @@ def copy_twigs(records: Records, source: Ints) -> None:
 
 def moving_records(pruning: Pruning, whole: Records) -> Records:
     """
-    Records of the moving branches, with the load of what they now carry as part of themselves,
-    (m,).
+    Make the records of the moving branches, the load of what they carry in their own, (m,).
 
     They are complete but for their place in blocks, which `segment_records` shares.
     """
@@ -449,8 +431,9 @@ class _SlantingWinds:
 
 def _drawn_turns(model: BranchModel) -> Floats:
     """
-    Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3): that of
-    a plain branch by one slope about the axes across its chord.
+    Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3).
+
+    A plain branch turns by one slope about the axes across its chord.
     """
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)

@@ -16,8 +16,7 @@ from tree_sway_ros.core.kernel import WHY_PLAIN
 
 def put_four(lanes: Any, row: int, lane: int, a: Any, b: Any, c: Any, d: Any, first: int) -> None:
     """
-    Write four rows of four lanes, from a first row and lane on, to a, b, c and d from an element
-    on.
+    Write four rows of four lanes, from a row and lane on, to a, b, c and d from an element on.
 
     All lie in one piece.
     """

@@ -76,7 +76,7 @@ class ModalBank:
 
     @property
     def loads(self) -> Records:
-        """Records of `load_fields`."""
+        """Return the records of `load_fields`."""
         return self._loads
 
     def set_pace(self, dt: float) -> None:
@@ -115,10 +115,7 @@ class ModalBank:
         return partial(entry_of(_expand, *arrays), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
-        """
-        Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
-        geometry.
-        """
+        """Key rotations (N, k, f) at rest under moments (N, k) [N m] that swing at w [rad/s]."""
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
         eta = dynamic - (self.held @ moments)[:, :, None]
@@ -127,14 +124,11 @@ class ModalBank:
         return np.asarray(swinging, dtype=np.complex128)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return self.modal[:4], self.state[0], self._loads['slip']
 
     def take(self, eta: Floats, rate: Floats, force: Floats, rotations: Floats) -> None:
-        """
-        Go on from modes, their rates and forces (m,) and from key rotations (N,) with the static
-        rest in them.
-        """
+        """Go on from modes, rates and forces (m,) and key rotations (N,), static rest included."""
         self.modal[0], self.modal[1], self.modal[2], self.modal[3] = eta, rate, 0.0, force
         rest = rotations - self.shapes @ eta
         bends = self.flexibility > 0.0
@@ -170,9 +164,7 @@ class ModalBank:
 
 
 def _participation(branches: Records, shapes: Floats) -> Floats:
-    """Mean over three directions of the squared motion of each load centre in each mode, (b,
-    m).
-    """
+    """Mean squared motion of each load centre in each mode, over three directions, (b, m)."""
     m = shapes.shape[1]
     motion = np.zeros((len(branches), 6, m))
     out = np.zeros((len(branches), m))

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Banks of oscillators stepped in plain numpy, for machines without a compiler: some 100 times
-slower.
+Banks of oscillators in plain numpy, for machines without a compiler: some 100 times slower.
 
 Each keeps the state of its compiled counterpart, in the same arrays, so that a state kept by one
 is taken by the other; they agree to rounding. They are the oracle of the kernels as well.

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The load step on whole levels of a tree at a time, in plain numpy: `tree_passes` where nothing is
-compiled.
+The load step on whole levels of a tree at a time: `tree_passes` where nothing is compiled.
 
 The same formulas on the same records; subtree sums are differences of one cumulative sum.
 """
@@ -21,8 +20,9 @@ from tree_sway_ros.core.motion.records import LANES
 
 class NumpyPasses:
     """
-    Outward pass, wind and inward pass over `BRANCH` records, parents before children, subtrees in
-    runs.
+    Outward pass, wind and inward pass over `BRANCH` records, parents before children.
+
+    Subtrees stand in runs.
     """
 
     def __init__(self, branches: Records) -> None:

@@ -27,10 +27,7 @@ _BLEND_FROM, _BLEND_TO, _STRETCH_TO = np.deg2rad([30.0, 45.0, 90.0]) ** 2
 
 
 class NumpyPlacing:
-    """
-    What places the segments of a tree by its records; what is frozen moves with its parent as one
-    body.
-    """
+    """Places the segments of a tree by its records; the frozen move with parents as one body."""
 
     def __init__(self, branches: Records, segments: Records, frozen: RigidParts | None) -> None:
         """Lay out the segments in the order of the branches."""

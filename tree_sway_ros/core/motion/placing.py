@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key rotations to poses: the segments of each branch follow its key, the branches are joined from
-the root.
+Key rotations to poses: segments follow the key of their branch, branches join from the root.
 
 A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth
 curve and keeps its length. The chord of the bent chain turns by a little less than the coordinate
@@ -205,10 +204,7 @@ def _turn_on_parents(head: Record, scratch: Record) -> None:
 
 @fused
 def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
-    """
-    Turn the bases of sixteen branches, put them where they stand, and set how their first shape
-    bends.
-    """
+    """Turn the bases of sixteen branches, place them, and set how their first shape bends."""
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
@@ -253,10 +249,7 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
 
 @fused
 def _write_bases(head: Record, scratch: Record, work: Records) -> float:
-    """
-    Leave for the children how their parents are turned; return a bound on the square of half the
-    angle that any segment turns by.
-    """
+    """Leave their turned bases to the children; bound the square of half of any segment's turn."""
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
     for j in range(0, whole, 4):
         a, b = work[np.uintp(branch[j])].base, work[np.uintp(branch[j + 1])].base

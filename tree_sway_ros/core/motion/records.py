@@ -110,8 +110,10 @@ def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Records:
 @cache
 def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
-    All that placing needs to know of one segment of each of sixteen branches; where no branch has
-    more than its key rotation, there is no room for what further coordinates turn it by.
+    All that placing needs to know of one segment of each of sixteen branches.
+
+    Where no branch has more than its key rotation, there is no room for what further coordinates
+    turn it by.
     """
     rows = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
     return _whole_lines(
@@ -130,7 +132,7 @@ def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
 @cache
 def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """
-    What placing needs to know of the sixteen branches of a block, and finds.
+    Lay out what placing needs to know of the sixteen branches of a block, and finds.
 
     All work in the last record, behind the last block's, so that it stays in the fastest cache.
     """
@@ -208,7 +210,7 @@ WORK = np.dtype(
 
 def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
     """
-    What the wind load knows of sixteen branches that follow each other, and finds.
+    Lay out what the wind load knows of sixteen branches that follow each other, and finds.
 
     Rows are coordinates, those that a branch does not have zeros.
     """
@@ -250,7 +252,7 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
 
 @cache
 def load_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
-    """Records of `load_fields`."""
+    """Return the layout of records of `load_fields`."""
     return _whole_lines(load_fields(n_coordinates))
 
 

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How far tips go in a wind that swings at one pace: linear response of every model, before a step is
-taken.
+How far tips go in a wind that swings at one pace: linear response, before a step is taken.
 
 Loads are split as turbulence is: along the mean wind, where the load goes with the square of the
 speed, and across it. The gain of a model is the motion of the tips of all branches, joined from
@@ -56,10 +55,7 @@ def key_response(
 
 
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """
-    Join small rotations (N, ...) from the root to displacements of the tip of each branch, (b, 3,
-    ...).
-    """
+    """Join small rotations (N, ...) from the root to displacements of branch tips, (b, 3, ...)."""
     tips = carried_to(base_motion(branches, rotations), branches['tip'])
     for own, rows in _moved(branches, rotations):
         tips[rows] += _sums(branches['reach'][rows, : own.shape[1]], own)
@@ -81,10 +77,7 @@ def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """
-    Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6,
-    ...).
-    """
+    """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
     base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches['parent']
     for own, rows in _moved(branches, rotations):
@@ -99,10 +92,7 @@ def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
-    """
-    Displacement of points (p, 3) of bodies moving by (v, w) about the root, (p, 6, ...),
-    (p, 3, ...).
-    """
+    """Displacement (p, 3, ...) of points (p, 3) of bodies moving by (v, w) about the root."""
     x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
     wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]
     moved = motion[:, :3].copy()

@@ -49,9 +49,7 @@ class RigidParts:
 
     @staticmethod
     def of(pruning: Pruning, branches: Records) -> RigidParts:
-        """
-        Lay out the frozen subtrees of a tree, by the records of `BRANCH` of the whole of it, (b,).
-        """
+        """Lay out the frozen subtrees of a tree, by the `BRANCH` records of all of it, (b,)."""
         tree, tops = pruning.whole, pruning.tops
         first = tree.branch_first[tops]
         end = tree.branch_first[tree.subtree_end[tops]]
@@ -69,8 +67,7 @@ class RigidParts:
 
     def place(self, branches: Records, work: Records, x: Floats, out: Floats) -> None:
         """
-        Place the frozen segments, once the moving ones are: their rows of the whole pose block,
-        (n, 7).
+        Place the frozen segments in the whole pose block (n, 7), once the moving ones are.
 
         Records (m,) and key rotations (M,) are those of the moving branches.
         """

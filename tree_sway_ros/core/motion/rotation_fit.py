@@ -45,9 +45,7 @@ class RotationFit:
         self._x = np.zeros(int(branches['n_coordinates'].sum()))
 
     def of(self, poses: Floats) -> Floats:
-        """
-        Return the key rotations of a pose block (n, 7) in [rad], (N,); the same array each time.
-        """
+        """Return the key rotations (N,) of a pose block (n, 7) in [rad]; always the same array."""
         _fit(self._branches, self._inverse, self._rest, poses, self._base, self._x)
         return self._x
 

@@ -220,10 +220,7 @@ def _own_loads(loads: Record) -> None:
 
 @fused
 def inward_pass(branches: Records, work: Records) -> None:
-    """
-    Add up, from the twigs to the stem, force and moment about the root of all that each branch
-    carries.
-    """
+    """Add up from twigs to stem the force and moment about the root that each branch carries."""
     for b in range(len(branches)):
         here, couple = work[b], branches[b].couple
         force, wrench = here.force, here.wrench
@@ -312,10 +309,7 @@ def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats)
 
 @fused
 def _turned_loads(loads: Record) -> None:
-    """
-    Turn the wind's own forces on sixteen branches into loads on their coordinates and moments
-    about their bases.
-    """
+    """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
     force, push, load, couple = loads.own_force, loads.push, loads.load, loads.couple
     turn, base, moment = loads.turned, loads.base, loads.moment
     for j in range(LANES):

@@ -65,7 +65,7 @@ class UncoupledBank:
 
     @property
     def loads(self) -> Records:
-        """Records of `load_fields`, and what the oscillators add."""
+        """Return the records of `load_fields`, and what the oscillators add."""
         return self._banks
 
     def set_step(self, dt: float) -> None:
@@ -97,10 +97,7 @@ class UncoupledBank:
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
-        """
-        Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
-        geometry.
-        """
+        """Key rotations (N, k, f) at rest under moments (N, k) [N m] that swing at w [rad/s]."""
         impedance = (
             self.stiffness[:, None]
             - self.inertia[:, None] * circular**2
@@ -110,7 +107,7 @@ class UncoupledBank:
         return moments[:, :, None] * flexibility[:, None, :]
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return self.x, self.v, self._banks['slip'], self._banks['load']
 
     def rotations(self) -> Floats:

@@ -107,17 +107,12 @@ class WindBasisBank:
     def stepping(
         self, wind: Floats, max_wind: float, law: DragLaw
     ) -> Callable[[float, float, float], int]:
-        """
-        Return a step as one compiled call: `step_in_wind` of the components of a wind in [m/s].
-        """
+        """Return a step as one compiled call: `step_in_wind` of a wind's components in [m/s]."""
         arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
 
     def placing(self, segments: Records, heads: Records) -> Callable[[Floats, Floats], None]:
-        """
-        Return the placing of the state as one compiled call, of a root node and a pose
-        block.
-        """
+        """Return the placing of the state, a compiled call of a root node and a pose block."""
         arrays = (
             self.record, self.instance, self.all_shapes, self._x,
             self.branches, segments, heads, self.work,
@@ -134,7 +129,7 @@ class WindBasisBank:
         return self.modal.response(moments, circular)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return tuple(self.instance[name] for name in CARRIED)
 
     def rotations(self) -> Floats:
@@ -143,10 +138,7 @@ class WindBasisBank:
         return self._x
 
     def forces(self) -> Floats:
-        """
-        Force of the last step's wind on each branch in [N], (b, 3); a pass over all
-        branches.
-        """
+        """Force of the last step's wind on each branch [N], (b, 3); a pass over all branches."""
         m, now = self.modal.shapes.shape[1], self.instance[0]
         self.modal.take(now['eta'][:m], now['rate'][:m], now['force'][:m], self.rotations())
         wx, wy, wz = now['wind'].tolist()

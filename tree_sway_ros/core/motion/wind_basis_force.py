@@ -164,10 +164,7 @@ def wind_rest(
     table: Record, x: float, y: float, push: float, drag: float,
     eta: Floats, rate: Floats, values: Floats, rest: Floats,
 ) -> None:  # fmt: skip
-    """
-    Find the static rest of the modes left out, (r,), as `wind_force`, by harmonics of the wind,
-    (h,).
-    """
+    """Find the static rest of modes left out, (r,), as `wind_force`, by wind harmonics (h,)."""
     first, second, j, share, up, lean = table_corners(table, x, y, eta)
     a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up
     for r in range(len(rest)):

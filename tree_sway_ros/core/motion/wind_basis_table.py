@@ -158,7 +158,7 @@ class WindBasisTable:
         return slopes
 
     def _rest_of(self, moments: Floats) -> Floats:
-        """Static rest of the modes left out under moments (k, N), (k, N)."""
+        """Return the static rest of the modes left out under moments (k, N), (k, N)."""
         bank = self._bank
         rest: Floats = bank.flexibility * moments - (moments @ bank.held.T) @ self._shapes.T
         return rest
@@ -300,9 +300,7 @@ def _pressure(number: int, drag_law: DragLaw) -> float:
 
 
 def _between(asked: Floats) -> Floats:
-    """Values at `N_AZIMUTHS` of a smooth function, first axis, that is known at every other
-    one.
-    """
+    """Values at `N_AZIMUTHS`, first axis, of a smooth function known at every other one."""
     waves = np.fft.rfft(asked, axis=0)
     waves[-1] *= 0.5
     found: Floats = np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked))
@@ -310,7 +308,7 @@ def _between(asked: Floats) -> Floats:
 
 
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
-    """Unit vectors, (..., 3)."""
+    """Return unit vectors, (..., 3)."""
     azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
     level = np.cos(elevation)
     out: Floats = np.stack(

@@ -143,9 +143,7 @@ def rule_named(name: str) -> StepRule:
 def rule_propagator(
     name: str, inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float
 ) -> Array:
-    """
-    Eight coefficients per oscillator, as `propagator.propagator`, of a rule's own step, (n, 8).
-    """
+    """Coefficients of a rule's own step per oscillator, as `propagator.propagator`, (n, 8)."""
     i, c, k = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))
     )

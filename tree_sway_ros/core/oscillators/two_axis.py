@@ -58,9 +58,7 @@ def _held(x: float, y: float) -> tuple[float, float, float]:
 
 @inlined
 def _series(t: float) -> tuple[float, float, float, float]:
-    """Return s, c of the module's text and their tails s', c': s = -1/6 + t s', c = -1/2 + t
-    c'.
-    """
+    """Return s, c of the module's text, tails s', c' too: s = -1/6 + t s', c = -1/2 + t c'."""
     s = like(1.5032424712277569e-10, t)
     s = s * t - like(2.5002780465942419e-8, t)
     s = s * t + like(2.7556346133638428e-6, t)

@@ -75,10 +75,7 @@ class Reduction:
 
     @property
     def flexibility(self) -> Floats:
-        """
-        Of each coordinate alone in [rad/(N m)], (N,): both axes as one, so that it does not matter
-        how they are laid.
-        """
+        """Of each coordinate alone [rad/(N m)], (N,): both axes as one, however they are laid."""
         diagonal = np.asarray(self.stiffness.diagonal())
         mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
         return mean
@@ -186,9 +183,7 @@ class _Blocks:
 
 
 def _motions(model: BranchModel) -> tuple[Floats, Floats]:
-    """
-    Displacement at the points (k, p, 5, 3) and twist on the children (k, c, 6) of each coordinate.
-    """
+    """Displacement at points (k, p, 5, 3) and twist on children (k, c, 6) of each coordinate."""
     places = model.beam.child_point
     twists = [
         np.hstack([one.children - cross(one.child_slope, places), one.child_slope])
@@ -214,8 +209,7 @@ def _spatial_inertia(model: BranchModel) -> Floats:
 
 def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     """
-    Second-order lift of all that a branch carries, between its own coordinates, per unit of
-    gravity.
+    Second-order lift per unit of gravity of all that a branch carries, between its coordinates.
 
     Every piece ds turns what lies beyond it: with m the mass beyond, the entry is the integral of
     psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each

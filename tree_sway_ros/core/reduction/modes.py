@@ -38,10 +38,7 @@ _MOST_LEFT = 0.05
 
 @dataclass(frozen=True)
 class Modes:
-    """
-    Natural modes, the slowest first: w [rad/s], (m,), and key rotations of unit modal mass, (N,
-    m).
-    """
+    """Natural modes, slowest first: w [rad/s], (m,), key rotations of unit modal mass, (N, m)."""
 
     circular: Floats
     shapes: Floats
@@ -158,10 +155,7 @@ def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
 
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
-    """
-    Critical weight over real weight (infinite without gravity), and the coordinate that gives way
-    most.
-    """
+    """Critical over real weight, infinite without gravity; the coordinate that gives way most."""
     n = reduction.n_coordinates
     softening = -reduction.gravity
     if softening.nnz == 0 or abs(softening).max() == 0.0:
@@ -186,10 +180,7 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
 
 
 def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
-    """
-    Refuse a tree that buckles under its own weight, or whose branch has no mass, with a
-    `TreeError`.
-    """
+    """Refuse, by a `TreeError`, a tree that its weight buckles, or a branch without mass."""
     diagonal = reduction.mass.diagonal()
     for coordinate in np.flatnonzero(~(diagonal > 0.0))[:1]:
         raise TreeError(

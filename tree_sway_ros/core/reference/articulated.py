@@ -141,7 +141,7 @@ class ArticulatedTree:
         self.reset()
 
     def _along(self, leaves: Floats | None) -> Floats:
-        """What leaves add per metre of each piece: that of a branch over its length."""
+        """Spread what leaves add to a branch over its length: that per metre of each piece."""
         tree = self.tree
         if leaves is None:
             return np.zeros(tree.n_segments * self.subdivisions)
@@ -213,8 +213,7 @@ class ArticulatedTree:
 
     def linear_modes(self, count: int) -> tuple[Floats, Floats]:
         """
-        Natural frequencies [Hz], lowest first, (count,), and displacements of the end nodes,
-        (count, n, 3).
+        Natural frequencies [Hz], lowest first, (count,), and the end nodes' shapes, (count, n, 3).
 
         The shapes have unit modal mass.
         """
@@ -225,10 +224,7 @@ class ArticulatedTree:
     def _even_damping(
         self, ratio: float, count: int
     ) -> tuple[float, float, Floats, Floats, Floats, Floats]:
-        """
-        Damping of `Laws`: by stiffness so much that the last of these modes has the ratio, and the
-        rest to each below it.
-        """
+        """Damping of `Laws` at one ratio, by stiffness for the last mode; others add their own."""
         modes = joint_modes(self.bodies, self._gravity, count)
         circular = 2.0 * math.pi * modes.frequency
         slow = max(1, int(np.sum(ratio * circular <= FASTEST_DECAY)))

@@ -163,7 +163,7 @@ def _tensor(mass: Floats, place: Floats) -> Floats:
 
 
 def _parallel(mass: Floats, shift: Floats, first: Floats) -> Floats:
-    """What the inertia gains when its point is moved back by `shift`."""
+    """Return what the inertia gains when its point is moved back by `shift`."""
     cross = np.einsum('ni,nj->nij', shift, first)
     both = 2.0 * np.einsum('nii->n', cross)[:, None, None] * np.eye(3)
     out: Floats = _tensor(mass, shift) + both - cross - cross.transpose(0, 2, 1)

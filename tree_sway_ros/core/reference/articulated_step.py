@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-One step of the articulated tree: springs and dampers implicit, everything else explicit, second
-order.
+One step of the articulated tree: springs and dampers implicit, all else explicit, order two.
 
 ROS2 of Verwer, Spee, Blom & Hundsdorfer (1999), a Rosenbrock method of order two whatever the
 Jacobian, L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, each of
@@ -87,10 +86,7 @@ class Laws(NamedTuple):
 
 
 class State(NamedTuple):
-    """
-    Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body
-    axes.
-    """
+    """Rotations of the joints, quaternions wxyz (n, 4), and rates in body axes [rad/s], (n, 3)."""
 
     turn: Floats
     rate: Floats

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What every model of a tree is measured by: where its tips are, in winds that are even per frame.
-"""
+"""What every model of a tree is measured by: where its tips are, in winds even over frames."""
 
 from __future__ import annotations
 
@@ -22,8 +20,7 @@ def tips_of_poses(tree: Tree, poses: Floats, branches: Ints | slice = slice(None
 
 def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:
     """
-    Means of a wind record [m/s], (m, 3), over frames of dt [s], its samples joined by lines, (t,
-    3).
+    Means of a wind record [m/s], (m, 3), joined by lines, over frames of dt [s], (t, 3).
 
     The first frame begins with the first sample, the last ends by the last.
     """

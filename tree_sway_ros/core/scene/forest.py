@@ -133,7 +133,7 @@ class Forest:
 
     @property
     def counts(self) -> Counts:
-        """What was refused at the anemometer, and held or begun anew in any tree."""
+        """Return what was refused at the anemometer, and held or begun anew in any tree."""
         held = sum(sim.counts.held for sim in self.simulators)
         restarted = sum(sim.counts.restarted for sim in self.simulators)
         return Counts(self._steps, self._refused, held, restarted)
@@ -241,7 +241,7 @@ class Forest:
 
 
 def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSimulator:
-    """Simulator of one tree where it stands; what is wrong with it names the tree."""
+    """Make the simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:
         return make_simulator(placed, tree.species, settings, tolerance=tolerance)

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees that stand in one place: each with its name, where it stands and which way it is
-turned.
-"""
+"""Trees that stand in one place: each has a name, a place, and a way in which it is turned."""
 
 from __future__ import annotations
 
@@ -78,9 +76,7 @@ class PlacedTree:
         refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
 
     def placed(self) -> Tree:
-        """
-        Return the tree where it stands, in the frame of the forest, under its name in the forest.
-        """
+        """Return the tree where it stands in the forest's frame, under its name there."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         root, here = self.tree.start[0], np.array([self.x, self.y, self.z])

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
-"""
+"""A tree taken through a wind from rest, in one call: what happens without clock and ROS."""
 
 from __future__ import annotations
 
@@ -31,7 +29,7 @@ class WindSamples(Protocol):
 
     @property
     def time(self) -> Floats:
-        """Times in [s], rising, (m,)."""
+        """Return the times in [s], rising, (m,)."""
 
     @property
     def velocity(self) -> Floats:
@@ -89,9 +87,7 @@ def simulate(
 
 
 class Rig:
-    """
-    A tree set up once as for `simulate`, to be taken through one wind after the other from rest.
-    """
+    """A tree set up once as for `simulate`, to be taken through wind after wind from rest."""
 
     def __init__(
         self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
@@ -112,10 +108,7 @@ class Rig:
         branches: Sequence[int] | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> SwayRecord:
-        """
-        Let the tree sway in a wind from rest, as `simulate`: the same whatever it went through
-        before.
-        """
+        """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
         simulator = self._at_rest()
         rest = tips_of_poses(self.tree, simulator.place(), chosen)

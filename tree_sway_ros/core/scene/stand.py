@@ -107,9 +107,7 @@ class StandTree:
 
 @dataclass(frozen=True)
 class StandKind:
-    """
-    What trees of one kind share: the tree, and its species, looked up by the tree's own if None.
-    """
+    """What trees of one kind share: the tree, and its species, by the tree's own if None."""
 
     tree: Tree
     species: Species | None = None
@@ -211,7 +209,7 @@ class Stand(KeepsState):
 
     @property
     def simulators(self) -> tuple[TreeSimulator, ...]:
-        """The simulators of the trees that are solved on a model of their own."""
+        """Return the simulators of the trees that are solved on a model of their own."""
         return tuple(self.own.values())
 
     @property
@@ -342,7 +340,7 @@ class Stand(KeepsState):
                 )  # fmt: skip
 
     def _allocate(self) -> list[tuple[Any, Any, Floats, Floats]]:
-        """What placing works in, of each kind."""
+        """Make what placing works in, of each kind."""
         scratch = []
         for model, bank in zip(self._models, self._banks, strict=True):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
@@ -367,7 +365,7 @@ class Stand(KeepsState):
         return digest_of(*kinds, *self.trees, self.settings)
 
     def memory(self) -> tuple[Any, ...]:
-        """Views of what is carried from one step to the next, the wind first."""
+        """Return views of what is carried from one step to the next, the wind first."""
         carried = (self._instances[name] for name in CARRIED)
         own = (array for simulator in self.own.values() for array in _memory_of(simulator))
         return self._wind, *self.gusts.memory(), *carried, *own

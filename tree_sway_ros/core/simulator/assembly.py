@@ -71,7 +71,7 @@ class Oscillators(Protocol):
 
     @property
     def loads(self) -> Records | None:
-        """Records of `load_fields`; None where only an even wind is known."""
+        """Return the records of `load_fields`; None where only an even wind is known."""
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
@@ -83,7 +83,7 @@ class Oscillators(Protocol):
         """Advance one step under a mean wind [m/s]; returns how many loads were held."""
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -170,8 +170,7 @@ class Frozen:
 @dataclass(frozen=True)
 class Bank:
     """
-    A tree ready to be stepped and placed: its oscillators, and records of branches, segments and
-    heads.
+    A tree ready to be stepped and placed: oscillators, and records of branches, segments, heads.
 
     Frequencies are without air in [Hz], rising; ``mass`` is of wood and leaves in [kg]; ``frozen``
     is what moves with its parent as one body; ``plain`` tells that nothing is compiled.
@@ -386,7 +385,7 @@ class CalibratedTree:
 
     @cached_property
     def _beams(self) -> TreeBeams:
-        """What the layers share."""
+        """Return what the layers share."""
         species, settings = self.species, self.settings
         return TreeBeams(
             self.tree,
@@ -413,9 +412,7 @@ class CalibratedTree:
         return Layer(models, reduction, records, segment_records(tree, models), mass)
 
     def _modes(self, model: str, count: int | None) -> Modes:
-        """
-        All modes, or those of the slowest that the wind drives most and the static sway they lack.
-        """
+        """All modes, or of the slowest those the wind drives most and the sway that they lack."""
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         usual = TABLE_MODES if model == 'wind_basis' else USUAL_MODES

@@ -35,10 +35,7 @@ def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
 
 
 class CrownGusts:
-    """
-    The wind of a crown, and the loads that it goes to; None for a model that knows even winds
-    alone.
-    """
+    """The wind of a crown and the loads it goes to; None for a model of even winds alone."""
 
     def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
         """Start without wind."""

@@ -19,5 +19,5 @@ class OneTree:
 
     @property
     def simulators(self: _One) -> tuple[_One, ...]:
-        """The simulator of each tree: this one."""
+        """Return the simulator of each tree: this one."""
         return (self,)

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
-reduced tree.
+Model 5, `segments`: every segment solved, the conventional method, with the reduced tree's face.
 
 It is there to compare with, and for a scene that has the time: its steps cost many times as much
 (`tree-sway chart cost`).
@@ -141,18 +140,18 @@ class SegmentsSimulator(OneTree, KeepsState):
 
     @cached_property
     def _joined(self) -> tuple[Bank, RotationFit]:
-        """What places key rotations, and what fits them."""
+        """Make what places key rotations, and what fits them."""
         bank = CalibratedTree(self.tree, self.species, self.settings).at_rest('coupled')
         return bank, RotationFit(self.tree, bank.branches, bank.segments)
 
     @property
     def bank(self) -> Bank:
-        """What places key rotations: branches and segments of the coupled tree."""
+        """Return what places key rotations: branches and segments of the coupled tree."""
         return self._joined[0]
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        """Return the records of `BRANCH` by which the key rotations are told, (b,)."""
         return self.bank.branches
 
     def digest(self) -> str:
@@ -160,7 +159,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         return digest_of(self.tree, self.species, self.settings)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next, the wind of the last step first."""
+        """Return views of what is carried between steps, the wind of the last step first."""
         crown = () if self._crown is None else self._crown.memory()
         return self.wind, self._model.state.turn, self._model.state.rate, *crown
 

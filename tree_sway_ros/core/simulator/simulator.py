@@ -157,14 +157,12 @@ class SwaySimulator(OneTree, KeepsState):
         return self.bank.mass
 
     def frequencies(self, count: int = 10) -> Floats:
-        """
-        Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
-        """
+        """Lowest natural frequencies of the model in [Hz], without air, (count,) or fewer."""
         return self.bank.frequencies[:count]
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        """Return the records of `BRANCH` by which the key rotations are told, (b,)."""
         return self.bank.branches
 
     def digest(self) -> str:
@@ -172,7 +170,7 @@ class SwaySimulator(OneTree, KeepsState):
         return digest_of(self.tree, self.species, self.settings)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next, the wind of the last step first."""
+        """Return views of what is carried between steps, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
         return self._wind, *self.bank.oscillators.memory(), *crown
 
@@ -294,10 +292,7 @@ class SwaySimulator(OneTree, KeepsState):
 
     @property
     def base_moment(self) -> Floats:
-        """
-        Moment of the last step's wind about the root node, of all branches where they stand at
-        rest, in [N m], (3,).
-        """
+        """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
         couple, force = self.bank.branches['couple'], self.bank.oscillators.forces()
         moment: Floats = np.einsum('bij,bj->i', couple, force)
         return moment

@@ -26,8 +26,7 @@ from tree_sway_ros.core.state.full_scale import FULL_SCALE
 @dataclass(frozen=True)
 class BasisError:
     """
-    How far segments are from where the model has them, over a run that the basis was not made
-    from.
+    How far segments are from where the model has them, over a run the basis was not made from.
 
     Of all segments and times in [m]: what the basis leaves out, the same with coordinates as
     int16, and the motion of the segments from rest.
@@ -74,10 +73,7 @@ class StateBasis:
         return out
 
     def rotations(self, coordinates: Floats) -> Floats:
-        """
-        Key rotations (N,) in [rad] of coordinates (m,); the same bits on every machine
-        alike.
-        """
+        """Key rotations in [rad], (N,), of coordinates (m,); the same bits on machines alike."""
         out = np.empty(len(self.matrix))
         _products(self.matrix, coordinates, out)
         return out

@@ -88,9 +88,7 @@ def digest_of(*told: Any) -> str:
 
 
 class KeepsState:
-    """
-    A simulator whose state can be kept, set and placed; bases of this class give what it asks for.
-    """
+    """A simulator whose state can be kept, set and placed, for classes that give what it asks."""
 
     tree: Tree
 
@@ -109,7 +107,7 @@ class KeepsState:
         raise NotImplementedError
 
     def memory(self) -> Sequence[Floats]:
-        """Views of all arrays that are carried from one step to the next."""
+        """Return views of all arrays that are carried from one step to the next."""
         raise NotImplementedError
 
     def rotations(self) -> Floats:

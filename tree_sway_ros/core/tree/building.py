@@ -157,9 +157,7 @@ def _integers(values: ArrayLike, n: int, what: str) -> Ints:
 
 
 def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
-    """
-    Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size.
-    """
+    """Sit each segment on the one whose end is nearest to its start, within 1e-4 of the size."""
     from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
 
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
@@ -204,9 +202,7 @@ def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
 def _branches_by_continuation(
     starts: Floats, ends: Floats, diameters: Floats, parents: Ints, depth_order: Ints
 ) -> Ints:
-    """
-    Number branches: at each node the thickest child goes on with the branch, straightest on a tie.
-    """
+    """Follow each branch through its nodes: on to the thickest child, the straightest on a tie."""
     n = len(parents)
     direction = ends - starts
     direction /= np.linalg.norm(direction, axis=1)[:, None]

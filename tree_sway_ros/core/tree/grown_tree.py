@@ -17,11 +17,11 @@ class GrownTree(Protocol):
 
     @property
     def tree(self) -> Tree:
-        """The segments."""
+        """Return the segments."""
 
     @property
     def species(self) -> Species:
-        """The wood."""
+        """Return the wood."""
 
 
 def tree_and_species(

@@ -61,10 +61,7 @@ def refuse_nonsense(tree: Tree, species: Species) -> None:
 
 
 def doubts(tree: Tree, species: Species) -> tuple[str, ...]:
-    """
-    Tell what is odd about a tree and its wood, one sentence each; nothing if it is like other
-    trees.
-    """
+    """Tell what is odd about a tree and its wood against others, one sentence each."""
     return tuple(_doubts(tree, species))
 
 
@@ -135,9 +132,7 @@ def _refuse_wood(
 
 
 def _size(tree: Tree) -> tuple[float, float, float]:
-    """Height, or length if it lies, and diameter at the ground in [m], and the one by the
-    other.
-    """
+    """Height, or length if it lies, diameter at the ground, both [m], and their ratio."""
     nodes = np.vstack([tree.start, tree.end]) - tree.start[0]
     height = max(tree.height, float(np.abs(nodes).max()) if _lean(tree) > _LEAN else 0.0)
     diameter = float(tree.base_diameter[0])
@@ -152,5 +147,5 @@ def _lean(tree: Tree) -> float:
 
 
 def _nearest(value: float, usual: float) -> float:
-    """Unit in [m] that brings a value nearest to the usual one."""
+    """Return the unit in [m] that brings a value nearest to the usual one."""
     return min(_LENGTHS, key=lambda factor: abs(math.log(value * factor / usual)))

@@ -76,12 +76,12 @@ class Tree:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments."""
+        """Return the number of segments."""
         return len(self.start)
 
     @property
     def n_branches(self) -> int:
-        """Number of branches."""
+        """Return the number of branches."""
         return len(self.branch_parent)
 
     @cached_property
@@ -91,7 +91,7 @@ class Tree:
 
     @cached_property
     def direction(self) -> Floats:
-        """Unit vector along each segment at rest, (n, 3)."""
+        """Return the unit vector along each segment at rest, (n, 3)."""
         return _read_only((self.end - self.start) / self.length[:, None])
 
     @cached_property

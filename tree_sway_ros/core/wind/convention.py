@@ -90,7 +90,7 @@ class WindConvention:
 
     @cached_property
     def normal(self) -> Floats:
-        """Unit normal of the force plane, (3,)."""
+        """Return the unit normal of the force plane, (3,)."""
         normal = np.asarray(self.plane_normal)
         normal = normal / np.abs(normal).max()  # so that no square vanishes or overflows
         return np.asarray(normal / np.linalg.norm(normal))
@@ -201,7 +201,7 @@ class WindConvention:
 
 
 def _quaternion_of_axes(along: Floats, normal: tuple[float, float, float]) -> Floats:
-    """Unit quaternion w, x, y, z, (4,), that turns x and z into these unit vectors, each (3,)."""
+    """Return the unit quaternion w, x, y, z that turns x and z into these unit vectors, (3,)."""
     (xx, xy, xz), (zx, zy, zz) = along.tolist(), normal
     yx, yy, yz = zy * xz - zz * xy, zz * xx - zx * xz, zx * xy - zy * xx
     # Four times its product with itself: each row is the quaternion times one of its components.

@@ -142,8 +142,7 @@ class CrownWind:
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
-        Take the mean wind [m/s] of a step of dt [s]; how that of each delay differs, (`N_DELAYS`,
-        3).
+        Take the mean wind [m/s] of a step of dt [s]; return what each delay adds, (`N_DELAYS`, 3).
 
         It is the same array each time.
         """
@@ -159,7 +158,7 @@ class CrownWind:
         return partial(entry_of(_push, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return self._run, self._at, self._mean, self._delay
 
     def follow(self, other: CrownWind) -> None:

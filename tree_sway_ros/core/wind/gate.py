@@ -127,7 +127,7 @@ class GateCounts:
 
     @property
     def refused(self) -> int:
-        """Samples refused, for any reason."""
+        """Return the number of samples refused, for any reason."""
         return (
             self.not_finite
             + self.sentinel

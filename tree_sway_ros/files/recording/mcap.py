@@ -29,6 +29,8 @@ def read_mcap(
 
     Parameters
     ----------
+    path
+        The file.
     take
         Called with each topic and its type; returns what is called with the time [ns] and the
         bytes of each of its messages, or None for none.

@@ -50,6 +50,8 @@ def parse_nmea(
 
     Parameters
     ----------
+    line
+        The line, without its end.
     heading
         Of the bow, clockwise from true north, in [rad].
     declination

@@ -80,7 +80,7 @@ class AnemometerModel:
 
     @property
     def rate(self) -> float:
-        """Samples per second in [Hz]."""
+        """Return the samples per second in [Hz]."""
         return self._rate
 
     def sample(self, tick: int) -> Floats:

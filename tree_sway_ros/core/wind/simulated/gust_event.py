@@ -25,9 +25,7 @@ _LARGEST_SPEED, _LARGEST_ANGLE, _LONGEST = 100.0, 1e3, 1e6
 
 
 class _Shape(NamedTuple):
-    """Share of the amplitude at a share x of the duration; whether it turns the wind, and
-    lasts.
-    """
+    """Share of the amplitude at a share x of the duration; whether it turns the wind, lasts."""
 
     share: Callable[[Floats], Floats]
     is_turn: bool = False

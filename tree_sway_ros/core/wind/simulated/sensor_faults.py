@@ -65,20 +65,14 @@ class SensorFaults:
         self._is_restarting = False
 
     def at(self, time: float) -> str:
-        """
-        Return the fault at a time in [s] since the sensor was started, ``none`` between
-        them.
-        """
+        """Return the fault at a time in [s] since the sensor's start, ``none`` between them."""
         number, since = divmod(time, self._every)
         if self._kind == 'none' or number < 1 or since >= self._duration:
             return 'none'
         return _KINDS[int(number - 1) % len(_KINDS)] if self._kind == 'all' else self._kind
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
-        """
-        What is sent, in order, for a sample at a time since the start [s], of a stamp [ns] and
-        wind [m/s].
-        """
+        """Return what is sent for a sample at a time [s], of a stamp [ns] and wind [m/s]."""
         fault = self.at(time)
         if fault != 'freeze':
             self._frozen = None

@@ -30,9 +30,7 @@ class ComponentSpectrum(Protocol):
         *,
         across: bool,
     ) -> Floats:
-        """
-        Power spectral density, one-sided, of integral ``deviation**2``; see `von_karman_spectrum`.
-        """
+        """Power spectral density, one-sided, of integral ``deviation**2``, as by von Karman."""
 
 
 class Spectrum(NamedTuple):

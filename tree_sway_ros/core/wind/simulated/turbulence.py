@@ -94,9 +94,7 @@ class Turbulence:
 
     @cached_property
     def deviations(self) -> Floats:
-        """
-        Standard deviations of u, v, w in [m/s], (3,): IEC 61400-1:2005, equation 11 and table B.1.
-        """
+        """Return the deviations of u, v, w [m/s], (3,): IEC 61400-1:2005, eq. 11, table B.1."""
         if self.intensity is not None:
             along = self.intensity * self.mean_speed
         else:
@@ -109,9 +107,7 @@ class Turbulence:
         return turbulence_scale(self.height) * np.array(SPECTRA[self.model].scales)
 
     def spectrum(self, frequency: ArrayLike) -> Floats:
-        """
-        Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3).
-        """
+        """Return one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""
         of_component = SPECTRA[self.model].of_component
         columns = [
             of_component(frequency, self.mean_speed, deviation, scale, across=component > 0)

@@ -22,10 +22,7 @@ Floats = NDArray[np.float64]
 
 
 class TurbulenceStream:
-    """
-    Endless turbulence, a pure function of seed (0 to 2^63) and tick, up to 1000 of them per
-    second.
-    """
+    """Endless turbulence, a function of seed (0 to 2^63) and tick, at 1000 per second at most."""
 
     def __init__(self, turbulence: Turbulence, rate: float, seed: int) -> None:
         """Draw nothing yet."""
@@ -52,9 +49,7 @@ class TurbulenceStream:
         return wind
 
     def _move_to(self, hop: int) -> None:
-        """Join the end of the last block to the start of the next; in order, one block is
-        drawn.
-        """
+        """Join the last block's end to the next one's start; in order, one block is drawn."""
         tail = self._tail if hop == self._hop + 1 and hop > 0 else self._block(hop)[self._n_hop :]
         head, self._tail = np.split(self._block(hop + 1), 2)
         self._wind = head + tail
