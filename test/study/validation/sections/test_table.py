@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tree_sway_ros.study.validation.section import Effort
-from tree_sway_ros.study.validation.sections.table import departure, Departure, LIMIT, measure
+from tree_sway_ros.study.validation.sections.table import Departure, departure, LIMIT, measure
 
 OURS = Path(__file__).resolve().parents[3] / 'files' / 'data' / 'tree121.csv'
 
