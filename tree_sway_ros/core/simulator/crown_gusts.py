@@ -15,11 +15,11 @@ from functools import partial
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of
+from tree_sway_ros.core.kernel import entry_of, WHY_PLAIN
 from tree_sway_ros.core.motion.numpy_passes import into_lanes
 from tree_sway_ros.core.motion.tree_passes import set_gusts
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.core.wind.crown_wind import CrownDelays, CrownWind, crown_delays
+from tree_sway_ros.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind
 
 
 def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
@@ -29,27 +29,26 @@ def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
     middle = 0.5 * (tree.start + tree.end) * area[:, None]
     wood = np.add.reduceat(area, first)
     centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
-    return crown_delays(tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area)
+    return crown_delays(
+        tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area
+    )
 
 
 class CrownGusts:
-    """
-    The wind of a crown, and the loads that it goes to; None for a model that knows even winds
-    alone.
-    """
+    """The wind of a crown and the loads it goes to; None for a model of even winds alone."""
 
     def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
         """Start without wind."""
         self.wind, self._delays = CrownWind(delays.spread, coherence), delays
         self._hand_out: Callable[[Floats], None] | None = None
         if loads is not None:
-            into_lanes(delays.of_branch, loads["delay"])
+            into_lanes(delays.of_branch, loads['delay'])
             self._hand_out = self._plainly(loads)
             if not WHY_PLAIN:
                 self._hand_out = partial(entry_of(set_gusts, loads, np.zeros((1, 3))), loads)
 
     def _plainly(self, loads: Records) -> Callable[[Floats], None]:
-        return lambda apart: into_lanes(apart[self._delays.of_branch], loads["gust"])
+        return lambda apart: into_lanes(apart[self._delays.of_branch], loads['gust'])
 
     def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """

@@ -11,15 +11,15 @@ fades with f r / U as the source has it. Long gusts reach all limbs alike. Of sh
 feels, in the mean over limbs, ``c^2 + (1 - c)^2`` of the power, as an area does of gusts smaller
 than itself.
 
-Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and the
-same in every run. Delays follow the mean wind as in `gust_travel`.
+Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and
+the same in every run. Delays follow the mean wind as in `gust_travel`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cached_property, partial
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,8 +29,8 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.kernel import entry_of, kernel
 from tree_sway_ros.core.wind.gust_travel import (
-    LARGEST_STRETCH,
     follow_mean,
+    LARGEST_STRETCH,
     remember,
 )
 
@@ -41,10 +41,10 @@ USUAL_COHERENCE = 0.3
 """
 Share of a gust that reaches the whole crown at once, where gusts reach limb after limb.
 
-Gusts of the first frequency of a tree (0.5 to 1 Hz) at 7 m/s have by the source a root coherence of
-0.03 to 0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one. With it
-the strain of the stems of grown trees falls above their first frequency as that of real ones
-(``tree-sway chart validation --only slopes``).
+Gusts of the first frequency of a tree (0.5 to 1 Hz) at 7 m/s have by the source a root coherence
+of 0.03 to 0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one.
+With it the strain of the stems of grown trees falls above their first frequency as that of real
+ones (``tree-sway chart validation --only slopes``).
 
 """
 
@@ -134,7 +134,7 @@ class CrownWind:
     def __init__(self, spread: float, coherence: float) -> None:
         """Start without wind."""
         self._spread = spread
-        self._coherence = within("crown_coherence", coherence, 0.0, 1.0)
+        self._coherence = within('crown_coherence', coherence, 0.0, 1.0)
         self._run = np.zeros((_CAPACITY, 4))
         self._at = np.zeros(2, dtype=np.int64)
         self._mean, self._delay = np.zeros(3), np.zeros(1)
@@ -142,8 +142,7 @@ class CrownWind:
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
-        Take the mean wind [m/s] of a step of dt [s]; how that of each delay differs, (`N_DELAYS`,
-        3).
+        Take the mean wind [m/s] of a step of dt [s]; return what each delay adds, (`N_DELAYS`, 3).
 
         It is the same array each time.
         """
@@ -159,7 +158,7 @@ class CrownWind:
         return partial(entry_of(_push, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return self._run, self._at, self._mean, self._delay
 
     def follow(self, other: CrownWind) -> None:

@@ -7,8 +7,8 @@ from __future__ import annotations
 from functools import partial
 
 from tree_sway_ros.core.wind.crown_wind import USUAL_COHERENCE
-from tree_sway_ros.study.validation.response_slopes import SPECIES, Slopes, response_slopes
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.response_slopes import response_slopes, Slopes, SPECIES
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 
 STEEPEST, FLATTEST = -6.2, -2.0
 
@@ -25,31 +25,31 @@ def measure(effort: Effort) -> Section:
     found = dict(zip(cases, effort.each(partial(_sloped, seconds=seconds), cases), strict=True))
     checks = [
         Check(
-            f"{species}, {'in leaf' if in_leaf else 'bare'}, {name}",
+            f'{species}, {"in leaf" if in_leaf else "bare"}, {name}',
             found[species, in_leaf, USUAL_COHERENCE].strain[k],
             STEEPEST,
             FLATTEST,
         )
         for species in SPECIES
         for in_leaf in (False, True)
-        for k, name in enumerate(("along the wind", "across it"))
+        for k, name in enumerate(('along the wind', 'across it'))
     ]
     rows = [
-        [species, "on" if in_leaf else "off", *(_cell(found[species, in_leaf, s], part)
-         for part in ("strain", "tip") for s in (USUAL_COHERENCE, 1.0))]
+        [species, 'on' if in_leaf else 'off', *(_cell(found[species, in_leaf, s], part)
+         for part in ('strain', 'tip') for s in (USUAL_COHERENCE, 1.0))]
         for species in SPECIES for in_leaf in (False, True)
     ]  # fmt: skip
     text = (
-        "Slope in logarithms of the power spectrum between 1.3 and 3.5 times the first frequency, "
-        f"along the wind and across it, in {seconds:g} s of simulated wind of 7 m/s; checked is the"
-        " strain of the stem at its base with gusts that meet the crown limb by limb "
-        f"(`crown_coherence` {USUAL_COHERENCE:g}), as strain is what was measured on real trees: "
-        "-5.5 to -1.6 in nine tenths of 47 conifers, -5.3 to -0.5 of 21 broadleaved trees in "
-        "forests (one-hour records of Jackson et al. 2021, fitted in the same way). The "
-        "highest tip tells of the limb that bears it too."
+        'Slope in logarithms of the power spectrum between 1.3 and 3.5 times the first frequency, '
+        f'along the wind and across it, in {seconds:g} s of simulated wind of 7 m/s; checked is '
+        'the strain of the stem at its base with gusts that meet the crown limb by limb '
+        f'(`crown_coherence` {USUAL_COHERENCE:g}), as strain is what was measured on real trees: '
+        '-5.5 to -1.6 in nine tenths of 47 conifers, -5.3 to -0.5 of 21 broadleaved trees in '
+        'forests (one-hour records of Jackson et al. 2021, fitted in the same way). The '
+        'highest tip tells of the limb that bears it too.'
     )
-    head = ["species", "leaves", "strain", "in one wind", "tip", "in one wind"]
-    return Section("Slopes of response spectra", text, checks, markdown_table(head, rows))
+    head = ['species', 'leaves', 'strain', 'in one wind', 'tip', 'in one wind']
+    return Section('Slopes of response spectra', text, checks, markdown_table(head, rows))
 
 
 def _sloped(case: tuple[str, bool, float], seconds: float) -> Slopes:
@@ -58,4 +58,4 @@ def _sloped(case: tuple[str, bool, float], seconds: float) -> Slopes:
 
 
 def _cell(slopes: Slopes, part: str) -> str:
-    return ", ".join(f"{each:.1f}" for each in getattr(slopes, part))
+    return ', '.join(f'{each:.1f}' for each in getattr(slopes, part))
