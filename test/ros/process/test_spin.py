@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import os
+from pathlib import Path
 import signal
 import sys
 import time
 import types
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
