@@ -138,7 +138,7 @@ class CrownWind:
         self._run = np.zeros((_CAPACITY, 4))
         self._at = np.zeros(2, dtype=np.int64)
         self._mean, self._delay = np.zeros(3), np.zeros(1)
-        self._apart = np.zeros((N_DELAYS, 3))
+        self._behind, self._apart = np.zeros((2, N_DELAYS, 3))
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
@@ -153,14 +153,14 @@ class CrownWind:
     @cached_property
     def _compiled(self) -> Callable[[float, float, float, float], None]:
         arrays = (
-            self._run, self._at, self._mean, self._delay, self._apart, self._spread,
+            self._run, self._at, self._mean, self._delay, self._behind, self._apart, self._spread,
             self._coherence,
         )  # fmt: skip
         return partial(entry_of(_push, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
         """Views of what is carried from one step to the next."""
-        return self._run, self._at, self._mean, self._delay
+        return self._run, self._at, self._mean, self._delay, self._behind
 
     def follow(self, other: CrownWind) -> None:
         """Go on with the wind that another has felt."""
@@ -176,30 +176,36 @@ class CrownWind:
 
 @kernel
 def _push(
-    run: Floats, at: Ints, mean: Floats, delay: Floats, apart: Floats,
+    run: Floats, at: Ints, mean: Floats, delay: Floats, behind: Floats, apart: Floats,
     spread: float, coherence: float, x: float, y: float, z: float, dt: float,
 ) -> None:  # fmt: skip
-    """Remember a step, let the longest delay follow the mean wind, and read all delays."""
+    """
+    Remember a step, let the longest delay follow the mean wind, and read all delays.
+
+    How far the run of each delay was behind that of the wind at the end of the last step is kept.
+    """
     is_first = at[1] == 0
     remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
     follow_mean(mean, x, y, dt, _AVERAGING)
     speed = max(math.hypot(mean[0], mean[1]), _SLOWEST)
-    goal, most, before = min(spread / speed, LONGEST_DELAY), LARGEST_STRETCH * dt, delay[0]
-    delay[0] = goal if is_first else min(max(goal, before - most), before + most)
-    before = goal if is_first else before
-    now, rest = run[at[0], 0], 1.0 - coherence
-    begin_cell = end_cell = at[0] - 1
+    goal, most = min(spread / speed, LONGEST_DELAY), LARGEST_STRETCH * dt
+    before = goal if is_first else delay[0]
+    delay[0] = min(max(goal, before - most), before + most)
+    head, cell, rest = run[at[0]], at[0] - 1, 1.0 - coherence
     for j in range(1, len(apart)):
         share = j / (len(apart) - 1)
-        begin, end = now - dt - share * before, now - share * delay[0]
-        begin_cell = _cell_before(run, at, begin_cell, begin)
-        end_cell = _cell_before(run, at, end_cell, end)
-        ax, ay, az = _run_in(run, begin_cell, begin)
-        bx, by, bz = _run_in(run, end_cell, end)
-        per_span = rest / (end - begin)
-        apart[j, 0] = per_span * (bx - ax) - rest * x
-        apart[j, 1] = per_span * (by - ay) - rest * y
-        apart[j, 2] = per_span * (bz - az) - rest * z
+        if is_first:
+            lag = share * before
+            behind[j, 0], behind[j, 1], behind[j, 2] = lag * x, lag * y, lag * z
+        late = share * delay[0]
+        cell = _cell_before(run, at, cell, head[0] - late)
+        bx, by, bz = _run_in(run, cell, head[0] - late)
+        per_span = rest / (dt + share * (before - delay[0]))
+        bx, by, bz = head[1] - bx, head[2] - by, head[3] - bz
+        apart[j, 0] = per_span * (x * dt + behind[j, 0] - bx) - rest * x
+        apart[j, 1] = per_span * (y * dt + behind[j, 1] - by) - rest * y
+        apart[j, 2] = per_span * (z * dt + behind[j, 2] - bz) - rest * z
+        behind[j, 0], behind[j, 1], behind[j, 2] = bx, by, bz
 
 
 @kernel
