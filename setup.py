@@ -2,37 +2,38 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build tree_sway_ros: under colcon as an ament_python package, under pip as a wheel."""
 
+from pathlib import Path
 import re
 import sys
-from pathlib import Path
 
 from setuptools import find_packages, setup
 
-PACKAGE = "tree_sway_ros"
+PACKAGE = 'tree_sway_ros'
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
-NODES = ("anemometer", "wind", "solver", "player", "sensor", "viewer")
+NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
 LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 
 def version():
     """Return the version, which is written in the package's ``__init__.py`` and nowhere else."""
-    text = (ROOT / PACKAGE / "__init__.py").read_text(encoding="utf-8")
-    return re.search(r'^__version__ = "(.+)"$', text, re.MULTILINE).group(1)
+    text = (ROOT / PACKAGE / '__init__.py').read_text(encoding='utf-8')
+    return re.search(r"^__version__ = '(.+)'$", text, re.MULTILINE).group(1)
 
 
 def launchers():
     """
-    Write one small executable per node, to stand in ``lib/tree_sway_ros/``, and return their paths.
+    Write one small executable per node, to stand in ``lib/tree_sway_ros/``, and return their
+    paths.
 
-    ``ros2 run`` looks there. colcon installs the console scripts there itself (setup.cfg); pip puts
-    them in ``bin/``, so a wheel brings these along, which go on to ``bin/``.
+    ``ros2 run`` looks there. colcon installs the console scripts there itself (setup.cfg); pip
+    puts them in ``bin/``, so a wheel brings these along, which go on to ``bin/``.
     """
-    folder = Path("build", "launchers")
+    folder = Path('build', 'launchers')
     folder.mkdir(parents=True, exist_ok=True)
     for node in NODES:
         path = folder / node
-        path.write_text(LAUNCHER, encoding="utf-8")
+        path.write_text(LAUNCHER, encoding='utf-8')
         path.chmod(0o755)
     return [str(folder / node) for node in NODES]
 
@@ -43,74 +44,76 @@ def files(pattern):
 
 
 data_files = [
-    ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
-    (f"share/{PACKAGE}", ["package.xml"]),
-    (f"share/{PACKAGE}/launch", files("launch/*.launch.py")),
-    (f"share/{PACKAGE}/config", files("config/*")),
-    (f"share/{PACKAGE}/config/examples", files("config/examples/*")),
+    ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+    (f'share/{PACKAGE}', ['package.xml']),
+    (f'share/{PACKAGE}/launch', files('launch/*.launch.py')),
+    (f'share/{PACKAGE}/config', files('config/*')),
+    (f'share/{PACKAGE}/config/examples', files('config/examples/*')),
 ]
-if "bdist_wheel" in sys.argv:
-    data_files.append((f"lib/{PACKAGE}", launchers()))
+if 'bdist_wheel' in sys.argv:
+    data_files.append((f'lib/{PACKAGE}', launchers()))
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 extras = {
     # Compiled kernels; without numba the same steps run on numpy alone, slower.
-    "fast": ["numba>=0.59"],
+    'fast': ['numba>=0.59'],
     # Bars for long waits; without tqdm a line is printed now and then.
-    "progress": ["tqdm>=4.60"],
+    'progress': ['tqdm>=4.60'],
     # The real rclpy and Fast DDS as wheels; `pip -c .ci/constraints-ros-jazzy.txt` pins the rest.
-    "ros": [
-        f"ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}",
-        f"ros-jazzy-common-interfaces==5.3.6{LINUX}",
+    'ros': [
+        f'ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}',
+        f'ros-jazzy-common-interfaces==5.3.6{LINUX}',
     ],
-    "serial": ["pyserial>=3.5"],
-    "bag": ["rosbags>=0.10"],
-    "relay": ["eclipse-zenoh>=1.0"],
-    "plot": ["matplotlib>=3.6"],
-    "h5": ["h5py>=3.7"],
-    "mujoco": ["mujoco>=3.2"],
-    "dart": ["mujoco>=3.2", "dartpy>=6.20"],
-    "battery": ["mpmath>=1.2"],
-    "sundials": ["scikit-sundae>=1.0"],
+    'serial': ['pyserial>=3.5'],
+    'bag': ['rosbags>=0.10'],
+    'relay': ['eclipse-zenoh>=1.0'],
+    'plot': ['matplotlib>=3.6'],
+    'h5': ['h5py>=3.7'],
+    'mujoco': ['mujoco>=3.2'],
+    'dart': ['mujoco>=3.2', 'dartpy>=6.20'],
+    'battery': ['mpmath>=1.2'],
+    'sundials': ['scikit-sundae>=1.0'],
     # colcon runs pytest only where an extra of this name asks for it.
-    "test": [
-        *("pytest>=7,<9", "pytest-xdist>=3.2", "pytest-cov>=4", "hypothesis>=6.60", "mpmath>=1.2"),
-        *("pygltflib>=1.16", "trimesh>=4.0", "argcomplete>=2"),
+    'test': [
+        *('pytest>=7,<9', 'pytest-xdist>=3.2', 'pytest-cov>=4', 'hypothesis>=6.60', 'mpmath>=1.2'),
+        *('pygltflib>=1.16', 'trimesh>=4.0', 'argcomplete>=2'),
     ],
-    "lint": ["ruff>=0.8", "mypy>=1.11", "types-PyYAML", "types-jsonschema"],
+    'lint': ['ruff>=0.8', 'mypy>=1.11', 'types-PyYAML', 'types-jsonschema'],
     # Studies on a cluster, and their tables as Parquet.
-    "cluster": ["distributed>=2023.1", "pyarrow>=12"],
-    "docs": ["sphinx>=7", "myst-parser>=2"],
+    'cluster': ['distributed>=2023.1', 'pyarrow>=12'],
+    'docs': ['sphinx>=7', 'myst-parser>=2'],
 }
 
 setup(
     name=PACKAGE,
     version=version(),
-    description="Trees that sway in measured wind, solved in real time and streamed over ROS 2",
-    long_description=(ROOT / "README.md").read_text(encoding="utf-8"),
-    long_description_content_type="text/markdown",
-    author="Tree Sway maintainers",
-    author_email="maintainers@users.noreply.github.com",
-    maintainer="Tree Sway maintainers",
-    maintainer_email="maintainers@users.noreply.github.com",
-    license="Apache-2.0",
-    packages=find_packages(str(ROOT), include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={"": ["py.typed", "*.json", "*.yaml", "*.csv", "*.xml", "static/*", "static/*/*"]},
+    description='Trees that sway in measured wind, solved in real time and streamed over ROS 2',
+    long_description=(ROOT / 'README.md').read_text(encoding='utf-8'),
+    long_description_content_type='text/markdown',
+    author='Tree Sway maintainers',
+    author_email='maintainers@users.noreply.github.com',
+    maintainer='Tree Sway maintainers',
+    maintainer_email='maintainers@users.noreply.github.com',
+    license='Apache-2.0',
+    packages=find_packages(str(ROOT), include=[PACKAGE, f'{PACKAGE}.*']),
+    package_data={
+        '': ['py.typed', '*.json', '*.yaml', '*.csv', '*.xml', 'static/*', 'static/*/*']
+    },
     data_files=data_files,
-    python_requires=">=3.10",
+    python_requires='>=3.10',
     install_requires=[
-        *("setuptools", "numpy>=1.26", "scipy>=1.11", "PyYAML>=6", "jsonschema>=4.10"),
-        "aiohttp>=3.8",
+        *('setuptools', 'numpy>=1.26', 'scipy>=1.11', 'PyYAML>=6', 'jsonschema>=4.10'),
+        'aiohttp>=3.8',
     ],
     extras_require=extras,
     zip_safe=False,
     entry_points={
-        "console_scripts": [
-            *(f"{node} = {PACKAGE}.nodes.executables:{node}" for node in NODES),
-            f"tree-sway = {PACKAGE}.tools.cli:main",
+        'console_scripts': [
+            *(f'{node} = {PACKAGE}.nodes.executables:{node}' for node in NODES),
+            f'tree-sway = {PACKAGE}.tools.cli:main',
         ],
-        "ament_copyright.license": [
-            f"apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX",
+        'ament_copyright.license': [
+            f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',
         ],
     },
 )

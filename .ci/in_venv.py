@@ -10,223 +10,223 @@ Run a command in this checkout's own virtual environment, made first if it is no
 Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
 form, with what the command needs and no more: `tree-sway demo` brings the real rclpy and Fast DDS
 of hashes-ros-jazzy.txt and no other (x86_64 Linux, Python 3.10-3.14), `pytest` what the
-tests use, `ruff` the linters; a later command adds what it lacks. The environment is made anew when
-the Python differs and brought up to date when a file that describes the installation has changed.
-TREE_SWAY_VENV names another place for it than .venv.
+tests use, `ruff` the linters; a later command adds what it lacks. The environment is made anew
+when the Python differs and brought up to date when a file that describes the installation has
+changed. TREE_SWAY_VENV names another place for it than .venv.
 
 """
 
 import fcntl
 import hashlib
 import os
+from pathlib import Path
 import platform
 import re
 import shutil
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-VENV = Path(os.environ.get("TREE_SWAY_VENV") or ROOT / ".venv").absolute()
-CONSTRAINTS = ROOT / ".ci" / "constraints-ros-jazzy.txt"
-HASHES = ROOT / ".ci" / "hashes-ros-jazzy.txt"
+VENV = Path(os.environ.get('TREE_SWAY_VENV') or ROOT / '.venv').absolute()
+CONSTRAINTS = ROOT / '.ci' / 'constraints-ros-jazzy.txt'
+HASHES = ROOT / '.ci' / 'hashes-ros-jazzy.txt'
 #: The oldest Python that this package runs on, and the newest that there are ROS wheels for.
 OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 #: What is always installed: compiled kernels, and bars for waits.
-ALWAYS = ("fast", "progress")
+ALWAYS = ('fast', 'progress')
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
     **dict.fromkeys(
-        ("anemometer", "wind", "solver", "player", "sensor", "viewer", "ros2"), ("ros",)
+        ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer', 'ros2'), ('ros',)
     ),
-    **dict.fromkeys(("tree-sway demo", "tree-sway listen"), ("ros",)),
-    **dict.fromkeys(("tree-sway plot", "tree-sway chart", "tree-sway render"), ("plot",)),
-    "tree-sway record": ("ros", "bag"),
-    "tree-sway relay": ("relay",),
-    "tree-sway battery": ("battery",),
-    "tree-sway compare": ("mujoco",),
+    **dict.fromkeys(('tree-sway demo', 'tree-sway listen'), ('ros',)),
+    **dict.fromkeys(('tree-sway plot', 'tree-sway chart', 'tree-sway render'), ('plot',)),
+    'tree-sway record': ('ros', 'bag'),
+    'tree-sway relay': ('relay',),
+    'tree-sway battery': ('battery',),
+    'tree-sway compare': ('mujoco',),
     **dict.fromkeys(
-        ("pytest", "py.test"),
+        ('pytest', 'py.test'),
         (
-            *("ros", "serial", "bag", "relay", "plot", "h5", "mujoco", "cluster", "test"),
-            *("sundials", "docs"),
+            *('ros', 'serial', 'bag', 'relay', 'plot', 'h5', 'mujoco', 'cluster', 'test'),
+            *('sundials', 'docs'),
         ),
     ),
-    "coverage": ("test",),
-    **dict.fromkeys(("ruff", "mypy", "pre-commit"), ("lint",)),
-    "sphinx-build": ("docs",),
+    'coverage': ('test',),
+    **dict.fromkeys(('ruff', 'mypy', 'pre-commit'), ('lint',)),
+    'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {".db3": "bag", ".mcap": "bag", ".mat": "h5"}
+NEEDS_OF_FILES = {'.db3': 'bag', '.mcap': 'bag', '.mat': 'h5'}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
-    "AMENT_PREFIX_PATH",
-    "CMAKE_PREFIX_PATH",
-    "COLCON_PREFIX_PATH",
-    "LD_LIBRARY_PATH",
-    "PYTHONPATH",
-    "ROS_DISTRO",
-    "ROS_ETC_DIR",
-    "ROS_PYTHON_VERSION",
-    "ROS_VERSION",
+    'AMENT_PREFIX_PATH',
+    'CMAKE_PREFIX_PATH',
+    'COLCON_PREFIX_PATH',
+    'LD_LIBRARY_PATH',
+    'PYTHONPATH',
+    'ROS_DISTRO',
+    'ROS_ETC_DIR',
+    'ROS_PYTHON_VERSION',
+    'ROS_VERSION',
 )
 
 
 def main(command):
     """Make the environment ready and become the command in it."""
     if not command:
-        stop("no command given", "for example: python3 .ci/in_venv.py tree-sway demo")
+        stop('no command given', 'for example: python3 .ci/in_venv.py tree-sway demo')
     extras = extras_for(command)
     environment = without_ros(dict(os.environ))
     # Set by the ROS wheels of another checkout, the second keeps those here from being found.
-    for name in ("PYTHONHOME", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"):
+    for name in ('PYTHONHOME', '_ROS_WHEELS_BOOTSTRAP_COMPLETE'):
         environment.pop(name, None)
     with open(__file__) as lock:  # one set-up at a time, however many start at once
         fcntl.flock(lock, fcntl.LOCK_EX)
         make_ready(environment, extras)
-    programs = str(VENV / "bin")
+    programs = str(VENV / 'bin')
     environment.update(
         VIRTUAL_ENV=str(VENV),
         AMENT_PREFIX_PATH=str(VENV),
-        PATH=os.pathsep.join([programs, environment.get("PATH", os.defpath)]),
+        PATH=os.pathsep.join([programs, environment.get('PATH', os.defpath)]),
     )
-    program = shutil.which(command[0], path=environment["PATH"])
+    program = shutil.which(command[0], path=environment['PATH'])
     if program is None:
-        stop("no such command: " + command[0], "what is installed stands in " + programs)
+        stop('no such command: ' + command[0], 'what is installed stands in ' + programs)
     os.execve(program, [program, *command[1:]], environment)
 
 
 def stop(what, cure):
     """Say what is wrong and what to do about it, on one line, and end."""
-    print(f"in_venv: {what}; {cure}", file=sys.stderr)
+    print(f'in_venv: {what}; {cure}', file=sys.stderr)
     sys.exit(2)
 
 
 def extras_for(command):
     """Return the extras that a command needs; refuse it where this Python or machine has none."""
     names = [os.path.basename(command[0])]
-    names += [argument for argument in command[1:] if not argument.startswith("-")][:1]
-    needed = {*ALWAYS, *NEEDS.get(names[0], ()), *NEEDS.get(" ".join(names), ())}
+    names += [argument for argument in command[1:] if not argument.startswith('-')][:1]
+    needed = {*ALWAYS, *NEEDS.get(names[0], ()), *NEEDS.get(' '.join(names), ())}
     for argument in command[1:]:
-        path = Path(argument.rpartition("=")[2])
+        path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:
             needed.add(NEEDS_OF_FILES[path.suffix])
         elif is_bag(path):
-            needed.add("bag")
-    if names[0] == "pytest" and no_ros_wheels():
-        needed.discard("ros")  # the tests that need it say that they are left out
-    check_machine("ros" in needed)
+            needed.add('bag')
+    if names[0] == 'pytest' and no_ros_wheels():
+        needed.discard('ros')  # the tests that need it say that they are left out
+    check_machine('ros' in needed)
     return needed
 
 
 def is_bag(path):
     """Whether a path is the folder of a rosbag2 recording."""
     try:
-        return (path / "metadata.yaml").is_file()
+        return (path / 'metadata.yaml').is_file()
     except OSError:  # an argument that is no path at all
         return False
 
 
 def no_ros_wheels():
     """Return why there are no ROS wheels here and the cure; None where there are."""
-    fitting = f"3.10 to 3.{NEWEST_WITH_ROS[1]}"
-    if (sys.platform, platform.machine()) != ("linux", "x86_64"):
+    fitting = f'3.10 to 3.{NEWEST_WITH_ROS[1]}'
+    if (sys.platform, platform.machine()) != ('linux', 'x86_64'):
         return (
-            f"the ROS wheels are for x86_64 Linux, not {platform.machine()} {sys.platform}",
-            "use a ROS installation (README), or `tree-sway show`, which needs no ROS",
+            f'the ROS wheels are for x86_64 Linux, not {platform.machine()} {sys.platform}',
+            'use a ROS installation (README), or `tree-sway show`, which needs no ROS',
         )
     if sys.version_info[:2] > NEWEST_WITH_ROS:
-        return f"the ROS wheels are for Python {fitting}, not {platform.python_version()}", other()
+        return f'the ROS wheels are for Python {fitting}, not {platform.python_version()}', other()
     return None
 
 
 def check_machine(with_ros):
     """Refuse a Python that is too old, or with ROS a machine that there are no wheels for."""
     if sys.version_info[:2] < OLDEST:
-        stop(f"Python {platform.python_version()} is too old, 3.10 is the least", other())
+        stop(f'Python {platform.python_version()} is too old, 3.10 is the least', other())
     if with_ros and no_ros_wheels():
         stop(*no_ros_wheels())
 
 
 def other():
     """Say which other Python to take."""
-    fitting = [shutil.which(f"python3.{minor}") for minor in (12, 13, 11, 14, 10)]
+    fitting = [shutil.which(f'python3.{minor}') for minor in (12, 13, 11, 14, 10)]
     found = next(filter(None, fitting), None)
-    return f"run it with {found or 'one of those, from your system or python.org'}"
+    return f'run it with {found or "one of those, from your system or python.org"}'
 
 
 def without_ros(environment):
     """Take a sourced ROS installation out of the environment, and say so."""
-    if not environment.get("ROS_DISTRO") and not environment.get("AMENT_PREFIX_PATH"):
+    if not environment.get('ROS_DISTRO') and not environment.get('AMENT_PREFIX_PATH'):
         return environment
-    if environment.get("AMENT_PREFIX_PATH") != str(VENV):
-        distro = environment.get("ROS_DISTRO", "ROS")
-        say(f"leaving the sourced {distro} aside, as .venv has its own")
+    if environment.get('AMENT_PREFIX_PATH') != str(VENV):
+        distro = environment.get('ROS_DISTRO', 'ROS')
+        say(f'leaving the sourced {distro} aside, as .venv has its own')
     kept = {name: value for name, value in environment.items() if name not in ROS_NAMES}
-    search = environment.get("PATH", "").split(os.pathsep)
-    kept["PATH"] = os.pathsep.join(p for p in search if not p.startswith("/opt/ros/"))
+    search = environment.get('PATH', '').split(os.pathsep)
+    kept['PATH'] = os.pathsep.join(p for p in search if not p.startswith('/opt/ros/'))
     return kept
 
 
 def wanted():
     """Return what the environment must have been made from, as one line."""
-    files = [ROOT / name for name in ("setup.py", "setup.cfg", "pyproject.toml", "package.xml")]
+    files = [ROOT / name for name in ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml')]
     files += [CONSTRAINTS, HASHES, Path(__file__).resolve()]
     digest = hashlib.sha256()
     for path in files:
         if path.is_file():
-            digest.update(path.name.encode() + b"\0" + path.read_bytes())
-    version = ".".join(platform.python_version_tuple()[:2])
+            digest.update(path.name.encode() + b'\0' + path.read_bytes())
+    version = '.'.join(platform.python_version_tuple()[:2])
     return [version, str(ROOT), digest.hexdigest()]
 
 
 def make_ready(environment, extras):
     """Create the environment and install into it, unless it is there, up to date and enough."""
-    stamp = VENV / "tree_sway_ros.stamp"
-    runs = (VENV / "bin" / "python").exists() and (VENV / "bin" / "pip").exists()
-    made_from = stamp.read_text().split("\n") if runs and stamp.is_file() else [""]
-    there = set(made_from[3].split(",")) if len(made_from) > 3 else set()
+    stamp = VENV / 'tree_sway_ros.stamp'
+    runs = (VENV / 'bin' / 'python').exists() and (VENV / 'bin' / 'pip').exists()
+    made_from = stamp.read_text().split('\n') if runs and stamp.is_file() else ['']
+    there = set(made_from[3].split(',')) if len(made_from) > 3 else set()
     if made_from[:3] == wanted() and there >= extras:
         return
     began = time.monotonic()
     if made_from[0] != wanted()[0]:
         there = set()
-        size = "two minutes and 0.6 GB" if "ros" in extras else "a minute and 0.5 GB"
-        say(f"setting up {VENV}, once: about {size}{' and the tests' * ('test' in extras)}")
+        size = 'two minutes and 0.6 GB' if 'ros' in extras else 'a minute and 0.5 GB'
+        say(f'setting up {VENV}, once: about {size}{" and the tests" * ("test" in extras)}')
         make_venv(environment)
-        pip(environment, "setuptools>=70.1,<81")
+        pip(environment, 'setuptools>=70.1,<81')
     elif made_from[:3] == wanted():
-        say(f"adding to {VENV}, once: {', '.join(sorted(extras - there))}")
+        say(f'adding to {VENV}, once: {", ".join(sorted(extras - there))}')
     else:
-        say(f"bringing {VENV} up to date")
-    if "ros" in there | extras and not ("ros" in there and made_from[:3] == wanted()):
+        say(f'bringing {VENV} up to date')
+    if 'ros' in there | extras and not ('ros' in there and made_from[:3] == wanted()):
         # By their hashes: they are built by one person (doc/licences.md).
-        pip(environment, "--require-hashes", "--no-deps", "-r", str(HASHES))
-    target = f"{ROOT}[{','.join(sorted(there | extras))}]"
-    pip(environment, "-c", str(CONSTRAINTS), "--no-build-isolation", "-e", target)
+        pip(environment, '--require-hashes', '--no-deps', '-r', str(HASHES))
+    target = f'{ROOT}[{",".join(sorted(there | extras))}]'
+    pip(environment, '-c', str(CONSTRAINTS), '--no-build-isolation', '-e', target)
     link_resources()
-    stamp.write_text("\n".join([*wanted(), ",".join(sorted(there | extras))]))
-    say(f"ready after {time.monotonic() - began:.0f} s")
+    stamp.write_text('\n'.join([*wanted(), ','.join(sorted(there | extras))]))
+    say(f'ready after {time.monotonic() - began:.0f} s')
 
 
 def link_resources():
     """Put in place what an editable installation omits: the ament index, share/ and lib/."""
-    index = VENV / "share" / "ament_index" / "resource_index" / "packages"
-    share = VENV / "share" / "tree_sway_ros"
-    executables = VENV / "lib" / "tree_sway_ros"
+    index = VENV / 'share' / 'ament_index' / 'resource_index' / 'packages'
+    share = VENV / 'share' / 'tree_sway_ros'
+    executables = VENV / 'lib' / 'tree_sway_ros'
     for folder in (share, executables):  # what has gone from the checkout goes here too
         shutil.rmtree(folder, ignore_errors=True)
-    links = {index / "tree_sway_ros": ROOT / "resource" / "tree_sway_ros"}
+    links = {index / 'tree_sway_ros': ROOT / 'resource' / 'tree_sway_ros'}
     # File by file: `ros2 launch` looks for its files where os.walk goes, which passes linked
     # folders by.
-    shared = [ROOT / "package.xml", *ROOT.glob("launch/*.py"), *ROOT.glob("config/*")]
+    shared = [ROOT / 'package.xml', *ROOT.glob('launch/*.py'), *ROOT.glob('config/*')]
     links.update({share / path.relative_to(ROOT): path for path in shared})
-    for entry_points in VENV.glob("lib/python*/site-packages/tree_sway_ros-*/entry_points.txt"):
+    for entry_points in VENV.glob('lib/python*/site-packages/tree_sway_ros-*/entry_points.txt'):
         for line in entry_points.read_text().splitlines():
-            if "= tree_sway_ros.nodes." in line:
+            if '= tree_sway_ros.nodes.' in line:
                 name = line.split()[0]
-                links[executables / name] = VENV / "bin" / name
+                links[executables / name] = VENV / 'bin' / name
     for link, target in links.items():
         link.parent.mkdir(parents=True, exist_ok=True)
         if link.is_symlink():
@@ -241,26 +241,26 @@ def make_venv(environment):
         import venv  # noqa: F401
     except ImportError:
         stop(
-            "this Python cannot make virtual environments (ensurepip is missing)",
-            "on Debian or Ubuntu: sudo apt install python3-venv",
+            'this Python cannot make virtual environments (ensurepip is missing)',
+            'on Debian or Ubuntu: sudo apt install python3-venv',
         )
     result = subprocess.run(
-        [sys.executable, "-m", "venv", "--clear", str(VENV)],
+        [sys.executable, '-m', 'venv', '--clear', str(VENV)],
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
     )
     if result.returncode:
-        reason = (result.stdout.strip() or "no reason given").splitlines()[-1]
-        stop(f"cannot create {VENV}: {reason}", "make room or rights there and run this again")
+        reason = (result.stdout.strip() or 'no reason given').splitlines()[-1]
+        stop(f'cannot create {VENV}: {reason}', 'make room or rights there and run this again')
 
 
 def pip(environment, *arguments):
     """Install with pip, one line of progress; its own words go to a log beside the environment."""
-    log = VENV / "setup.log"
-    command = [str(VENV / "bin" / "python"), "-m", "pip", "install", "--progress-bar", "off"]
-    command += ["--disable-pip-version-check", *arguments]
+    log = VENV / 'setup.log'
+    command = [str(VENV / 'bin' / 'python'), '-m', 'pip', 'install', '--progress-bar', 'off']
+    command += ['--disable-pip-version-check', *arguments]
     process = subprocess.Popen(
         command,
         cwd=str(ROOT),
@@ -271,46 +271,46 @@ def pip(environment, *arguments):
     )
     seen = []
     count = 0
-    with log.open("w") as record:
+    with log.open('w') as record:
         for line in process.stdout:
             record.write(line)
             seen.append(line)
             words = line.split()
-            if words[:1] == ["Collecting"]:
+            if words[:1] == ['Collecting']:
                 count += 1
-                progress(f"  {count:3d} packages, now {words[1][:40]}")
-            elif words[:2] == ["Installing", "collected"]:
-                progress(f"  installing {len(words) - 3} packages")
-    progress("")
+                progress(f'  {count:3d} packages, now {words[1][:40]}')
+            elif words[:2] == ['Installing', 'collected']:
+                progress(f'  installing {len(words) - 3} packages')
+    progress('')
     if process.wait():
-        stop(*failure("".join(seen), log))
+        stop(*failure(''.join(seen), log))
 
 
 def failure(words, log):
     """Return what went wrong and the cure, from pip's words."""
-    signs = "NewConnectionError|Name or service|name resolution|ConnectTimeout|ProxyError"
+    signs = 'NewConnectionError|Name or service|name resolution|ConnectTimeout|ProxyError'
     if re.search(signs, words):
-        cure = "connect, or set a proxy, and run again"
-        return "no network: the package index cannot be reached", cure
-    if "No space left" in words:
-        return "the disk is full", f"make about 1 GB of room at {VENV}"
-    errors = [line for line in words.splitlines() if line.startswith("ERROR")]
-    return (errors or ["pip failed"])[0], f"pip's own words stand in {log}"
+        cure = 'connect, or set a proxy, and run again'
+        return 'no network: the package index cannot be reached', cure
+    if 'No space left' in words:
+        return 'the disk is full', f'make about 1 GB of room at {VENV}'
+    errors = [line for line in words.splitlines() if line.startswith('ERROR')]
+    return (errors or ['pip failed'])[0], f"pip's own words stand in {log}"
 
 
 def say(text):
     """Print a line for people; standard output belongs to the command."""
-    print("in_venv: " + text, file=sys.stderr, flush=True)
+    print('in_venv: ' + text, file=sys.stderr, flush=True)
 
 
 def progress(text):
     """Show a line that the next one replaces, where there is a terminal."""
     if sys.stderr.isatty():
-        print("\r\033[K" + text, end="", file=sys.stderr, flush=True)
+        print('\r\033[K' + text, end='', file=sys.stderr, flush=True)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     try:
         main(sys.argv[1:])
     except KeyboardInterrupt:
-        sys.exit("in_venv: interrupted; run it again to go on")
+        sys.exit('in_venv: interrupted; run it again to go on')

@@ -3,26 +3,26 @@
 """Sphinx: the pages of this folder, and the API from the docstrings."""
 
 import os
+from pathlib import Path
 import re
 import sys
-from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
-os.environ["TREE_SWAY_NO_NUMBA"] = "1"  # compiled functions have no docstrings to read
+os.environ['TREE_SWAY_NO_NUMBA'] = '1'  # compiled functions have no docstrings to read
 
-project = "tree_sway_ros"
-author = "Tree Sway maintainers"
-copyright = f"2026 {author}"
-release = re.search(r'__version__ = "(.+)"', (ROOT / project / "__init__.py").read_text())[1]
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-master_doc = "index"
-exclude_patterns = ["build"]
-html_theme = "alabaster"
-html_theme_options = {"description": "Trees that sway in measured wind", "page_width": "1200px"}
+project = 'tree_sway_ros'
+author = 'Tree Sway maintainers'
+copyright = f'2026 {author}'
+release = re.search(r"__version__ = '(.+)'", (ROOT / project / '__init__.py').read_text())[1]
+extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinx.ext.napoleon']
+master_doc = 'index'
+exclude_patterns = ['build']
+html_theme = 'alabaster'
+html_theme_options = {'description': 'Trees that sway in measured wind', 'page_width': '1200px'}
 myst_heading_anchors = 3
-autodoc_default_options = {"members": True, "show-inheritance": True}
-autodoc_typehints = "none"
+autodoc_default_options = {'members': True, 'show-inheritance': True}
+autodoc_typehints = 'none'
 napoleon_google_docstring = False
 napoleon_use_ivar = True
-suppress_warnings = ["myst.xref_missing", "misc.highlighting_failure"]
+suppress_warnings = ['myst.xref_missing', 'misc.highlighting_failure']

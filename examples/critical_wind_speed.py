@@ -23,7 +23,7 @@ RUPTURE = 40e6
 """Modulus of rupture of green wood [Pa]: 30 to 65 MPa in the tables of ForestGALES."""
 
 
-def main(name: str = "goldcrest") -> None:
+def main(name: str = 'goldcrest') -> None:
     """Print the largest strain at each speed, and the critical speed."""
     tree = open_tree(name)
     limit = RUPTURE / tree.species.modulus
@@ -33,12 +33,12 @@ def main(name: str = "goldcrest") -> None:
         wind = simulate_turbulence(speed, rate=RATE, duration=60.0, rng=rng)
         record = simulate(tree, wind, rate=RATE)
         largest.append(np.linalg.norm(record.base_strain, axis=1).max())
-        print(f"{speed:5.1f} m/s   largest strain {1e3 * largest[-1]:6.3f} permille")
+        print(f'{speed:5.1f} m/s   largest strain {1e3 * largest[-1]:6.3f} permille')
     power, at_one = np.polyfit(np.log(SPEEDS), np.log(largest), 1)
     critical = np.exp((np.log(limit) - at_one) / power)
-    print(f"strain grows with the wind to the power {power:.2f}; {1e3 * limit:.1f} permille, where "
-          f"green wood breaks, would be reached at a mean of {critical:.0f} m/s")  # fmt: skip
+    print(f'strain grows with the wind to the power {power:.2f}; {1e3 * limit:.1f} permille: '
+          f'green wood breaks at a mean of {critical:.0f} m/s')  # fmt: skip
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main(*sys.argv[1:])

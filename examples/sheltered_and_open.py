@@ -13,7 +13,7 @@ sheltered tree stands in less wind, and its base carries less, though its top is
 
 import numpy as np
 
-from tree_sway_ros import WindProfile, grow, simulate, simulate_turbulence
+from tree_sway_ros import grow, simulate, simulate_turbulence, WindProfile
 
 HEIGHT, SPEED, RATE = 12.0, 9.0, 30.0
 ATTENUATION = 2.0
@@ -25,24 +25,24 @@ def profiles() -> dict[str, WindProfile]:
     z = np.linspace(0.3, 1.0, 50)
     exponent = float(np.log(z) @ (ATTENUATION * (z - 1.0)) / (np.log(z) @ np.log(z)))
     return {
-        "open": WindProfile("log", HEIGHT, roughness=0.03),
-        "sheltered": WindProfile("power", HEIGHT, exponent=exponent),
+        'open': WindProfile('log', HEIGHT, roughness=0.03),
+        'sheltered': WindProfile('power', HEIGHT, exponent=exponent),
     }
 
 
 def main() -> None:
     """Print mean and largest tip displacement and base moment of the two."""
-    tree = grow("pine", HEIGHT, rng=np.random.default_rng(4))
+    tree = grow('pine', HEIGHT, rng=np.random.default_rng(4))
     rng = np.random.default_rng(5)
     wind = simulate_turbulence(SPEED, rate=RATE, duration=60.0, rng=rng)
-    print(f"a pine of {HEIGHT:g} m, {SPEED:g} m/s at its top")
+    print(f'a pine of {HEIGHT:g} m, {SPEED:g} m/s at its top')
     for name, profile in profiles().items():
         record = simulate(tree, wind, rate=RATE, profile=profile)
         tip = np.linalg.norm(record.tips[:, 0], axis=1)
         moment = np.linalg.norm(record.base_moment, axis=1)
-        print(f"{name:10} tip {tip.mean():.3f} m (largest {tip.max():.3f}), base moment "
-              f"{moment.mean() / 1e3:.2f} kN m (largest {moment.max() / 1e3:.2f})")  # fmt: skip
+        print(f'{name:10} tip {tip.mean():.3f} m (largest {tip.max():.3f}), base moment '
+              f'{moment.mean() / 1e3:.2f} kN m (largest {moment.max() / 1e3:.2f})')  # fmt: skip
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -18,43 +18,43 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-PACKAGE = "tree_sway_ros"
-WIND = "wind/filtered"
-CHAIN = f"wind {WIND}"
+PACKAGE = 'tree_sway_ros'
+WIND = 'wind/filtered'
+CHAIN = f'wind {WIND}'
 SOURCES = {
-    "simulated": ["anemometer"],
-    "player": ["player"],
-    "sensor": ["sensor"],
-    "live": [],
-    "elsewhere": [],
+    'simulated': ['anemometer'],
+    'player': ['player'],
+    'sensor': ['sensor'],
+    'live': [],
+    'elsewhere': [],
 }
 ARGUMENTS = (
-    ("tree", "", "The solver opens this built-in tree, or file; as configured if empty."),
-    ("source", "simulated", "The wind comes from here.", [*SOURCES]),
-    ("file", "", "The player plays this wind record, for source:=player."),
-    ("topic", "", "The wind is on this topic of a bag; as configured if empty."),
-    ("input_convention", "", "The record's vectors blow 'to' or come 'from'; as its format says."),
-    ("sensor_yaw", "", "The x axis of the record's sensor is turned so far from east [rad]."),
-    ("reader_options", "", "The reader of the file is told more: 'rate=20 sentence=MWV'."),
-    ("start", "", "So much of the record is skipped [s]."),
-    ("speed", "", "The record is played so many times as fast; as configured if empty."),
-    ("loop", "", "The record is played over and over; as configured if empty."),
-    ("address", "", "The instrument of source:=sensor is here, such as tcp://host:port."),
-    ("wind_topic", "wind", "The wind of source:=live is on this topic."),
-    ("rate", "", "The solver publishes so many frames per second; as configured if empty."),
-    ("x", "", "The tree stands so far to the east in its frame [m]; as configured if empty."),
-    ("y", "", "The tree stands so far to the north [m]."),
-    ("z", "", "The tree stands so high [m]."),
-    ("yaw", "", "The tree is turned so far counterclockwise, seen from above [rad]."),
-    ("frame_id", "", "All that is published is in this frame; as configured if empty."),
-    ("namespace", "", "All nodes and topics are in this namespace: one per tree."),
-    ("params_file", "", "The values of this ROS parameter file override those of config/."),
-    ("use_sim_time", "", "Nodes follow /clock, which the player of source:=player publishes."),
-    ("lifecycle", "", "Nodes wait for a lifecycle manager; as configured if empty."),
-    ("shards", "1", "The trees of a stand are dealt over so many solvers, in 'shard<n>'."),
-    ("here", "", "These shards run on this host, such as 0,1; all of them if empty."),
-    ("page", "false", "The viewer serves a page for the browser."),
-    ("rviz", "false", "RViz is started."),
+    ('tree', '', 'The solver opens this built-in tree, or file; as configured if empty.'),
+    ('source', 'simulated', 'The wind comes from here.', [*SOURCES]),
+    ('file', '', 'The player plays this wind record, for source:=player.'),
+    ('topic', '', 'The wind is on this topic of a bag; as configured if empty.'),
+    ('input_convention', '', "The record's vectors blow 'to' or come 'from'; as its format says."),
+    ('sensor_yaw', '', "The x axis of the record's sensor is turned so far from east [rad]."),
+    ('reader_options', '', "The reader of the file is told more: 'rate=20 sentence=MWV'."),
+    ('start', '', 'So much of the record is skipped [s].'),
+    ('speed', '', 'The record is played so many times as fast; as configured if empty.'),
+    ('loop', '', 'The record is played over and over; as configured if empty.'),
+    ('address', '', 'The instrument of source:=sensor is here, such as tcp://host:port.'),
+    ('wind_topic', 'wind', 'The wind of source:=live is on this topic.'),
+    ('rate', '', 'The solver publishes so many frames per second; as configured if empty.'),
+    ('x', '', 'The tree stands so far to the east in its frame [m]; as configured if empty.'),
+    ('y', '', 'The tree stands so far to the north [m].'),
+    ('z', '', 'The tree stands so high [m].'),
+    ('yaw', '', 'The tree is turned so far counterclockwise, seen from above [rad].'),
+    ('frame_id', '', 'All that is published is in this frame; as configured if empty.'),
+    ('namespace', '', 'All nodes and topics are in this namespace: one per tree.'),
+    ('params_file', '', 'The values of this ROS parameter file override those of config/.'),
+    ('use_sim_time', '', 'Nodes follow /clock, which the player of source:=player publishes.'),
+    ('lifecycle', '', 'Nodes wait for a lifecycle manager; as configured if empty.'),
+    ('shards', '1', "The trees of a stand are dealt over so many solvers, in 'shard<n>'."),
+    ('here', '', 'These shards run on this host, such as 0,1; all of them if empty.'),
+    ('page', 'false', 'The viewer serves a page for the browser.'),
+    ('rviz', 'false', 'RViz is started.'),
 )
 
 
@@ -72,28 +72,28 @@ def generate_launch_description():
 def start_nodes(context):
     """Make the nodes that the arguments ask for."""
     given = {name: LaunchConfiguration(name).perform(context) for name, *_ in ARGUMENTS}
-    config = os.path.join(get_package_share_directory(PACKAGE), "config")
-    source = SOURCES[given["source"]]
-    viewer = ["viewer"] if is_true("page", given["page"]) else []
-    wind = ["wind"] if given["source"] != "elsewhere" else []
+    config = os.path.join(get_package_share_directory(PACKAGE), 'config')
+    source = SOURCES[given['source']]
+    viewer = ['viewer'] if is_true('page', given['page']) else []
+    wind = ['wind'] if given['source'] != 'elsewhere' else []
     nodes = [make_node(name, given, config) for name in (*source, *wind)]
-    if given["shards"] in ("", "1"):
-        nodes += [make_node(name, given, config) for name in ("solver", *viewer)]
+    if given['shards'] in ('', '1'):
+        nodes += [make_node(name, given, config) for name in ('solver', *viewer)]
     elif viewer:
         raise ValueError("launch argument 'page': start a viewer in the namespace of each shard")
     else:
-        around = context.launch_configurations.get("ros_namespace", "")
+        around = context.launch_configurations.get('ros_namespace', '')
         nodes += [make_shard(shard, given, config, around) for shard in shards_here(given)]
-    if is_true("rviz", given["rviz"]):
+    if is_true('rviz', given['rviz']):
         sim_time = {}
-        if given["use_sim_time"]:
-            sim_time["use_sim_time"] = is_true("use_sim_time", given["use_sim_time"])
+        if given['use_sim_time']:
+            sim_time['use_sim_time'] = is_true('use_sim_time', given['use_sim_time'])
         nodes.append(
             Node(
-                package="rviz2",
-                executable="rviz2",
-                namespace=given["namespace"],
-                arguments=["-d", os.path.join(config, "tree_sway.rviz")],
+                package='rviz2',
+                executable='rviz2',
+                namespace=given['namespace'],
+                arguments=['-d', os.path.join(config, 'tree_sway.rviz')],
                 parameters=[sim_time],
             )
         )
@@ -102,9 +102,9 @@ def start_nodes(context):
 
 def is_true(name, text):
     """Return whether an argument says yes: True, true and 1 do; refuse what is neither."""
-    if text.lower() in ("true", "1"):
+    if text.lower() in ('true', '1'):
         return True
-    if text.lower() in ("", "false", "0"):
+    if text.lower() in ('', 'false', '0'):
         return False
     raise ValueError(f"launch argument '{name}': '{text}' is neither true nor false")
 
@@ -112,36 +112,36 @@ def is_true(name, text):
 def overrides_of(name, given):
     """Values of a node's parameters that arguments ask for; nothing where nothing was given."""
     overrides = {}
-    if given["frame_id"] and name != "viewer":
-        overrides["frame_id"] = given["frame_id"]
-    if given["use_sim_time"]:
-        with_clock = is_true("use_sim_time", given["use_sim_time"])
-        overrides["use_sim_time"] = with_clock and name != "player"
-        if name == "player":
-            overrides["publish_clock"] = with_clock
-    if given["lifecycle"] and name != "viewer":
-        overrides["lifecycle"] = is_true("lifecycle", given["lifecycle"])
-    if name == "sensor" and given["address"]:
-        overrides["address"] = given["address"]
-    if name == "player":
-        names = ("file", "topic", "input_convention", "reader_options")
+    if given['frame_id'] and name != 'viewer':
+        overrides['frame_id'] = given['frame_id']
+    if given['use_sim_time']:
+        with_clock = is_true('use_sim_time', given['use_sim_time'])
+        overrides['use_sim_time'] = with_clock and name != 'player'
+        if name == 'player':
+            overrides['publish_clock'] = with_clock
+    if given['lifecycle'] and name != 'viewer':
+        overrides['lifecycle'] = is_true('lifecycle', given['lifecycle'])
+    if name == 'sensor' and given['address']:
+        overrides['address'] = given['address']
+    if name == 'player':
+        names = ('file', 'topic', 'input_convention', 'reader_options')
         overrides.update({each: given[each] for each in names if given[each]})
-        numbers = {"yaw": "sensor_yaw", "start": "start", "speed": "speed"}
+        numbers = {'yaw': 'sensor_yaw', 'start': 'start', 'speed': 'speed'}
         overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
-        if given["loop"]:
-            overrides["loop"] = is_true("loop", given["loop"])
-    if name == "solver":
-        if given["tree"]:
-            overrides["tree"] = given["tree"]
-        numbers = ("rate", "x", "y", "z", "yaw")
+        if given['loop']:
+            overrides['loop'] = is_true('loop', given['loop'])
+    if name == 'solver':
+        if given['tree']:
+            overrides['tree'] = given['tree']
+        numbers = ('rate', 'x', 'y', 'z', 'yaw')
         overrides.update({each: float(given[each]) for each in numbers if given[each]})
     return overrides
 
 
 def shards_here(given):
     """Return the numbers of the shards that run on this host."""
-    shards = int(given["shards"])
-    here = [int(each) for each in given["here"].split(",")] if given["here"] else range(shards)
+    shards = int(given['shards'])
+    here = [int(each) for each in given['here'].split(',')] if given['here'] else range(shards)
     if shards < 1 or not all(0 <= each < shards for each in here):
         raise ValueError(f"launch argument 'here': '{given['here']}' of {shards} shards")
     return list(here)
@@ -149,12 +149,12 @@ def shards_here(given):
 
 def make_shard(shard, given, config, around):
     """Make the solver of one shard: it hears the one wind of all, and comes back if it ends."""
-    wind = "/" + "/".join(filter(None, (around.strip("/"), given["namespace"].strip("/"), WIND)))
+    wind = '/' + '/'.join(filter(None, (around.strip('/'), given['namespace'].strip('/'), WIND)))
     return make_node(
-        "solver",
-        {**given, "namespace": "/".join(filter(None, (given["namespace"], f"shard{shard}")))},
+        'solver',
+        {**given, 'namespace': '/'.join(filter(None, (given['namespace'], f'shard{shard}')))},
         config,
-        more={"shard": shard, "shards": int(given["shards"])},
+        more={'shard': shard, 'shards': int(given['shards'])},
         remappings=[(WIND, wind)],
         respawn=True,
         respawn_delay=0.2,
@@ -163,21 +163,21 @@ def make_shard(shard, given, config, around):
 
 def make_node(name, given, config, more=None, **options):
     """Make one node: its file in config/, then the user's file, then the arguments."""
-    files = [os.path.join(config, f"{name}.yaml")]
-    if given["params_file"]:
-        files.append(given["params_file"])
+    files = [os.path.join(config, f'{name}.yaml')]
+    if given['params_file']:
+        files.append(given['params_file'])
     # The player begins when the whole chain listens; a file of the user's may say otherwise.
-    with_clock = " /clock:2" if given["use_sim_time"] in ("true", "True", "1") else ""
-    chain = [{"wait_for": CHAIN + with_clock}] if name == "player" else []
-    if name == "solver" and given["source"] == "player" and with_clock:
-        chain = [{"exact_replay": True}]
-    is_live = name == "wind" and given["source"] == "live"
+    with_clock = ' /clock:2' if given['use_sim_time'] in ('true', 'True', '1') else ''
+    chain = [{'wait_for': CHAIN + with_clock}] if name == 'player' else []
+    if name == 'solver' and given['source'] == 'player' and with_clock:
+        chain = [{'exact_replay': True}]
+    is_live = name == 'wind' and given['source'] == 'live'
     return Node(
         package=PACKAGE,
         executable=name,
         name=name,
-        namespace=given["namespace"],
+        namespace=given['namespace'],
         parameters=[*chain, *files, overrides_of(name, given) | (more or {})],
-        **{"remappings": [("wind", given["wind_topic"])] if is_live else []} | options,
-        output="screen",
+        **{'remappings': [('wind', given['wind_topic'])] if is_live else []} | options,
+        output='screen',
     )

@@ -8,27 +8,27 @@ derivatives against differences.
 
 import contextlib
 import os
+from pathlib import Path
 import random
 import sys
 import tempfile
-from pathlib import Path
 
 # Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the
 # test beside.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
+from hypothesis import settings
 import numpy as np
 import pytest
-from hypothesis import settings
 
 from tree_sway_ros.core.kernel import WHY_PLAIN
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import MissingDependencyError
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
-settings.register_profile("repeatable", derandomize=True, deadline=None)
-settings.register_profile("explore", deadline=None, max_examples=1000)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+settings.register_profile('repeatable', derandomize=True, deadline=None)
+settings.register_profile('explore', deadline=None, max_examples=1000)
+settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'repeatable'))
 
 
 LAST_DOMAIN = 101
@@ -43,26 +43,26 @@ def _claimed_domain():
     It is locked until the end of the block, or of the process whatever it dies of.
 
     """
-    if not sys.platform.startswith("linux"):
+    if not sys.platform.startswith('linux'):
         yield random.randint(1, LAST_DOMAIN)
         return
     import fcntl
 
-    folder = Path(tempfile.gettempdir()) / "tree_sway_ros_test_domains"
+    folder = Path(tempfile.gettempdir()) / 'tree_sway_ros_test_domains'
     folder.mkdir(mode=0o777, exist_ok=True)
     # Anywhere first: a domain that was left a moment ago may still hold what it last sent.
     for domain in random.sample(range(1, LAST_DOMAIN + 1), LAST_DOMAIN):
-        with (folder / str(domain)).open("a") as place:
+        with (folder / str(domain)).open('a') as place:
             try:
                 fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError:
                 continue
             yield domain
             return
-    pytest.fail("all ROS domains are taken by other tests on this machine")
+    pytest.fail('all ROS domains are taken by other tests on this machine')
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope='session')
 def claimed_domain():
     """``with claimed_domain() as domain:`` for fixtures that live longer than a test."""
     return _claimed_domain
@@ -71,7 +71,7 @@ def claimed_domain():
 @pytest.fixture
 def domain():
     """A ROS domain for one test alone."""
-    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+    pytest.importorskip('rclpy', reason='ROS 2 is not installed')
     with _claimed_domain() as claimed:
         yield claimed
 
@@ -79,15 +79,15 @@ def domain():
 @pytest.fixture
 def ros_environment(domain):
     """Environment of a process in a ROS domain for one test alone, on this machine alone."""
-    own = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    own = {'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
     return os.environ | own
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item):
     """Skip what calls kernels where none can be compiled."""
-    if WHY_PLAIN and item.get_closest_marker("compiled"):
-        pytest.skip(f"calls compiled kernels, and {WHY_PLAIN}")
+    if WHY_PLAIN and item.get_closest_marker('compiled'):
+        pytest.skip(f'calls compiled kernels, and {WHY_PLAIN}')
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -95,14 +95,14 @@ def pytest_runtest_makereport(item, call):
     """Skip what turns out to need them: a model that is refused without."""
     if not (WHY_PLAIN and call.excinfo and call.excinfo.errisinstance(MissingDependencyError)):
         return
-    if "needs compiled kernels" in str(call.excinfo.value):
+    if 'needs compiled kernels' in str(call.excinfo.value):
         try:
             pytest.skip(str(call.excinfo.value))
         except pytest.skip.Exception:
             call.excinfo = pytest.ExceptionInfo.from_current()
 
 
-def _stem(length=2.0, base=0.02, tip=None, cuts=6, direction=(0.0, 0.0, 1.0), species="broadleaf"):
+def _stem(length=2.0, base=0.02, tip=None, cuts=6, direction=(0.0, 0.0, 1.0), species='broadleaf'):
     """One straight branch of even taper, cut in equal segments."""
     along = np.asarray(direction) / np.linalg.norm(direction)
     nodes = np.linspace(0.0, length, cuts + 1)[:, None] * along
@@ -207,8 +207,8 @@ def _differences(f, at, h=1e-3):
 
 
 def _shared(function):
-    name = function.__name__.lstrip("_")
-    return pytest.fixture(scope="session", name=name)(lambda: function)
+    name = function.__name__.lstrip('_')
+    return pytest.fixture(scope='session', name=name)(lambda: function)
 
 
 stem = _shared(_stem)
@@ -218,6 +218,6 @@ random_tree = _shared(_random_tree)
 differences = _shared(_differences)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope='session')
 def sketch():
     return _Sketch

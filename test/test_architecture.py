@@ -8,48 +8,58 @@ The contract of the code's layout: layers, sizes, names, docstrings; read from t
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 import io
+from pathlib import Path
 import re
 import sys
 import tokenize
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = ROOT / "tree_sway_ros"
-FILES = sorted(PACKAGE.rglob("*.py"))
-TEST_FILES = sorted((ROOT / "test").rglob("*.py"))
+PACKAGE = ROOT / 'tree_sway_ros'
+FILES = sorted(PACKAGE.rglob('*.py'))
+TEST_FILES = sorted((ROOT / 'test').rglob('*.py'))
 
 #: Layer of each top room; a room imports only from lower layers and from itself.
 LAYERS = {
-    "errors": 0, "kernel_cache": 0, "licence_header": 0, "core": 1, "files": 2, "ros": 3,
-    "page": 3, "relay": 3, "view": 3, "nodes": 4, "tools": 4, "study": 5,
+    'errors': 0, 'kernel_cache': 0, 'licence_header': 0, 'core': 1, 'files': 2, 'ros': 3,
+    'page': 3, 'relay': 3, 'view': 3, 'nodes': 4, 'tools': 4, 'study': 5,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
-    "arrays": 0, "kernel": 1, "checks": 1, "tree": 1,
-    "rotation": 2, "wind": 2, "branch": 2, "oscillators": 2,
-    "growth": 3, "leaves": 3, "reduction": 3,
-    "motion": 4,
-    "reference": 5, "state": 5,
-    "simulator": 6,
-    "fidelity": 7, "identification": 7,
-    "scene": 8,
+    'arrays': 0, 'kernel': 1, 'checks': 1, 'tree': 1,
+    'rotation': 2, 'wind': 2, 'branch': 2, 'oscillators': 2,
+    'growth': 3, 'leaves': 3, 'reduction': 3,
+    'motion': 4,
+    'reference': 5, 'state': 5,
+    'simulator': 6,
+    'fidelity': 7, 'identification': 7,
+    'scene': 8,
 }  # fmt: skip
 #: Most files in one folder.
 MAX_FILES = 20
-CORE_LIBRARIES = {"numpy", "scipy", "numba", "tree_sway_ros"}
+CORE_LIBRARIES = {'numpy', 'scipy', 'numba', 'tree_sway_ros'}
 NOT_IN_CORE = {
-    *("asyncio", "datetime", "glob", "io", "logging", "multiprocessing", "os", "pathlib", "random"),
-    *("shutil", "socket", "subprocess", "sys", "tempfile", "threading", "time", "urllib"),
+    *(
+        'asyncio',
+        'datetime',
+        'glob',
+        'io',
+        'logging',
+        'multiprocessing',
+        'os',
+        'pathlib',
+        'random',
+    ),
+    *('shutil', 'socket', 'subprocess', 'sys', 'tempfile', 'threading', 'time', 'urllib'),
 }
 #: The same for calls, as numpy's global generator and files need no import.
 NOT_CALLED_IN_CORE = re.compile(
-    r"\bnp\.random\.(?!Generator|default_rng\b)|\bdefault_rng\(\s*\)|\bopen\(|\bprint\("
+    r'\bnp\.random\.(?!Generator|default_rng\b)|\bdefault_rng\(\s*\)|\bopen\(|\bprint\('
 )
-BANNED_NAMES = {"utils", "util", "helpers", "helper", "common", "manager", "misc", "tools_common"}
+BANNED_NAMES = {'utils', 'util', 'helpers', 'helper', 'common', 'manager', 'misc', 'tools_common'}
 #: Tokens that make no line one of code.
 NO_CODE = {
     *(tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT),
@@ -59,25 +69,25 @@ NO_CODE = {
 
 def name_of(path: Path) -> str:
     """Dotted name of a module."""
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+    parts = path.relative_to(ROOT).with_suffix('').parts
+    return '.'.join(parts[:-1] if parts[-1] == '__init__' else parts)
 
 
 def room_of(module: str) -> str:
     """Room of a module of ours: the name below the package; empty for the package's root."""
-    return module.split(".")[1] if "." in module else ""
+    return module.split('.')[1] if '.' in module else ''
 
 
 def imports_of(path: Path) -> Iterator[tuple[int, str, ast.AST]]:
     """Each imported module with its line; names that are modules themselves are written out."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield node.lineno, alias.name, node
         elif isinstance(node, ast.ImportFrom) and not node.level:
             assert node.module is not None
             for alias in node.names:
-                inner = f"{node.module}.{alias.name}"
+                inner = f'{node.module}.{alias.name}'
                 yield node.lineno, inner if inner in MODULES else node.module, node
 
 
@@ -86,7 +96,7 @@ MODULES = {name_of(path) for path in FILES}
 
 def lines_of(paths: list[Path]) -> int:
     """Lines of all the files together."""
-    return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in paths)
+    return sum(len(path.read_text(encoding='utf-8').splitlines()) for path in paths)
 
 
 def code_lines(source: str) -> int:
@@ -107,25 +117,25 @@ def code_lines(source: str) -> int:
 
 def code_lines_under(*folders: Path) -> int:
     """Lines of code of all Python files in and below these folders."""
-    paths = [path for folder in folders for path in sorted(folder.rglob("*.py"))]
-    return sum(code_lines(path.read_text(encoding="utf-8")) for path in paths)
+    paths = [path for folder in folders for path in sorted(folder.rglob('*.py'))]
+    return sum(code_lines(path.read_text(encoding='utf-8')) for path in paths)
 
 
 def test_every_room_has_a_layer() -> None:
-    rooms = {room_of(name_of(path)) for path in FILES} - {""}
+    rooms = {room_of(name_of(path)) for path in FILES} - {''}
     assert rooms <= set(LAYERS)
 
 
 def test_imports_are_absolute_and_never_from_the_package_root() -> None:
     wrong = []
     for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
             if isinstance(node, ast.ImportFrom) and node.level:
-                wrong.append(f"{path}:{node.lineno} is relative")
+                wrong.append(f'{path}:{node.lineno} is relative')
         for line, module, _ in imports_of(path):
-            if module == "tree_sway_ros":
-                wrong.append(f"{path}:{line} imports from the package root")
-    assert not wrong, "\n".join(wrong)
+            if module == 'tree_sway_ros':
+                wrong.append(f'{path}:{line} imports from the package root')
+    assert not wrong, '\n'.join(wrong)
 
 
 def test_imports_point_down() -> None:
@@ -133,32 +143,32 @@ def test_imports_point_down() -> None:
     for path in FILES:
         room = room_of(name_of(path))
         for line, module, _ in imports_of(path):
-            if module.split(".")[0] != "tree_sway_ros" or not room:
+            if module.split('.')[0] != 'tree_sway_ros' or not room:
                 continue
             other = room_of(module)
             if other != room and LAYERS[other] >= LAYERS[room]:
-                wrong.append(f"{path}:{line}: {room} imports {module}")
-    assert not wrong, "\n".join(wrong)
+                wrong.append(f'{path}:{line}: {room} imports {module}')
+    assert not wrong, '\n'.join(wrong)
 
 
 def test_core_knows_no_ros_no_files_no_clock() -> None:
     wrong = []
-    for path in (PACKAGE / "core").rglob("*.py"):
+    for path in (PACKAGE / 'core').rglob('*.py'):
         for line, module, _ in imports_of(path):
-            top = module.split(".")[0]
+            top = module.split('.')[0]
             of_standard = top in sys.stdlib_module_names and top not in NOT_IN_CORE
             if top not in CORE_LIBRARIES and not of_standard:
-                wrong.append(f"{path}:{line} imports {module}")
-        for number, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-            if NOT_CALLED_IN_CORE.search(text.split("#")[0]):
-                wrong.append(f"{path}:{number} has {text.strip()}")
-    assert not wrong, "\n".join(wrong)
+                wrong.append(f'{path}:{line} imports {module}')
+        for number, text in enumerate(path.read_text(encoding='utf-8').splitlines(), 1):
+            if NOT_CALLED_IN_CORE.search(text.split('#')[0]):
+                wrong.append(f'{path}:{number} has {text.strip()}')
+    assert not wrong, '\n'.join(wrong)
 
 
-@pytest.mark.parametrize("text", ["np.random.rand(3)", "default_rng()", "open('x')", "print(1)"])
+@pytest.mark.parametrize('text', ['np.random.rand(3)', 'default_rng()', "open('x')", 'print(1)'])
 def test_the_core_check_sees_what_it_looks_for(text: str) -> None:
     assert NOT_CALLED_IN_CORE.search(text)
-    assert not NOT_CALLED_IN_CORE.search("np.random.Generator, rng.normal(), fingerprint (1)")
+    assert not NOT_CALLED_IN_CORE.search('np.random.Generator, rng.normal(), fingerprint (1)')
 
 
 def test_no_import_cycle() -> None:
@@ -166,7 +176,7 @@ def test_no_import_cycle() -> None:
     done: set[str] = set()
 
     def visit(module: str, trail: tuple[str, ...]) -> None:
-        assert module not in trail, " -> ".join((*trail[trail.index(module) :], module))
+        assert module not in trail, ' -> '.join((*trail[trail.index(module) :], module))
         if module not in done:
             for other in sorted(graph[module]):
                 visit(other, (*trail, module))
@@ -178,35 +188,35 @@ def test_no_import_cycle() -> None:
 
 def test_rooms_of_the_core_have_an_order() -> None:
     wrong = []
-    for path in sorted((PACKAGE / "core").rglob("*.py")):
-        parts = name_of(path).split(".")
+    for path in sorted((PACKAGE / 'core').rglob('*.py')):
+        parts = name_of(path).split('.')
         if len(parts) < 3:
             continue
         own = parts[2]
-        assert own in STOREYS, f"{own} has no storey"
+        assert own in STOREYS, f'{own} has no storey'
         for line, module, _ in imports_of(path):
-            if not module.startswith("tree_sway_ros.core."):
+            if not module.startswith('tree_sway_ros.core.'):
                 continue
-            other = module.split(".")[2]
+            other = module.split('.')[2]
             if other != own and STOREYS[other] >= STOREYS[own]:
-                wrong.append(f"{path}:{line}: {own} imports {module}")
-    assert not wrong, "\n".join(wrong)
+                wrong.append(f'{path}:{line}: {own} imports {module}')
+    assert not wrong, '\n'.join(wrong)
 
 
 def test_what_runs_imports_no_study() -> None:
     wrong = [
-        f"{path}:{line}"
+        f'{path}:{line}'
         for path in FILES
-        if room_of(name_of(path)) != "study"
+        if room_of(name_of(path)) != 'study'
         for line, module, _ in imports_of(path)
-        if module.startswith("tree_sway_ros.study")
+        if module.startswith('tree_sway_ros.study')
     ]
-    assert not wrong, "\n".join(wrong)
+    assert not wrong, '\n'.join(wrong)
 
 
 def test_no_folder_is_an_alphabet() -> None:
     folders = {path.parent for path in FILES}
-    counts = {f: sum(p.stem != "__init__" for p in f.glob("*.py")) for f in folders}
+    counts = {f: sum(p.stem != '__init__' for p in f.glob('*.py')) for f in folders}
     assert not {str(f): n for f, n in counts.items() if n > MAX_FILES}
 
 
@@ -214,18 +224,18 @@ def test_every_room_says_what_lives_in_it() -> None:
     mute = [
         str(path)
         for path in FILES
-        if path.stem == "__init__"
+        if path.stem == '__init__'
         and path.parent != PACKAGE
-        and len((ast.get_docstring(ast.parse(path.read_text("utf-8"))) or "").splitlines()) < 2
+        and len((ast.get_docstring(ast.parse(path.read_text('utf-8'))) or '').splitlines()) < 2
     ]
-    assert not mute, "\n".join(mute)
+    assert not mute, '\n'.join(mute)
 
 
 def test_names_say_what_is_inside() -> None:
     stems = {path.stem for path in [*FILES, *(p.parent for p in FILES)]}
     assert not stems & BANNED_NAMES
-    of_standard = (stems & set(sys.stdlib_module_names)) - {"__init__", "calibrate"}
-    assert not of_standard, f"named like a module of the standard library: {of_standard}"
+    of_standard = (stems & set(sys.stdlib_module_names)) - {'__init__', 'calibrate'}
+    assert not of_standard, f'named like a module of the standard library: {of_standard}'
 
 
 def test_the_core_is_tested_as_much_as_it_is_written() -> None:
@@ -236,9 +246,9 @@ def test_the_core_is_tested_as_much_as_it_is_written() -> None:
     core is tree_sway_ros/core; its tests are test/core and test/golden (other solvers).
 
     """
-    source = code_lines_under(PACKAGE / "core")
-    tests = code_lines_under(*(ROOT / "test" / room for room in ("core", "golden")))
-    assert tests >= 0.7 * source, f"{tests} lines of tests for {source} lines of core"
+    source = code_lines_under(PACKAGE / 'core')
+    tests = code_lines_under(*(ROOT / 'test' / room for room in ('core', 'golden')))
+    assert tests >= 0.7 * source, f'{tests} lines of tests for {source} lines of core'
 
 
 def test_only_code_is_counted() -> None:
@@ -262,40 +272,42 @@ def f(x):
 def public_definitions(tree: ast.Module) -> Iterator[tuple[str, ast.AST]]:
     """Public classes and functions of a module, and the public methods of the classes."""
     for node in tree.body:
-        if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith('_'):
             continue
         yield node.name, node
         if isinstance(node, ast.ClassDef):
             for inner in node.body:
-                if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
-                    yield f"{node.name}.{inner.name}", inner
+                if isinstance(inner, ast.FunctionDef) and not inner.name.startswith('_'):
+                    yield f'{node.name}.{inner.name}', inner
 
 
 def docstring_faults(source: str) -> Iterator[tuple[int, str]]:
     """Public definitions without a docstring, or with one of another form than ours."""
     tree = ast.parse(source)
     if not ast.get_docstring(tree):
-        yield 1, "the module has no docstring"
+        yield 1, 'the module has no docstring'
     for name, node in public_definitions(tree):
         assert isinstance(node, ast.FunctionDef | ast.ClassDef)
         raw = ast.get_docstring(node, clean=False)
         if raw is None:
-            yield node.lineno, f"{name} has no docstring"
-        elif "\n" in raw.strip():
-            if raw.split("\n")[0].strip():
-                yield node.lineno, f"{name}: the summary stands on the second line"
-            elif re.search(r"^ *---+$", raw, re.MULTILINE) and not raw.rstrip(" ").endswith("\n\n"):
-                yield node.lineno, f"{name}: a blank line ends the last section"
-            for section in re.findall(r"^ *(Args|Arguments|Params):\s*$", raw, re.MULTILINE):
+            yield node.lineno, f'{name} has no docstring'
+        elif '\n' in raw.strip():
+            if raw.split('\n')[0].strip():
+                yield node.lineno, f'{name}: the summary stands on the second line'
+            elif re.search(r'^ *---+$', raw, re.MULTILINE) and not raw.rstrip(' ').endswith(
+                '\n\n'
+            ):
+                yield node.lineno, f'{name}: a blank line ends the last section'
+            for section in re.findall(r'^ *(Args|Arguments|Params):\s*$', raw, re.MULTILINE):
                 yield node.lineno, f"{name}: '{section}:' is not NumPy style"
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+@pytest.mark.parametrize('path', FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_docstrings(path: Path) -> None:
     faults = [
-        f"{path}:{line}: {fault}" for line, fault in docstring_faults(path.read_text("utf-8"))
+        f'{path}:{line}: {fault}' for line, fault in docstring_faults(path.read_text('utf-8'))
     ]
-    assert not faults, "\n".join(faults)
+    assert not faults, '\n'.join(faults)
 
 
 def test_the_docstring_check_sees_what_it_looks_for() -> None:
@@ -330,6 +342,6 @@ def first_line():
 
     """
 '''
-    assert [fault.split(" ")[0].rstrip(":") for _, fault in docstring_faults(source)] == [
-        *("bare", "google", "tight", "first_line")
+    assert [fault.split(' ')[0].rstrip(':') for _, fault in docstring_faults(source)] == [
+        *('bare', 'google', 'tight', 'first_line')
     ]

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 import re
 import subprocess
-from pathlib import Path
 
 import pytest
 import yaml
@@ -17,55 +17,55 @@ import tree_sway_ros
 
 ROOT = Path(__file__).resolve().parent.parent
 YAML = [
-    *(".pre-commit-config.yaml", "CITATION.cff", ".github/workflows/checks.yml"),
-    *(".github/ISSUE_TEMPLATE/fault.yml", ".github/ISSUE_TEMPLATE/wish.yml"),
+    *('.pre-commit-config.yaml', 'CITATION.cff', '.github/workflows/checks.yml'),
+    *('.github/ISSUE_TEMPLATE/fault.yml', '.github/ISSUE_TEMPLATE/wish.yml'),
 ]
 
 
-@pytest.mark.parametrize("name", YAML)
+@pytest.mark.parametrize('name', YAML)
 def test_it_is_yaml(name: str) -> None:
-    assert isinstance(yaml.safe_load((ROOT / name).read_text(encoding="utf-8")), dict)
+    assert isinstance(yaml.safe_load((ROOT / name).read_text(encoding='utf-8')), dict)
 
 
 def test_the_citation_names_this_version() -> None:
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    assert citation["version"] == tree_sway_ros.__version__
-    assert citation["license"] == "Apache-2.0"
-    assert {name["family-names"] for name in citation["references"][0]["authors"]} == {
-        *("Kanda", "Ohya"),
+    citation = yaml.safe_load((ROOT / 'CITATION.cff').read_text(encoding='utf-8'))
+    assert citation['version'] == tree_sway_ros.__version__
+    assert citation['license'] == 'Apache-2.0'
+    assert {name['family-names'] for name in citation['references'][0]['authors']} == {
+        *('Kanda', 'Ohya'),
     }
 
 
 def test_the_container_for_editors_is_described() -> None:
-    described = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
-    assert ".ci/in_venv.py" in described["postCreateCommand"]
+    described = json.loads((ROOT / '.devcontainer/devcontainer.json').read_text(encoding='utf-8'))
+    assert '.ci/in_venv.py' in described['postCreateCommand']
 
 
 def test_what_the_workflow_runs_is_there() -> None:
-    jobs = yaml.safe_load((ROOT / YAML[2]).read_text(encoding="utf-8"))["jobs"]
-    assert jobs["test"]["strategy"]["matrix"]["python"] == [f"3.{k}" for k in range(10, 15)]
-    assert jobs["jazzy"]["container"] == "ros:jazzy"
-    assert jobs["bounds"]["env"] == {"NUMBA_BOUNDSCHECK": "1"}
-    commands = [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
-    for path in re.findall(r"(?<![\w/])(?:test|\.ci|tree_sway_ros)/[\w./]+", " ".join(commands)):
+    jobs = yaml.safe_load((ROOT / YAML[2]).read_text(encoding='utf-8'))['jobs']
+    assert jobs['test']['strategy']['matrix']['python'] == [f'3.{k}' for k in range(10, 15)]
+    assert jobs['jazzy']['container'] == 'ros:jazzy'
+    assert jobs['bounds']['env'] == {'NUMBA_BOUNDSCHECK': '1'}
+    commands = [step['run'] for job in jobs.values() for step in job['steps'] if 'run' in step]
+    for path in re.findall(r'(?<![\w/])(?:test|\.ci|tree_sway_ros)/[\w./]+', ' '.join(commands)):
         assert (ROOT / path).exists(), path
 
 
 def test_scripts_can_be_run_and_are_sound_shell() -> None:
-    script = ROOT / ".ci" / "run"
+    script = ROOT / '.ci' / 'run'
     assert os.access(script, os.X_OK)
-    assert subprocess.run(["bash", "-n", str(script)], check=False).returncode == 0
+    assert subprocess.run(['bash', '-n', str(script)], check=False).returncode == 0
 
 
 def test_every_source_file_says_whose_it_is_and_under_which_licence() -> None:
-    sources = [ROOT / "setup.py", ROOT / ".ci" / "in_venv.py", ROOT / ".ci" / "run"]
-    for folder in ("tree_sway_ros", "test", "launch"):
-        for suffix in ("py", "js", "css", "html"):
-            sources += [p for p in (ROOT / folder).rglob(f"*.{suffix}") if "data" not in p.parts]
+    sources = [ROOT / 'setup.py', ROOT / '.ci' / 'in_venv.py', ROOT / '.ci' / 'run']
+    for folder in ('tree_sway_ros', 'test', 'launch'):
+        for suffix in ('py', 'js', 'css', 'html'):
+            sources += [p for p in (ROOT / folder).rglob(f'*.{suffix}') if 'data' not in p.parts]
     silent = [
         str(path.relative_to(ROOT))
         for path in sources
-        if "SPDX-License-Identifier: Apache-2.0" not in path.read_text(encoding="utf-8")[:400]
+        if 'SPDX-License-Identifier: Apache-2.0' not in path.read_text(encoding='utf-8')[:400]
     ]
     assert len(sources) > 500
-    assert not silent, "put the two lines of setup.py at the top of: " + ", ".join(silent)
+    assert not silent, 'put the two lines of setup.py at the top of: ' + ', '.join(silent)

@@ -5,16 +5,16 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from tree_sway_ros.kernel_cache import ROOT, source_digest
 
-pytest.importorskip("numba", reason="there is no cache of kernels without numba")
+pytest.importorskip('numba', reason='there is no cache of kernels without numba')
 
 #: One step of a small tree; prints what the load's kernel makes of the wind.
 PROGRAM = """
@@ -31,66 +31,66 @@ print(sim.tip_displacement[0])
 """
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def copy(tmp_path_factory):
     """Copy the package, to be edited, and return a function that runs the program on it."""
-    tmp_path = tmp_path_factory.mktemp("copy")
-    shutil.copytree(ROOT, tmp_path / "tree_sway_ros", ignore=shutil.ignore_patterns("__pycache__"))
+    tmp_path = tmp_path_factory.mktemp('copy')
+    shutil.copytree(ROOT, tmp_path / 'tree_sway_ros', ignore=shutil.ignore_patterns('__pycache__'))
 
     def run(cache: Path | str) -> tuple[float, str]:
-        environment = {**os.environ, "PYTHONPATH": str(tmp_path), "TREE_SWAY_CACHE": str(cache)}
+        environment = {**os.environ, 'PYTHONPATH': str(tmp_path), 'TREE_SWAY_CACHE': str(cache)}
         done = subprocess.run(
-            [sys.executable, "-c", PROGRAM],
+            [sys.executable, '-c', PROGRAM],
             env=environment, capture_output=True, text=True, check=True, cwd=tmp_path,
         )  # fmt: skip
         return float(done.stdout), done.stderr
 
-    run.package = tmp_path / "tree_sway_ros"
+    run.package = tmp_path / 'tree_sway_ros'
     return run
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def compiled(copy, tmp_path_factory):
     """Compile all that the program needs once; return the folder, the result and what was said."""
-    cache = tmp_path_factory.mktemp("kernels")
+    cache = tmp_path_factory.mktemp('kernels')
     return cache, *copy(cache)
 
 
 def test_an_edited_callee_is_run_by_callers_in_other_files(copy, compiled):
     cache, before, _ = compiled
-    assert copy(cache)[0] == before, "compiled and cached runs give the same bits"
-    path = copy.package / "core" / "motion" / "drag.py"
-    text = path.read_text(encoding="utf-8")
-    assert "return f * nx," in text
-    path.write_text(text.replace("return f * nx,", "return 2.0 * f * nx,"), encoding="utf-8")
+    assert copy(cache)[0] == before, 'compiled and cached runs give the same bits'
+    path = copy.package / 'core' / 'motion' / 'drag.py'
+    text = path.read_text(encoding='utf-8')
+    assert 'return f * nx,' in text
+    path.write_text(text.replace('return f * nx,', 'return 2.0 * f * nx,'), encoding='utf-8')
     try:
         assert copy(cache)[0] > 1.5 * before
     finally:
-        path.write_text(text, encoding="utf-8")
+        path.write_text(text, encoding='utf-8')
 
 
 @pytest.mark.long
 def test_damaged_kernels_are_compiled_again(copy, compiled, tmp_path):
     cache, before, said = compiled
     assert not said
-    cache = Path(shutil.copytree(cache, tmp_path / "kernels"))
-    for path in cache.glob("*.kernel"):
+    cache = Path(shutil.copytree(cache, tmp_path / 'kernels'))
+    for path in cache.glob('*.kernel'):
         path.write_bytes(path.read_bytes()[:100])
     after, said = copy(cache)
     assert after == before
-    assert said.count("\n") <= 2
-    assert "cannot be read" in said
+    assert said.count('\n') <= 2
+    assert 'cannot be read' in said
 
 
 def test_a_folder_that_cannot_be_written_is_passed_by(copy, tmp_path):
-    (tmp_path / "file").write_text("no folder")
-    value, said = copy(tmp_path / "file" / "kernels")
+    (tmp_path / 'file').write_text('no folder')
+    value, said = copy(tmp_path / 'file' / 'kernels')
     assert value > 0.0
-    assert "Traceback" not in said
+    assert 'Traceback' not in said
 
 
 def test_the_digest_follows_imports_and_nothing_else():
-    first = ROOT / "core" / "motion" / "uncoupled.py"
+    first = ROOT / 'core' / 'motion' / 'uncoupled.py'
     assert len(source_digest(first)) == 32
-    assert source_digest(first) != source_digest(ROOT / "core" / "motion" / "modal.py")
-    assert source_digest(ROOT / "nowhere.py") == ""
+    assert source_digest(first) != source_digest(ROOT / 'core' / 'motion' / 'modal.py')
+    assert source_digest(ROOT / 'nowhere.py') == ''

@@ -5,58 +5,58 @@
 from __future__ import annotations
 
 import ast
+from pathlib import Path
 import re
 import runpy
 import shutil
 import subprocess
 import sys
 import tempfile
-import zipfile
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
+import zipfile
 
 import pytest
 
 import tree_sway_ros
 
 ROOT = Path(__file__).resolve().parent.parent
-NODES = ("anemometer", "player", "sensor", "solver", "viewer", "wind")
-IMPORTED = {"yaml": "python3-yaml"}
+NODES = ('anemometer', 'player', 'sensor', 'solver', 'viewer', 'wind')
+IMPORTED = {'yaml': 'python3-yaml'}
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def package() -> ElementTree.Element:
-    return ElementTree.parse(ROOT / "package.xml").getroot()
+    return ElementTree.parse(ROOT / 'package.xml').getroot()
 
 
 def test_the_version_is_the_same_everywhere(package: ElementTree.Element) -> None:
-    assert package.findtext("version") == tree_sway_ros.__version__
-    assert f"\n{tree_sway_ros.__version__} (" in (ROOT / "CHANGELOG.rst").read_text()
+    assert package.findtext('version') == tree_sway_ros.__version__
+    assert f'\n{tree_sway_ros.__version__} (' in (ROOT / 'CHANGELOG.rst').read_text()
 
 
 def test_the_package_says_what_ros_asks_for(package: ElementTree.Element) -> None:
-    assert package.get("format") == "3"
-    assert package.findtext("license") == "Apache-2.0"
-    assert package.findtext("export/build_type") == "ament_python"
-    assert "Apache License" in (ROOT / "LICENSE").read_text()
+    assert package.get('format') == '3'
+    assert package.findtext('license') == 'Apache-2.0'
+    assert package.findtext('export/build_type') == 'ament_python'
+    assert 'Apache License' in (ROOT / 'LICENSE').read_text()
 
 
 def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> None:
-    depended = {element.text for element in package.iter("exec_depend")}
+    depended = {element.text for element in package.iter('exec_depend')}
     wanted = set()
-    for path in [*(ROOT / "tree_sway_ros").rglob("*.py"), *(ROOT / "launch").glob("*.py")]:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            names = [alias.name for alias in getattr(node, "names", [])]
+    for path in [*(ROOT / 'tree_sway_ros').rglob('*.py'), *(ROOT / 'launch').glob('*.py')]:
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+            names = [alias.name for alias in getattr(node, 'names', [])]
             if isinstance(node, ast.ImportFrom):
-                names = [node.module or ""]
+                names = [node.module or '']
             if isinstance(node, ast.Import | ast.ImportFrom):
-                wanted |= {name.split(".")[0] for name in names}
-    wanted -= set(sys.stdlib_module_names) | {"tree_sway_ros", "", *OPTIONAL}
+                wanted |= {name.split('.')[0] for name in names}
+    wanted -= set(sys.stdlib_module_names) | {'tree_sway_ros', '', *OPTIONAL}
     missing = {
         name
         for name in wanted
-        if not {name, f"python3-{name}", IMPORTED.get(name, name)} & depended
+        if not {name, f'python3-{name}', IMPORTED.get(name, name)} & depended
     }
     assert not missing
 
@@ -64,93 +64,93 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
 #: Asked for by a part that says so when it is missing; they come with an extra, not with rosdep.
 OPTIONAL = {
     *(
-        "PIL",
-        "distributed",
-        "h5py",
-        "mpl_toolkits",
-        "mpmath",
-        "mujoco",
-        "dartpy",
-        "numba",
-        "pyarrow",
-        "rosbags",
-        "sksundae",
-        "zenoh",
+        'PIL',
+        'distributed',
+        'h5py',
+        'mpl_toolkits',
+        'mpmath',
+        'mujoco',
+        'dartpy',
+        'numba',
+        'pyarrow',
+        'rosbags',
+        'sksundae',
+        'zenoh',
     ),
 }
 
 
 def test_what_ubuntu_has_no_package_of_is_not_asked_for(package: ElementTree.Element) -> None:
     """Neither numba nor mpmath has a rosdep key on Ubuntu 24.04: rosdep would install nothing."""
-    asked = {element.text for element in package if element.tag.endswith("depend")}
-    assert not asked & {"python3-numba", "python3-mpmath", "python3-sympy"}
+    asked = {element.text for element in package if element.tag.endswith('depend')}
+    assert not asked & {'python3-numba', 'python3-mpmath', 'python3-sympy'}
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def setup_words() -> dict[str, Any]:
     """What setup.py hands to setuptools, run by a link in another folder, as colcon does."""
-    setuptools = pytest.importorskip("setuptools", reason="setuptools is not installed here")
+    setuptools = pytest.importorskip('setuptools', reason='setuptools is not installed here')
     words: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-        link = Path(folder) / "setup.py"
-        link.symlink_to(ROOT / "setup.py")
+        link = Path(folder) / 'setup.py'
+        link.symlink_to(ROOT / 'setup.py')
         patch.chdir(folder)
-        patch.setattr(setuptools, "setup", lambda **given: words.update(given))
+        patch.setattr(setuptools, 'setup', lambda **given: words.update(given))
         runpy.run_path(str(link))
     return words
 
 
 def test_setup_finds_its_files_from_any_folder(setup_words: dict[str, Any]) -> None:
-    assert setup_words["version"] == tree_sway_ros.__version__
-    assert "tree_sway_ros.core.motion" in setup_words["packages"]
-    assert setup_words["long_description"].startswith("# ")
-    shared = [name for _, names in setup_words["data_files"] for name in names]
-    assert {"package.xml", "launch/sway.launch.py", "config/solver.yaml"} <= set(shared)
+    assert setup_words['version'] == tree_sway_ros.__version__
+    assert 'tree_sway_ros.core.motion' in setup_words['packages']
+    assert setup_words['long_description'].startswith('# ')
+    shared = [name for _, names in setup_words['data_files'] for name in names]
+    assert {'package.xml', 'launch/sway.launch.py', 'config/solver.yaml'} <= set(shared)
 
 
 def test_numba_is_wanted_and_not_needed(setup_words: dict[str, Any]) -> None:
-    needed = " ".join(setup_words["install_requires"])
-    assert "numba" not in needed
-    assert "numpy" in needed
-    assert setup_words["extras_require"]["fast"] == ["numba>=0.59"]
+    needed = ' '.join(setup_words['install_requires'])
+    assert 'numba' not in needed
+    assert 'numpy' in needed
+    assert setup_words['extras_require']['fast'] == ['numba>=0.59']
 
 
 NO_BUILDER = (
     "No module named 'setuptools'",
     "invalid command 'bdist_wheel'",
-    "setuptools.build_meta",
+    'setuptools.build_meta',
 )
 
 
 def copy_of_source(folder: Path) -> Path:
     """Copy the checkout, so that building leaves nothing behind."""
-    ignored = shutil.ignore_patterns(".*", "build", "install", "log", "*.egg-info", "__pycache__")
-    return Path(shutil.copytree(ROOT, folder / "source", ignore=ignored))
+    ignored = shutil.ignore_patterns('.*', 'build', 'install', 'log', '*.egg-info', '__pycache__')
+    return Path(shutil.copytree(ROOT, folder / 'source', ignore=ignored))
 
 
 def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> None:
     source = copy_of_source(tmp_path)
-    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--no-deps"]
-    pip += ["--quiet", "--no-build-isolation", "-w", str(tmp_path), str(source)]
+    pip = [sys.executable, '-m', 'pip', '--disable-pip-version-check', 'wheel', '--no-deps']
+    pip += ['--quiet', '--no-build-isolation', '-w', str(tmp_path), str(source)]
     built = subprocess.run(pip, capture_output=True, text=True, check=False)
     if any(sign in built.stderr for sign in NO_BUILDER):
-        pytest.skip("setuptools 70.1 or newer is not installed here, so no wheel can be built")
+        pytest.skip('setuptools 70.1 or newer is not installed here, so no wheel can be built')
     assert built.returncode == 0, built.stderr
-    (wheel,) = tmp_path.glob("*.whl")
+    (wheel,) = tmp_path.glob('*.whl')
     with zipfile.ZipFile(wheel) as archive:
-        infos = {re.sub(r".*\.data/data/", "", info.filename): info for info in archive.infolist()}
+        infos = {re.sub(r'.*\.data/data/', '', info.filename): info for info in archive.infolist()}
     for node in NODES:
-        mode = infos[f"lib/tree_sway_ros/{node}"].external_attr >> 16
-        assert mode & 0o111, f"{node} is not executable"
-    for name in ("package.xml", "launch/sway.launch.py"):
-        assert f"share/tree_sway_ros/{name}" in infos
-    assert "share/ament_index/resource_index/packages/tree_sway_ros" in infos
-    assert "tree_sway_ros/py.typed" in infos
-    package = ROOT / "tree_sway_ros"
+        mode = infos[f'lib/tree_sway_ros/{node}'].external_attr >> 16
+        assert mode & 0o111, f'{node} is not executable'
+    for name in ('package.xml', 'launch/sway.launch.py'):
+        assert f'share/tree_sway_ros/{name}' in infos
+    assert 'share/ament_index/resource_index/packages/tree_sway_ros' in infos
+    assert 'tree_sway_ros/py.typed' in infos
+    package = ROOT / 'tree_sway_ros'
     data = {
         path
-        for path in package.rglob("*.*")
-        if path.suffix != ".py" and path.is_file() and "__pycache__" not in path.parts
+        for path in package.rglob('*.*')
+        if path.suffix != '.py' and path.is_file() and '__pycache__' not in path.parts
     }
     assert not [path for path in data if str(path.relative_to(ROOT)) not in infos]
 
@@ -158,14 +158,14 @@ def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> N
 def test_colcon_gets_no_second_executables(tmp_path: Path) -> None:
     """What colcon runs is the plain ``install``; setup.cfg sends the scripts to lib/ there."""
     source = copy_of_source(tmp_path)
-    installed = tmp_path / "install"
-    command = [sys.executable, "setup.py", "-q", "install", "--prefix", str(installed)]
-    command += ["--single-version-externally-managed", "--record", str(tmp_path / "record")]
+    installed = tmp_path / 'install'
+    command = [sys.executable, 'setup.py', '-q', 'install', '--prefix', str(installed)]
+    command += ['--single-version-externally-managed', '--record', str(tmp_path / 'record')]
     result = subprocess.run(command, cwd=source, capture_output=True, text=True, check=False)
     if NO_BUILDER[0] in result.stderr:
-        pytest.skip("setuptools is not installed here")
+        pytest.skip('setuptools is not installed here')
     assert result.returncode == 0, result.stderr
-    scripts = {path.name for path in (installed / "lib" / "tree_sway_ros").iterdir()}
-    assert scripts == {*NODES, "tree-sway"}
-    first = (installed / "lib" / "tree_sway_ros" / "solver").read_text().split("\n")[0]
-    assert first == "#!/usr/bin/env python3"  # so that an activated environment is heeded
+    scripts = {path.name for path in (installed / 'lib' / 'tree_sway_ros').iterdir()}
+    assert scripts == {*NODES, 'tree-sway'}
+    first = (installed / 'lib' / 'tree_sway_ros' / 'solver').read_text().split('\n')[0]
+    assert first == '#!/usr/bin/env python3'  # so that an activated environment is heeded

@@ -17,9 +17,9 @@ Examples
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any, TYPE_CHECKING
 
-__version__ = "0.1.0"
+__version__ = '0.1.0'
 
 if TYPE_CHECKING:
     from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
@@ -44,53 +44,53 @@ if TYPE_CHECKING:
     from tree_sway_ros.files.wind.wind_file import read_wind
 
 _MODULES = {
-    "core.growth.builtin": ("BUILTIN_TREES",),
-    "core.growth.grow": ("grow",),
-    "core.identification.calibration": ("calibrate",),
-    "core.scene.forest": ("Forest",),
-    "core.scene.make": ("make_simulator",),
-    "core.scene.placed_tree": ("PlacedTree",),
-    "core.scene.simulate": ("simulate",),
-    "core.scene.sway_record": ("SwayRecord",),
-    "core.simulator.protocol": ("Simulator",),
-    "core.simulator.settings": ("Settings",),
-    "core.tree.species": ("Species", "species_named"),
-    "core.tree.tree": ("Tree",),
-    "core.wind.averaging": ("WindAverage",),
-    "core.wind.convention": ("WindConvention",),
-    "core.wind.height_profile": ("WindProfile",),
-    "core.wind.simulated.turbulence": ("simulate_turbulence",),
-    "errors": ("TreeSwayError",),
-    "files.export.tree_export": ("write_tree",),
-    "files.trees.source": ("open_scene", "open_tree"),
-    "files.wind.wind_file": ("read_wind",),
+    'core.growth.builtin': ('BUILTIN_TREES',),
+    'core.growth.grow': ('grow',),
+    'core.identification.calibration': ('calibrate',),
+    'core.scene.forest': ('Forest',),
+    'core.scene.make': ('make_simulator',),
+    'core.scene.placed_tree': ('PlacedTree',),
+    'core.scene.simulate': ('simulate',),
+    'core.scene.sway_record': ('SwayRecord',),
+    'core.simulator.protocol': ('Simulator',),
+    'core.simulator.settings': ('Settings',),
+    'core.tree.species': ('Species', 'species_named'),
+    'core.tree.tree': ('Tree',),
+    'core.wind.averaging': ('WindAverage',),
+    'core.wind.convention': ('WindConvention',),
+    'core.wind.height_profile': ('WindProfile',),
+    'core.wind.simulated.turbulence': ('simulate_turbulence',),
+    'errors': ('TreeSwayError',),
+    'files.export.tree_export': ('write_tree',),
+    'files.trees.source': ('open_scene', 'open_tree'),
+    'files.wind.wind_file': ('read_wind',),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
-    "BUILTIN_TREES",
-    "Forest",
-    "PlacedTree",
-    "Settings",
-    "Simulator",
-    "Species",
-    "SwayRecord",
-    "Tree",
-    "TreeSwayError",
-    "WindAverage",
-    "WindConvention",
-    "WindProfile",
-    "__version__",
-    "calibrate",
-    "grow",
-    "make_simulator",
-    "open_scene",
-    "open_tree",
-    "read_wind",
-    "simulate",
-    "simulate_turbulence",
-    "species_named",
-    "write_tree",
+    'BUILTIN_TREES',
+    'Forest',
+    'PlacedTree',
+    'Settings',
+    'Simulator',
+    'Species',
+    'SwayRecord',
+    'Tree',
+    'TreeSwayError',
+    'WindAverage',
+    'WindConvention',
+    'WindProfile',
+    '__version__',
+    'calibrate',
+    'grow',
+    'make_simulator',
+    'open_scene',
+    'open_tree',
+    'read_wind',
+    'simulate',
+    'simulate_turbulence',
+    'species_named',
+    'write_tree',
 ]
 
 
@@ -98,7 +98,7 @@ def __getattr__(name: str) -> Any:
     """Import a name from where it lives."""
     if name not in _HOMES:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    value = getattr(import_module(f'{__name__}.{_HOMES[name]}'), name)
     globals()[name] = value
     return value
 

@@ -28,14 +28,14 @@ class TreeSwayError(Exception):
 
     """
 
-    def __init__(self, what: str, *, where: str = "", cure: str = "") -> None:
+    def __init__(self, what: str, *, where: str = '', cure: str = '') -> None:
         """Join the three parts into one line."""
         self.what = what
         self.where = where
         self.cure = cure
-        place = f"{where}: " if where else ""
-        advice = f"; {cure}" if cure else ""
-        super().__init__(f"{place}{what}{advice}")
+        place = f'{where}: ' if where else ''
+        advice = f'; {cure}' if cure else ''
+        super().__init__(f'{place}{what}{advice}')
 
     def at(self, where: str) -> TreeSwayError:
         """Return the same error with another place."""
@@ -43,7 +43,7 @@ class TreeSwayError(Exception):
 
     def inside(self, whole: str) -> TreeSwayError:
         """Return the same error with its place as a part of a larger one."""
-        return self.at(f"{whole}: {self.where}" if self.where else whole)
+        return self.at(f'{whole}: {self.where}' if self.where else whole)
 
 
 class TreeError(TreeSwayError):
@@ -78,4 +78,4 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """Ask whether the nearest of some names is meant; an empty text where none is near."""
     from difflib import get_close_matches
 
-    return "".join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], n=1))
+    return ''.join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], n=1))

@@ -1,7 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How files of this package name their licence, for `ament_copyright`, which knows long headers alone.
+How files of this package name their licence, for `ament_copyright`, which knows long headers
+alone.
 
 It finds this by the entry point ``ament_copyright.license`` of setup.py, and nobody else needs it.
 """
@@ -22,7 +23,7 @@ class LicenceHeader(NamedTuple):
 
 
 APACHE_BY_SPDX = LicenceHeader(
-    "Apache License, Version 2.0, by its SPDX name",
-    "Apache-2.0",
-    ("{copyright}\nSPDX-License-Identifier: Apache-2.0",),
+    'Apache License, Version 2.0, by its SPDX name',
+    'Apache-2.0',
+    ('{copyright}\nSPDX-License-Identifier: Apache-2.0',),
 )

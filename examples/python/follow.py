@@ -22,8 +22,8 @@ from tree_sway_ros.page.client import StreamClient
 def main() -> None:
     """Print the tip twice a second."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("page", help="address of the page, with its token if it has one")
-    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument('page', help='address of the page, with its token if it has one')
+    parser.add_argument('--seconds', type=float, default=10.0)
     given = parser.parse_args()
     pause = threading.Event()
     with StreamClient(given.page) as client:
@@ -37,9 +37,9 @@ def main() -> None:
             if moment is not None and poses is not None:
                 x, y, z = poses[highest, :3]
                 speed = float(np.linalg.norm(moment.wind))
-                print(f"wind {speed:5.2f} m/s, tip at {x:+.3f} {y:+.3f} {z:.3f} m", flush=True)
+                print(f'wind {speed:5.2f} m/s, tip at {x:+.3f} {y:+.3f} {z:.3f} m', flush=True)
             pause.wait(0.5)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

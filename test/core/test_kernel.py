@@ -1,7 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How hot functions are compiled: numpy's division, one precision in and out, the plain function kept.
+How hot functions are compiled: numpy's division, one precision in and out, the plain function
+kept.
 
 """
 
@@ -24,7 +25,7 @@ def series(x):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("compiled", [ratio, fused(ratio.py_func)])
+@pytest.mark.parametrize('compiled', [ratio, fused(ratio.py_func)])
 def test_division_by_zero_is_infinite_as_in_numpy(compiled):
     assert compiled(1.0, 0.0) == np.inf
     assert np.isnan(compiled(0.0, 0.0))

@@ -5,24 +5,24 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from tree_sway_ros.study.campaign.plan import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
-SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
+SCRIPTS = sorted((ROOT / 'examples').glob('*.py'))
 
 
 def output_of(name: str, *words: str, folder: Path) -> str:
-    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    paths = os.pathsep.join([str(ROOT), os.environ.get('PYTHONPATH', '')])
     result = subprocess.run(
-        [sys.executable, str(ROOT / "examples" / name), *words],
-        cwd=folder, env=os.environ | {"PYTHONPATH": paths},
+        [sys.executable, str(ROOT / 'examples' / name), *words],
+        cwd=folder, env=os.environ | {'PYTHONPATH': paths},
         capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
@@ -30,42 +30,42 @@ def output_of(name: str, *words: str, folder: Path) -> str:
 
 
 def test_every_example_is_tried_here() -> None:
-    tried = {"critical_wind_speed", "response_spectra", "sheltered_and_open"}
+    tried = {'critical_wind_speed', 'response_spectra', 'sheltered_and_open'}
     assert {script.stem for script in SCRIPTS} == tried
 
 
 def test_a_tree_sways_most_at_its_own_frequency(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib", reason="needs matplotlib")
+    pytest.importorskip('matplotlib', reason='needs matplotlib')
     from tree_sway_ros import make_simulator, open_tree
 
-    tree = open_tree("goldcrest")
+    tree = open_tree('goldcrest')
     slowest = make_simulator(tree).frequencies(1)[0]
-    text = output_of("response_spectra.py", "goldcrest", "spectra.png", folder=tmp_path)
-    found = re.search(r"sways most at ([\d.]+) Hz, (\d+) times", text)
+    text = output_of('response_spectra.py', 'goldcrest', 'spectra.png', folder=tmp_path)
+    found = re.search(r'sways most at ([\d.]+) Hz, (\d+) times', text)
     assert found
     assert float(found[1]) == pytest.approx(slowest, rel=0.2)
     assert float(found[2]) > 2
-    assert (tmp_path / "spectra.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / 'spectra.png').read_bytes().startswith(b'\x89PNG')
 
 
 def test_strain_grows_with_the_wind_up_to_the_critical_one(tmp_path: Path) -> None:
-    text = output_of("critical_wind_speed.py", folder=tmp_path)
-    strains = [float(each) for each in re.findall(r"strain +([\d.]+) permille", text)]
+    text = output_of('critical_wind_speed.py', folder=tmp_path)
+    strains = [float(each) for each in re.findall(r'strain +([\d.]+) permille', text)]
     assert len(strains) == 5
     assert strains == sorted(strains)
-    power = re.search(r"to the power ([\d.]+);", text)
+    power = re.search(r'to the power ([\d.]+);', text)
     assert power
     assert 1.0 < float(power[1]) < 2.2
 
 
 def test_shelter_relieves_the_base(tmp_path: Path) -> None:
-    text = output_of("sheltered_and_open.py", folder=tmp_path)
-    rows = dict(re.findall(r"^(\w+) +tip .*base moment ([\d.]+)", text, re.MULTILINE))
-    assert 0.0 < float(rows["sheltered"]) < 0.9 * float(rows["open"])
+    text = output_of('sheltered_and_open.py', folder=tmp_path)
+    rows = dict(re.findall(r'^(\w+) +tip .*base moment ([\d.]+)', text, re.MULTILINE))
+    assert 0.0 < float(rows['sheltered']) < 0.9 * float(rows['open'])
 
 
 def test_the_study_of_a_thousand_cases_is_one() -> None:
-    cases = read_study(ROOT / "config" / "examples" / "grown_trees.yaml")
+    cases = read_study(ROOT / 'config' / 'examples' / 'grown_trees.yaml')
     assert len(cases) == 100 * 10
     assert len({str(case.tree) for case in cases}) == 100
     assert {case.seconds for case in cases} == {60}

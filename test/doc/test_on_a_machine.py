@@ -10,8 +10,11 @@ serial port, a second site, a cluster. Commands of ROS's own tools are left to `
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 import contextlib
+from importlib.util import find_spec
 import os
+from pathlib import Path
 import pty
 import re
 import runpy
@@ -21,34 +24,31 @@ import subprocess
 import sys
 import threading
 import tty
-from collections.abc import Iterator
-from importlib.util import find_spec
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-pages = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name("test_pages.py"))))
+pages = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('test_pages.py'))))
 PAGES, ROOT, blocks, name = pages.PAGES, pages.ROOT, pages.blocks, pages.name
-SHELL = pages.SHELL.replace("{ ", "{ exec ")  # Ctrl-C goes to the command itself
+SHELL = pages.SHELL.replace('{ ', '{ exec ')  # Ctrl-C goes to the command itself
 
 pytestmark = [pytest.mark.long, pytest.mark.ros]
 
 DEADLINE = 300.0
-OTHERS = ("colcon", "cd", "mkdir", "rosdep", "ros2", "foxglove-studio", "pip", ".ci/run")
+OTHERS = ('colcon', 'cd', 'mkdir', 'rosdep', 'ros2', 'foxglove-studio', 'pip', '.ci/run')
 """Programs that are not ours, or the whole of CI."""
-OTHERS += ("python3 -m venv", "python3 -m colcon", "python3 .ci/in_venv.py ruff", "git clone")
-OTHERS += ("python3 .ci/in_venv.py mypy", "python3 .ci/in_venv.py pytest")
+OTHERS += ('python3 -m venv', 'python3 -m colcon', 'python3 .ci/in_venv.py ruff', 'git clone')
+OTHERS += ('python3 .ci/in_venv.py mypy', 'python3 .ci/in_venv.py pytest')
 PROMISED = {
-    "show": r"http://\S+",
-    "demo": r"tip +[\d.]+ mm \| poses +[\d.]+ Hz",
-    "listen": r"poses +\d+ at",
-    "record": r"[1-9]\d* of /segment_poses",
-    "relay": r"sending the wind|http://",
-    "study": r"\d+ cases in",
+    'show': r'http://\S+',
+    'demo': r'tip +[\d.]+ mm \| poses +[\d.]+ Hz',
+    'listen': r'poses +\d+ at',
+    'record': r'[1-9]\d* of /segment_poses',
+    'relay': r'sending the wind|http://',
+    'study': r'\d+ cases in',
 }
 """What each command says once it does what it is for."""
-NEEDS_A_TREE = ("listen", "record", "relay send")
+NEEDS_A_TREE = ('listen', 'record', 'relay send')
 """Commands that hear a tree which somebody else runs."""
 
 
@@ -62,11 +62,11 @@ class Machine:
     def start(self, line: str) -> None:
         """Start a command, and wait for what it promises."""
         words = line.split()
-        pattern = PROMISED[words[words.index("tree-sway") + 1]]
-        log = self.folder / f"{len(self.running)}.log"
-        with log.open("wb") as out:
+        pattern = PROMISED[words[words.index('tree-sway') + 1]]
+        log = self.folder / f'{len(self.running)}.log'
+        with log.open('wb') as out:
             process = subprocess.Popen(
-                ["bash", "-c", SHELL + line],
+                ['bash', '-c', SHELL + line],
                 cwd=self.folder, env=self.environment,
                 stdout=out, stderr=subprocess.STDOUT, start_new_session=True,
             )  # fmt: skip
@@ -75,8 +75,8 @@ class Machine:
         watch = threading.Timer(DEADLINE, told.set)
         watch.start()
         try:
-            while not re.search(pattern, text := log.read_text(encoding="utf-8")):
-                assert process.poll() in (None, 0), f"{line}\n{text}"
+            while not re.search(pattern, text := log.read_text(encoding='utf-8')):
+                assert process.poll() in (None, 0), f'{line}\n{text}'
                 assert not told.wait(0.1), f"no '{pattern}' of {line}\n{text}"
         finally:
             watch.cancel()
@@ -96,10 +96,11 @@ class Machine:
 def machine(tmp_path: Path, ros_environment: dict[str, str]) -> Iterator[Machine]:
     for folder in pages.FOLDERS:
         (tmp_path / folder).symlink_to(ROOT / folder)
-    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    own = {"PYTHON": sys.executable, "PYTHONPATH": paths, "BROWSER": "true"}
+    paths = os.pathsep.join([str(ROOT), os.environ.get('PYTHONPATH', '')])
+    own = {'PYTHON': sys.executable, 'PYTHONPATH': paths, 'BROWSER': 'true'}
     made = Machine(tmp_path, {**ros_environment, **own})
-    # Where this runs in the background of a shell, Ctrl-C is ignored, and would be by the commands.
+    # Where this runs in the background of a shell, Ctrl-C is ignored, and would be by the
+    # commands.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         yield made
@@ -120,11 +121,11 @@ def instrument() -> Iterator[str]:
 
     def speak() -> None:
         while not told.wait(0.1):
-            text = "WIMWV,270.0,T,6.0,M,A"
+            text = 'WIMWV,270.0,T,6.0,M,A'
             check = 0
             for letter in text.encode():
                 check ^= letter
-            os.write(ours, f"${text}*{check:02X}\r\n".encode())
+            os.write(ours, f'${text}*{check:02X}\r\n'.encode())
 
     thread = threading.Thread(target=speak)
     thread.start()
@@ -138,8 +139,8 @@ def instrument() -> Iterator[str]:
 def lines_of(page: Path) -> list[list[str]]:
     """Command lines of ours of each ``bash`` block."""
     found = []
-    for _, text in blocks(page, "bash"):
-        lines = [line.split(" # ")[0].strip() for line in text.splitlines() if line.strip()]
+    for _, text in blocks(page, 'bash'):
+        lines = [line.split(' # ')[0].strip() for line in text.splitlines() if line.strip()]
         found.append([line for line in lines if not line.startswith(OTHERS)])
     return [lines for lines in found if lines]
 
@@ -148,35 +149,35 @@ SHELL_BLOCKS = [(page, lines) for page in PAGES[1:] for lines in lines_of(page)]
 
 
 @pytest.mark.parametrize(
-    ("page", "lines"), SHELL_BLOCKS, ids=[f"{name(p)}:{ls[0][:40]}" for p, ls in SHELL_BLOCKS]
+    ('page', 'lines'), SHELL_BLOCKS, ids=[f'{name(p)}:{ls[0][:40]}' for p, ls in SHELL_BLOCKS]
 )
 def test_its_commands_do_what_they_promise(
     page: Path, lines: list[str], machine: Machine, request: pytest.FixtureRequest
 ) -> None:
-    stand_ins = {"--seconds 60": "--seconds 2", "--seconds 10": "--seconds 2"}
-    text = " ".join(lines)
-    if "serial:" in text:
-        pytest.importorskip("serial", reason="pyserial is not installed")
-        stand_ins["serial:/dev/ttyUSB0"] = "serial:" + request.getfixturevalue("instrument")
-    if "tcp/" in text:
-        with socket.create_server(("127.0.0.1", 0)) as free:
+    stand_ins = {'--seconds 60': '--seconds 2', '--seconds 10': '--seconds 2'}
+    text = ' '.join(lines)
+    if 'serial:' in text:
+        pytest.importorskip('serial', reason='pyserial is not installed')
+        stand_ins['serial:/dev/ttyUSB0'] = 'serial:' + request.getfixturevalue('instrument')
+    if 'tcp/' in text:
+        with socket.create_server(('127.0.0.1', 0)) as free:
             port = free.getsockname()[1]
         stand_ins |= {
-            "tcp/0.0.0.0:7447": f"tcp/127.0.0.1:{port}",
-            "tcp/there:7447": f"tcp/127.0.0.1:{port}",
+            'tcp/0.0.0.0:7447': f'tcp/127.0.0.1:{port}',
+            'tcp/there:7447': f'tcp/127.0.0.1:{port}',
         }
-    if "avenue.yaml" in text:
-        (stand,) = (each for _, each in blocks(page, "python") if 'avenue.yaml").write' in each)
-        written = [sys.executable, "-c", stand]
+    if 'avenue.yaml' in text:
+        (stand,) = (each for _, each in blocks(page, 'python') if 'avenue.yaml").write' in each)
+        written = [sys.executable, '-c', stand]
         subprocess.run(written, cwd=machine.folder, env=machine.environment, check=True)
-    if "--scheduler" in text:
-        stand_ins["tcp://login:8786"] = request.getfixturevalue("cluster")
-        small = "trees: [benjamina]\nwinds: [{speed: 4, seeds: 2}]\n"
-        small += "settings: {model: modes}\nseconds: 2\n"
-        (machine.folder / "small.yaml").write_text(small, encoding="utf-8")
-        stand_ins["config/examples/grown_trees.yaml"] = "small.yaml"
-    if any(f"tree-sway {each}" in text for each in NEEDS_A_TREE):
-        machine.start("tree-sway demo goldcrest --no-page")
+    if '--scheduler' in text:
+        stand_ins['tcp://login:8786'] = request.getfixturevalue('cluster')
+        small = 'trees: [benjamina]\nwinds: [{speed: 4, seeds: 2}]\n'
+        small += 'settings: {model: modes}\nseconds: 2\n'
+        (machine.folder / 'small.yaml').write_text(small, encoding='utf-8')
+        stand_ins['config/examples/grown_trees.yaml'] = 'small.yaml'
+    if any(f'tree-sway {each}' in text for each in NEEDS_A_TREE):
+        machine.start('tree-sway demo goldcrest --no-page')
     for line in lines:
         for word, ours in stand_ins.items():
             line = line.replace(word, ours)
@@ -187,23 +188,25 @@ def test_its_commands_do_what_they_promise(
 @pytest.fixture
 def cluster() -> Iterator[str]:
     """Address of a scheduler with one worker, in processes of their own."""
-    distributed = pytest.importorskip("distributed", reason="dask.distributed is not installed")
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as own:
+    distributed = pytest.importorskip('distributed', reason='dask.distributed is not installed')
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=None
+    ) as own:
         yield own.scheduler_address
 
 
 def test_the_first_commands_of_the_readme_move_a_tree(machine: Machine) -> None:
     """In a new clone with an environment of its own, as a new user types them."""
-    if find_spec("ensurepip") is None:
-        pytest.skip("this Python cannot make environments")
-    (_, text), *_ = blocks(PAGES[0], "bash")
-    clone, *commands = (line.split(" # ")[0].strip() for line in text.splitlines())
-    assert clone.startswith("git clone <this repository> ")
-    own = {key: value for key, value in machine.environment.items() if key != "PYTHONPATH"}
-    machine.environment = {key: own[key] for key in own if key != "TREE_SWAY_VENV"}
-    clone = clone.replace("<this repository>", str(ROOT))
-    subprocess.run(["bash", "-c", f"set -e; {clone}; pwd"], cwd=machine.folder, check=True)
-    machine.folder = machine.folder / "tree_sway_ros"
+    if find_spec('ensurepip') is None:
+        pytest.skip('this Python cannot make environments')
+    (_, text), *_ = blocks(PAGES[0], 'bash')
+    clone, *commands = (line.split(' # ')[0].strip() for line in text.splitlines())
+    assert clone.startswith('git clone <this repository> ')
+    own = {key: value for key, value in machine.environment.items() if key != 'PYTHONPATH'}
+    machine.environment = {key: own[key] for key in own if key != 'TREE_SWAY_VENV'}
+    clone = clone.replace('<this repository>', str(ROOT))
+    subprocess.run(['bash', '-c', f'set -e; {clone}; pwd'], cwd=machine.folder, check=True)
+    machine.folder = machine.folder / 'tree_sway_ros'
     assert len(commands) == 2
     for command in commands:
         machine.start(command)

@@ -12,26 +12,26 @@ are read.
 from __future__ import annotations
 
 import os
+from pathlib import Path
 import re
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from tree_sway_ros.tools import cli
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "doc").rglob("*.md"))]
-BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-LINK = re.compile(r"(?<!`)\[[^\]\n]+\]\(([^)\s]+)\)")
+PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').rglob('*.md'))]
+BLOCK = re.compile(r'^```(\w+)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+LINK = re.compile(r'(?<!`)\[[^\]\n]+\]\(([^)\s]+)\)')
 #: A path of the repository or of the package.
 NAMED = re.compile(
-    r"`((?:test|tree_sway_ros|config|doc|core|files|ros|nodes|launch|examples|\.ci)/[\w./-]*\w/?)`"
+    r'`((?:test|tree_sway_ros|config|doc|core|files|ros|nodes|launch|examples|\.ci)/[\w./-]*\w/?)`'
 )
 SHELL = 'set -eu; tree-sway() { "$PYTHON" -m tree_sway_ros.tools.cli "$@"; }\n'
-FOLDERS = ("config", "doc", "examples", "launch", "test")
+FOLDERS = ('config', 'doc', 'examples', 'launch', 'test')
 DEADLINE = 300.0
 
 
@@ -42,11 +42,11 @@ def name(page: Path) -> str:
 
 def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
     """Language and text of the blocks of a page."""
-    found = BLOCK.findall(page.read_text(encoding="utf-8"))
+    found = BLOCK.findall(page.read_text(encoding='utf-8'))
     return [(language, text) for language, text in found if language in languages]
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if blocks(p, "sh", "python")], ids=name)
+@pytest.mark.parametrize('page', [p for p in PAGES if blocks(p, 'sh', 'python')], ids=name)
 def test_it_runs_as_written(
     page: Path,
     tmp_path: Path,
@@ -58,74 +58,76 @@ def test_it_runs_as_written(
         if (ROOT / folder).is_dir():
             (tmp_path / folder).symlink_to(ROOT / folder)
     monkeypatch.chdir(tmp_path)
-    told = {"PYTHON": sys.executable}
-    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    for language, text in blocks(page, "sh", "python"):
-        if language == "python":
-            exec(compile(text, name(page), "exec"), {"__name__": "__page__"})
+    told = {'PYTHON': sys.executable}
+    paths = os.pathsep.join([str(ROOT), os.environ.get('PYTHONPATH', '')])
+    for language, text in blocks(page, 'sh', 'python'):
+        if language == 'python':
+            exec(compile(text, name(page), 'exec'), {'__name__': '__page__'})
             assert capsys.readouterr().out
             continue
-        if "tree-sway demo" in text:
-            told |= request.getfixturevalue("ros_environment")
+        if 'tree-sway demo' in text:
+            told |= request.getfixturevalue('ros_environment')
         result = subprocess.run(
-            ["bash", "-c", SHELL + text],
-            env=os.environ | told | {"PYTHONPATH": paths},
+            ['bash', '-c', SHELL + text],
+            env=os.environ | told | {'PYTHONPATH': paths},
             capture_output=True,
             text=True,
             timeout=DEADLINE,
             check=False,
         )
-        assert result.returncode == 0, f"{text}\n{result.stderr}"
+        assert result.returncode == 0, f'{text}\n{result.stderr}'
 
 
 def commands() -> list[tuple[str, str]]:
     """Every command line of ours in a shell block of a page, with the page."""
     lines = []
     for page in PAGES:
-        for _, text in blocks(page, "sh", "bash"):
+        for _, text in blocks(page, 'sh', 'bash'):
             for line in text.splitlines():
-                before, found, words = line.partition("tree-sway ")
-                if found and before.strip() in ("", "python3 .ci/in_venv.py"):
-                    lines.append((name(page), words.split(" # ")[0].split(" | ")[0].strip()))
+                before, found, words = line.partition('tree-sway ')
+                if found and before.strip() in ('', 'python3 .ci/in_venv.py'):
+                    lines.append((name(page), words.split(' # ')[0].split(' | ')[0].strip()))
     return lines
 
 
-@pytest.mark.parametrize(("page", "line"), commands())
+@pytest.mark.parametrize(('page', 'line'), commands())
 def test_its_commands_are_commands(page: str, line: str) -> None:
     words = shlex.split(line)
     if words[0].isupper():
         pytest.fail(f"{page}: no command in '{line}'")
-    if "--help" not in words:
+    if '--help' not in words:
         assert cli._parser(words[0]).parse_args(words).command == words[0]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name)
+@pytest.mark.parametrize('page', PAGES, ids=name)
 def test_its_links_lead_somewhere(page: Path) -> None:
-    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    text = re.sub(r'^```.*?^```$', '', page.read_text(encoding='utf-8'), flags=re.M | re.S)
     for link in LINK.findall(text):
-        path, _, heading = link.partition("#")
-        if "://" in link:
+        path, _, heading = link.partition('#')
+        if '://' in link:
             continue
         target = (page.parent / path) if path else page
-        assert target.exists(), f"{link} in {name(page)}"
+        assert target.exists(), f'{link} in {name(page)}'
         if heading:
-            headings = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.MULTILINE)
-            slugs = {re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-") for h in headings}
-            assert heading in slugs, f"{link} in {name(page)}"
+            headings = re.findall(r'^#+ (.*)$', target.read_text(encoding='utf-8'), re.MULTILINE)
+            slugs = {re.sub(r'[^\w -]', '', h).strip().lower().replace(' ', '-') for h in headings}
+            assert heading in slugs, f'{link} in {name(page)}'
 
 
 def test_files_that_the_pages_name_are_there() -> None:
-    named = [(page, path) for page in PAGES for path in NAMED.findall(page.read_text("utf-8"))]
+    named = [(page, path) for page in PAGES for path in NAMED.findall(page.read_text('utf-8'))]
     assert len(named) > 40
-    roots = (ROOT, ROOT / "tree_sway_ros")
+    roots = (ROOT, ROOT / 'tree_sway_ros')
     assert not [each for each in named if not any((root / each[1]).exists() for root in roots)]
 
 
 def test_the_readme_is_short() -> None:
-    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 150
+    assert len((ROOT / 'README.md').read_text(encoding='utf-8').splitlines()) <= 150
 
 
 def test_every_page_is_in_the_index() -> None:
-    index = (ROOT / "doc" / "index.md").read_text(encoding="utf-8")
-    missing = [name(page) for page in PAGES[2:] if str(page.relative_to(ROOT / "doc")) not in index]
-    assert missing in ([], ["doc/index.md"])
+    index = (ROOT / 'doc' / 'index.md').read_text(encoding='utf-8')
+    missing = [
+        name(page) for page in PAGES[2:] if str(page.relative_to(ROOT / 'doc')) not in index
+    ]
+    assert missing in ([], ['doc/index.md'])

@@ -6,7 +6,7 @@ import importlib.util
 from pathlib import Path
 
 _spec = importlib.util.spec_from_file_location(
-    "fixtures_of_nodes", Path(__file__).parents[1] / "nodes" / "conftest.py"
+    'fixtures_of_nodes', Path(__file__).parents[1] / 'nodes' / 'conftest.py'
 )
 nodes_conftest = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(nodes_conftest)
@@ -37,18 +37,18 @@ class Chain:
         from tree_sway_ros.ros.process.topics import SEGMENT_POSES, WIND_FILTERED
 
         self.observer = nodes_conftest.Observer(domain)
-        anemometer = {"rate": 50.0, "mean_speed": 8.0, "fault_every": 0.6, "fault_duration": 0.2}
+        anemometer = {'rate': 50.0, 'mean_speed': 8.0, 'fault_every': 0.6, 'fault_duration': 0.2}
         self.nodes = Composition(
             {
-                "solver": {"tree": tree, "timeout": 0.4, "decay": 0.3, "damping_ratio": 0.3},
-                "wind": {"frozen_after": 1.0, "timeout": 0.4},
-                "anemometer": anemometer,
+                'solver': {'tree': tree, 'timeout': 0.4, 'decay': 0.3, 'damping_ratio': 0.3},
+                'wind': {'frozen_after': 1.0, 'timeout': 0.4},
+                'anemometer': anemometer,
             },
             domain_id=domain,
         )
         self.frames = self.observer.listen(SEGMENT_POSES)
         self.filtered = self.observer.listen(WIND_FILTERED)
-        self.until(lambda: self.frames and self.filtered, "the stream")
+        self.until(lambda: self.frames and self.filtered, 'the stream')
 
     def until(self, condition, what):
         self.observer.until(condition, what, deadline=20.0)
@@ -58,12 +58,12 @@ class Chain:
         from rclpy.parameter import Parameter
 
         changes = [Parameter(name, value=value) for name, value in values.items()]
-        result = self.nodes["anemometer"].set_parameters_atomically(changes)
+        result = self.nodes['anemometer'].set_parameters_atomically(changes)
         assert result.successful, result.reason
 
     @property
     def counts(self):
-        return self.nodes["wind"]._intake.gate.counts
+        return self.nodes['wind']._intake.gate.counts
 
     def poses(self, first):
         """Poses from a frame on, (frames, segments, 7), and their stamps in [s]."""
@@ -93,10 +93,10 @@ class Chain:
         self.observer.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def chain(tmp_path_factory, claimed_domain):
-    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-    path = tmp_path_factory.mktemp("faults") / "sapling.csv"
+    pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+    path = tmp_path_factory.mktemp('faults') / 'sapling.csv'
     path.write_text(nodes_conftest.TREE)
     with claimed_domain() as domain:
         made = Chain(str(path), domain)
@@ -113,6 +113,6 @@ def faulty(chain):
         return len(chain.frames)
 
     yield start
-    chain.tell(fault="none", fault_every=0.6, fault_duration=0.2)
+    chain.tell(fault='none', fault_every=0.6, fault_duration=0.2)
     n = len(chain.filtered)
-    chain.until(lambda: len(chain.filtered) > n + 30, "good wind again")
+    chain.until(lambda: len(chain.filtered) > n + 30, 'good wind again')

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whatever is sent as wind: no error, no pose that is not finite, unit quaternions."""
 
+from dataclasses import asdict
 import math
 import random
-from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from tree_sway_ros.files.wind.nmea import parse_nmea
 from tree_sway_ros.files.wind.sonic_ascii import parse_sonic
 
 ODD = (math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 1e300, -1e300, 999.99, 327.68, 40.0, 1e6)
-FRAME_IDS = ("map", "", "mast", "\u2014" * 300)
+FRAME_IDS = ('map', '', 'mast', '\u2014' * 300)
 LAST = (2**31 - 1, 2**32 - 1)
 """The largest that the two fields of a stamp hold."""
 BLOCK, PER_FRAME = 1000, 10
@@ -22,11 +22,11 @@ PERIOD = 16_666_667
 JUMPS = (-10_000_000_000, -900_000_000, 30_000_000_000)
 """Of the clock [ns]."""
 LINES = (
-    "$WIMWV,084.0,T,10.4,N,A*04",
-    "$WIMWD,270.0,T,268.0,M,12.4,N,6.4,M*5C",
-    "$IIVWR,75,R,1.0,N,0.51,M,1.85,K*6C",
-    "Q,229,002.74,M,00,16",
-    "S 00.65 S2 00.65 D 245 U 00.58 V 00.27 W 00.09 T 22.6",
+    '$WIMWV,084.0,T,10.4,N,A*04',
+    '$WIMWD,270.0,T,268.0,M,12.4,N,6.4,M*5C',
+    '$IIVWR,75,R,1.0,N,0.51,M,1.85,K*6C',
+    'Q,229,002.74,M,00,16',
+    'S 00.65 S2 00.65 D 245 U 00.58 V 00.27 W 00.09 T 22.6',
 )
 
 
@@ -152,20 +152,20 @@ def fuzz(wind, solver, n, seed):
         assert np.abs(off).max(initial=0.0) < 1e-6
         planes.clear()
     counts = asdict(wind._intake.counts)
-    assert not counts.pop("sluggish")  # damaged messages jump
+    assert not counts.pop('sluggish')  # damaged messages jump
     return counts
 
 
 @pytest.fixture
 def nodes(compose):
     """The wind node and the solver, configured; time is the test's."""
-    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-    own = {"wind": {"frozen_after": 1.0}, "solver": {"tree": "benjamina"}}
-    made = compose(**{name: {**values, "lifecycle": True} for name, values in own.items()})
+    pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+    own = {'wind': {'frozen_after': 1.0}, 'solver': {'tree': 'benjamina'}}
+    made = compose(**{name: {**values, 'lifecycle': True} for name, values in own.items()})
     for node in made.nodes:
         node.configure()
-    made["wind"].is_active = True
-    return made["wind"], made["solver"]
+    made['wind'].is_active = True
+    return made['wind'], made['solver']
 
 
 def fuzz_lines(n, seed):
@@ -176,7 +176,7 @@ def fuzz_lines(n, seed):
         for _ in range(rng.randrange(4)):
             place = rng.randrange(len(line)) if line else 0
             line[place : place + rng.randrange(3)] = chr(rng.choice((rng.randrange(128), 0x20AC)))
-        text = "".join(line)
+        text = ''.join(line)
         said = parse_nmea(text, 0.0, 0.0, need_checksum=False) or parse_sonic(
             text, 0.0, need_checksum=False
         )
@@ -198,10 +198,10 @@ def test_any_lines():
 
 @pytest.mark.long
 @pytest.mark.ros
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize('seed', range(4))
 def test_ten_million_messages(nodes, seed):
     counts = fuzz(*nodes, 2_500_000, seed)
-    print(*(f"{cause} {count}" for cause, count in counts.items()))
+    print(*(f'{cause} {count}' for cause, count in counts.items()))
     assert all(counts.values()), counts
 
 

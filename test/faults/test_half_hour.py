@@ -12,16 +12,16 @@ from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.files.wind.wind_file import read_wind
 
-SONIC = Path(__file__).parents[2] / ".." / "shared" / "data" / "wind" / "sonic_20hz_1245.toa5.dat"
+SONIC = Path(__file__).parents[2] / '..' / 'shared' / 'data' / 'wind' / 'sonic_20hz_1245.toa5.dat'
 N_SPIKES, N_GUSTS = 180, 40
 PERIOD = 50_000_000
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def half_hour():
     """The record of a quarter of an hour, to its end and back again, with gusts of 6 m/s."""
     if not SONIC.is_file():
-        pytest.skip(f"no recorded wind at {SONIC}")
+        pytest.skip(f'no recorded wind at {SONIC}')
     wind = read_wind(SONIC).velocity
     wind = np.concatenate([wind, wind[::-1]])
     time = np.arange(len(wind)) / 20.0
@@ -58,4 +58,4 @@ def test_every_spike_is_refused_and_hardly_a_true_sample(half_hour):
     found = refused(spiked)
     assert set(rows.tolist()) <= found
     true = len(half_hour) - N_SPIKES
-    assert len(found) - N_SPIKES <= 1e-3 * true, f"{len(found) - N_SPIKES} of {true} refused"
+    assert len(found) - N_SPIKES <= 1e-3 * true, f'{len(found) - N_SPIKES} of {true} refused'

@@ -2,42 +2,42 @@
 # SPDX-License-Identifier: Apache-2.0
 """Damaged files: a clear error or a sound result, never a crash, a hang or a memory gone."""
 
+from pathlib import Path
 import resource
 import time
-from pathlib import Path
 
+from hypothesis import given, HealthCheck, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from scipy.io import savemat
 
 from tree_sway_ros.errors import TreeSwayError
 from tree_sway_ros.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.files.trees.tree_file import TREE_FORMATS, read_trees
+from tree_sway_ros.files.trees.tree_file import read_trees, TREE_FORMATS
 from tree_sway_ros.files.trees.yaml.forest_yaml import parse_forest
-from tree_sway_ros.files.wind.wind_file import WIND_FORMATS, read_wind
+from tree_sway_ros.files.wind.wind_file import read_wind, WIND_FORMATS
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parent / 'data'
 WINDS = [
-    *("sonic.toa5.dat", "mast.nmea", "weather.nmea", "wind.csv", "wind_components.csv"),
-    *("wind.db3", "wind.mcap"),
+    *('sonic.toa5.dat', 'mast.nmea', 'weather.nmea', 'wind.csv', 'wind_components.csv'),
+    *('wind.db3', 'wind.mcap'),
 ]
-LARGE = ["tree121.csv", "canopy.toa5.dat"]
+LARGE = ['tree121.csv', 'canopy.toa5.dat']
 TREES = [
     *sorted(path.name for path in DATA.iterdir() if path.name not in (*WINDS, *LARGE)),
-    *("fork5.mat", "fork7.mat", "fork73.mat", "glade.yaml"),
+    *('fork5.mat', 'fork7.mat', 'fork73.mat', 'glade.yaml'),
 ]
 
-SEEDLING = open_tree(DATA / "seedling.yaml")
-TOKENS = [b"nan", b"inf", b"-1", b"0", b"1e308", b"-1e999", b"99999999999999999999", b"", b"\n",
-          b"\t",
-          b",", b"[", b"{", b"&a [*a]", b"- ", b"\x00", b"\xff\xfe", b'"', b"1e-320", b".5", b"1_0",
-          "\u0663".encode(), b"$", b"*", b"<S1", b"+A1", b"segment: 3", b"parent: stem",
-          b"at: 0"]  # fmt: skip
+SEEDLING = open_tree(DATA / 'seedling.yaml')
+TOKENS = [b'nan', b'inf', b'-1', b'0', b'1e308', b'-1e999', b'99999999999999999999', b'', b'\n',
+          b'\t',
+          b',', b'[', b'{', b'&a [*a]', b'- ', b'\x00', b'\xff\xfe', b'"', b'1e-320', b'.5',
+          b'1_0', '\u0663'.encode(), b'$', b'*', b'<S1', b'+A1', b'segment: 3', b'parent: stem',
+          b'at: 0']  # fmt: skip
 MUTATION = st.tuples(
-    st.sampled_from(["token", "replace", "delete", "copy", "flip", "cut", "number"]),
+    st.sampled_from(['token', 'replace', 'delete', 'copy', 'flip', 'cut', 'number']),
     st.floats(0.0, 1.0, exclude_max=True),
     st.floats(0.0, 1.0, exclude_max=True),
     st.sampled_from(TOKENS),
@@ -48,53 +48,53 @@ def mutated(content: bytes, mutations) -> bytes:
     for kind, where, much, token in mutations:
         at = int(where * len(content))
         span = 1 + int(much**4 * len(content))
-        if kind == "token":
+        if kind == 'token':
             content = content[:at] + token + content[at:]
-        elif kind == "replace":
+        elif kind == 'replace':
             content = content[:at] + token + content[at + len(token) :]
-        elif kind == "delete":
+        elif kind == 'delete':
             content = content[:at] + content[at + span :]
-        elif kind == "copy":
+        elif kind == 'copy':
             content = content[:at] + content[at : at + span] + content[at:]
-        elif kind == "flip" and content:
+        elif kind == 'flip' and content:
             flipped = content[at] ^ (1 << int(8 * much))
             content = content[:at] + bytes([flipped]) + content[at + 1 :]
-        elif kind == "cut":
+        elif kind == 'cut':
             content = content[: max(at, 1)]
-        elif kind == "number":  # a cell, as a whole
+        elif kind == 'number':  # a cell, as a whole
             begin = (
-                max((content.rfind(c, 0, at) for c in (b",", b"\t", b" ", b"\n")), default=0) + 1
+                max((content.rfind(c, 0, at) for c in (b',', b'\t', b' ', b'\n')), default=0) + 1
             )
             ends = [
-                e for c in (b",", b"\t", b" ", b"\n", b"]") if (e := content.find(c, begin)) > 0
+                e for c in (b',', b'\t', b' ', b'\n', b']') if (e := content.find(c, begin)) > 0
             ]
             content = content[:begin] + token + content[min(ends, default=begin) :]
     return content
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def samples(tmp_path_factory):
     """Content of a good file of each kind; of some only where what writes them is installed."""
-    folder = tmp_path_factory.mktemp("samples")
+    folder = tmp_path_factory.mktemp('samples')
     content = {path.name: path.read_bytes() for path in DATA.iterdir() if path.is_file()}
-    (cylinders,) = read_treeqsm_text(DATA / "fork.treeqsm24.txt")
+    (cylinders,) = read_treeqsm_text(DATA / 'fork.treeqsm24.txt')
     axis = cylinders.end - cylinders.start
-    columns = {"radius": cylinders.diameter[:, 0] / 2, "length": np.linalg.norm(axis, axis=1),
-               "start": cylinders.start, "axis": axis, "parent": [0, 1, 1, 2],
-               "extension": [3, 4, 0, 0]}  # fmt: skip
-    for name, compressed in (("fork5.mat", False), ("fork7.mat", True)):
-        savemat(folder / name, {"QSM": {"cylinder": columns}}, do_compression=compressed)
+    columns = {'radius': cylinders.diameter[:, 0] / 2, 'length': np.linalg.norm(axis, axis=1),
+               'start': cylinders.start, 'axis': axis, 'parent': [0, 1, 1, 2],
+               'extension': [3, 4, 0, 0]}  # fmt: skip
+    for name, compressed in (('fork5.mat', False), ('fork7.mat', True)):
+        savemat(folder / name, {'QSM': {'cylinder': columns}}, do_compression=compressed)
         content[name] = (folder / name).read_bytes()
     try:
         import h5py
 
-        with h5py.File(folder / "fork73.mat", "w") as file:
+        with h5py.File(folder / 'fork73.mat', 'w') as file:
             for name, values in columns.items():
-                file[f"QSM/cylinder/{name}"] = np.atleast_2d(np.transpose(values))
-        content["fork73.mat"] = (folder / "fork73.mat").read_bytes()
+                file[f'QSM/cylinder/{name}'] = np.atleast_2d(np.transpose(values))
+        content['fork73.mat'] = (folder / 'fork73.mat').read_bytes()
     except ImportError:
         pass
-    content["glade.yaml"] = b"""name: glade
+    content['glade.yaml'] = b"""name: glade
 anemometer: [0, 0, 10]
 trees:
 - {name: a, tree: segments.csv, x: 1, y: -2.5, yaw: .3, leaf_on: true}
@@ -107,25 +107,32 @@ trees:
 def bags(folder: Path) -> dict[str, bytes]:
     try:
         from rosbags.rosbag2 import StoragePlugin, Writer
-        from rosbags.typesys import Stores, get_typestore
+        from rosbags.typesys import get_typestore, Stores
     except ImportError:
         return {}
     store = get_typestore(Stores.ROS2_JAZZY)
-    kind = "geometry_msgs/msg/Vector3"
+    kind = 'geometry_msgs/msg/Vector3'
     result = {}
-    for plugin, suffix in ((StoragePlugin.SQLITE3, "db3"), (StoragePlugin.MCAP, "mcap")):
+    for plugin, suffix in ((StoragePlugin.SQLITE3, 'db3'), (StoragePlugin.MCAP, 'mcap')):
         with Writer(folder / suffix, version=9, storage_plugin=plugin) as writer:
-            connection = writer.add_connection("/wind", kind, typestore=store)
+            connection = writer.add_connection('/wind', kind, typestore=store)
             for second in range(3):
                 message = store.types[kind](1.0 * second, 2.0, 0.0)
                 writer.write(connection, second * 10**9, store.serialize_cdr(message, kind))
-        (file,) = (folder / suffix).glob(f"*.{suffix}")
-        result[f"wind.{suffix}"] = file.read_bytes()
+        (file,) = (folder / suffix).glob(f'*.{suffix}')
+        result[f'wind.{suffix}'] = file.read_bytes()
     return result
 
 
 def assert_sound_tree(tree) -> None:
-    arrays = [tree.start, tree.end, tree.base_diameter, tree.tip_diameter, tree.length, tree.volume]
+    arrays = [
+        tree.start,
+        tree.end,
+        tree.base_diameter,
+        tree.tip_diameter,
+        tree.length,
+        tree.volume,
+    ]
     assert all(np.isfinite(array).all() for array in arrays)
     assert (tree.length > 0).all()
     assert (tree.base_diameter > 0).all()
@@ -138,21 +145,21 @@ def assert_sound_wind(record) -> None:
     assert len(record.time) == len(record.velocity) > 0
     assert (np.diff(record.time) > 0).all()
     assert np.isfinite(record.velocity).all()
-    assert (record.refused == 0) == (record.first_refused == "")
+    assert (record.refused == 0) == (record.first_refused == '')
 
 
 def check(path: Path, name: str, content: bytes, format: str | None) -> None:
     path.write_bytes(content)
     begin = time.process_time()
     taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    message = "none"
+    message = 'none'
     try:
         if name in WINDS:
             assert_sound_wind(read_wind(path, format=format))
         else:
-            if name == "glade.yaml":
+            if name == 'glade.yaml':
                 trees = parse_forest(
-                    path.read_text(errors="replace"), lambda *_: SEEDLING, name
+                    path.read_text(errors='replace'), lambda *_: SEEDLING, name
                 ).trees
             else:
                 trees = read_trees(path, format=format)
@@ -161,7 +168,7 @@ def check(path: Path, name: str, content: bytes, format: str | None) -> None:
     except TreeSwayError as error:
         message = str(error)
     assert message
-    assert "\n" not in message
+    assert '\n' not in message
     assert time.process_time() - begin < 10.0
     # KiB: 1 GiB, or no more than tests before this one have taken already.
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss <= max(2**20, taken)
@@ -183,69 +190,71 @@ def fuzz(samples, folder: Path, n_examples: int) -> None:
     def run(name, mutations, named):
         format = None if named > 9 else formats[name][named % len(formats[name])]
         content = mutated(samples[name], mutations)
-        check(folder / f"file{Path(name).suffix}", name, content, format)
+        check(folder / f'file{Path(name).suffix}', name, content, format)
 
     run()
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning", "ignore::UserWarning")
+@pytest.mark.filterwarnings('ignore::RuntimeWarning', 'ignore::UserWarning')
 def test_some_damaged_files(samples, tmp_path):
     fuzz(samples, tmp_path, 200)
 
 
 @pytest.mark.long
-@pytest.mark.filterwarnings("ignore::RuntimeWarning", "ignore::UserWarning")
+@pytest.mark.filterwarnings('ignore::RuntimeWarning', 'ignore::UserWarning')
 def test_ten_thousand_damaged_files(samples, tmp_path):
     fuzz(samples, tmp_path, 10_000)
 
 
 @pytest.mark.parametrize(
-    ("suffix", "content"),
+    ('suffix', 'content'),
     [
-        (".yaml", b"branches: " + b"[" * 200_000),
-        (".yaml", b"branches:\n" + b"- " * 200_000),
+        ('.yaml', b'branches: ' + b'[' * 200_000),
+        ('.yaml', b'branches:\n' + b'- ' * 200_000),
         (
-            ".yaml",
-            b"segments: [" + b"{start: [0, 0, 0], end: [0, 0, 1], diameter: 1}," * 5_000 + b"]",
+            '.yaml',
+            b'segments: [' + b'{start: [0, 0, 0], end: [0, 0, 1], diameter: 1},' * 5_000 + b']',
         ),
-        (".csv", b"segment,parent,x0,y0,z0,x1,y1,z1,d0\n" + b'0,-1,"' + b"0" * 1_000_000),
-        (".swc", b"\n".join(b"%d 1 0 0 %d 1 %d" % (i, i, i - 1 or -1) for i in range(1, 20_000))),
-        (".swc", b"1 1 0 0 0 1 -1\n" + b"\n".join(b"%d 1 0 0 1 1 1" % i for i in range(2, 10_000))),
-        (".txt", b"x,y,z,radius,parent_id\n" + b"0,0,0,1,-1, " * 50_000),
-        (".mtg", b"CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nENTITY-CODE\t\tXX\n" + b"/P1" * 100_000),
+        ('.csv', b'segment,parent,x0,y0,z0,x1,y1,z1,d0\n' + b'0,-1,"' + b'0' * 1_000_000),
+        ('.swc', b'\n'.join(b'%d 1 0 0 %d 1 %d' % (i, i, i - 1 or -1) for i in range(1, 20_000))),
+        (
+            '.swc',
+            b'1 1 0 0 0 1 -1\n' + b'\n'.join(b'%d 1 0 0 1 1 1' % i for i in range(2, 10_000)),
+        ),
+        ('.txt', b'x,y,z,radius,parent_id\n' + b'0,0,0,1,-1, ' * 50_000),
+        ('.mtg', b'CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nENTITY-CODE\t\tXX\n' + b'/P1' * 100_000),
     ],
-    ids=["brackets", "dashes", "segments", "digits", "chain", "star", "line", "code"],
+    ids=['brackets', 'dashes', 'segments', 'digits', 'chain', 'star', 'line', 'code'],
 )
 def test_large_and_nasty(tmp_path, suffix, content):
-    check(tmp_path / f"file{suffix}", "tree", content, None)
+    check(tmp_path / f'file{suffix}', 'tree', content, None)
 
 
 def nasty_mtg(n: int) -> bytes:
     """A chain of vertices without diameters, and mostly without positions."""
-    head = (
-        "CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\nENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n"
-    )
-    chain = "".join(f"\t^<S{i}\n" for i in range(n))
-    return (head + chain + "\t^<S9\t0\t0\t1\n").encode()
+    head = 'CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\n'
+    head += 'ENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n'
+    chain = ''.join(f'\t^<S{i}\n' for i in range(n))
+    return (head + chain + '\t^<S9\t0\t0\t1\n').encode()
 
 
 def nasty_swc(n: int) -> bytes:
     """A chain of points at one place, each with a side branch."""
-    rows = ["1 1 0 0 0 1 -1", "2 1 0 0 1 1 1"]
-    rows += [f"{2 * i + 1} 1 0 0 1 .9 {2 * i - 1 if i > 1 else 2}" for i in range(1, n)]
-    rows += [f"{2 * i + 2} 1 1 0 1 .1 {2 * i + 1}" for i in range(1, n)]
-    return "\n".join(rows).encode()
+    rows = ['1 1 0 0 0 1 -1', '2 1 0 0 1 1 1']
+    rows += [f'{2 * i + 1} 1 0 0 1 .9 {2 * i - 1 if i > 1 else 2}' for i in range(1, n)]
+    rows += [f'{2 * i + 2} 1 1 0 1 .1 {2 * i + 1}' for i in range(1, n)]
+    return '\n'.join(rows).encode()
 
 
-@pytest.mark.parametrize(("suffix", "content"),
-                         [(".mtg", nasty_mtg(20_000)), (".swc", nasty_swc(5_000))],
-                         ids=["mtg", "swc"])  # fmt: skip
+@pytest.mark.parametrize(('suffix', 'content'),
+                         [('.mtg', nasty_mtg(20_000)), ('.swc', nasty_swc(5_000))],
+                         ids=['mtg', 'swc'])  # fmt: skip
 def test_long_ways_back_are_not_walked_again_and_again(tmp_path, suffix, content):
-    check(tmp_path / f"file{suffix}", "tree", content, None)
+    check(tmp_path / f'file{suffix}', 'tree', content, None)
 
 
 def test_ten_thousand_columns_are_enough(tmp_path):
-    content = b"time,u,v" + b",x" * 10_000 + b"\n0,1,2"
-    (tmp_path / "a.csv").write_bytes(content)
-    with pytest.raises(TreeSwayError, match="a header of 10003 columns"):
-        read_wind(tmp_path / "a.csv")
+    content = b'time,u,v' + b',x' * 10_000 + b'\n0,1,2'
+    (tmp_path / 'a.csv').write_bytes(content)
+    with pytest.raises(TreeSwayError, match='a header of 10003 columns'):
+        read_wind(tmp_path / 'a.csv')

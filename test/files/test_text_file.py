@@ -19,66 +19,76 @@ from tree_sway_ros.files.wind.wind_file import read_wind
 
 
 @pytest.mark.parametrize(
-    ("text", "value"),
-    [("1", 1.0), (" -2.5e-3 ", -0.0025), (".5", 0.5), ("5.", 5.0), ("+1E2", 100.0), ("\x1e1", 1.0)],
+    ('text', 'value'),
+    [
+        ('1', 1.0),
+        (' -2.5e-3 ', -0.0025),
+        ('.5', 0.5),
+        ('5.', 5.0),
+        ('+1E2', 100.0),
+        ('\x1e1', 1.0),
+    ],
 )
 def test_plain_numbers(text, value):
     assert finite(text) == value
 
 
 @pytest.mark.parametrize(
-    "text", ["", " ", "nan", "INF", "1e999", "1_0", "0x1", "1,5", "1 m", "--1", "e5", ".", "\u0663"]
+    'text',
+    ['', ' ', 'nan', 'INF', '1e999', '1_0', '0x1', '1,5', '1 m', '--1', 'e5', '.', '\u0663'],
 )
 def test_all_else_is_none(text):
     assert finite(text) is None
 
 
 def test_line_ends(tmp_path):
-    (tmp_path / "a").write_bytes(b"\xef\xbb\xbfone\r\ntwo\rthree\nfour")
-    assert read_lines(tmp_path / "a") == ["one", "two", "three", "four"]
-    assert read_head(tmp_path / "a").startswith("one")
+    (tmp_path / 'a').write_bytes(b'\xef\xbb\xbfone\r\ntwo\rthree\nfour')
+    assert read_lines(tmp_path / 'a') == ['one', 'two', 'three', 'four']
+    assert read_head(tmp_path / 'a').startswith('one')
 
 
 def test_a_huge_file_is_refused_before_it_is_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(text_file, "MAX_BYTES", 10)
-    (tmp_path / "a").write_bytes(b"x" * 11)
-    with pytest.raises(FormatError, match="larger than 0 MiB"):
-        read_bytes(tmp_path / "a")
-    assert len(read_bytes(tmp_path / "a", at_most=4)) == 4
+    monkeypatch.setattr(text_file, 'MAX_BYTES', 10)
+    (tmp_path / 'a').write_bytes(b'x' * 11)
+    with pytest.raises(FormatError, match='larger than 0 MiB'):
+        read_bytes(tmp_path / 'a')
+    assert len(read_bytes(tmp_path / 'a', at_most=4)) == 4
 
 
 @pytest.mark.parametrize(
-    ("text", "reason"),
+    ('text', 'reason'),
     [
-        ("1,5", "'1,5', with a decimal comma: export it with decimal points"),
-        ("-,5e3", "'-,5e3', with a decimal comma: export it with decimal points"),
-        (" x ", "'x', not a finite number"),
+        ('1,5', "'1,5', with a decimal comma: export it with decimal points"),
+        ('-,5e3', "'-,5e3', with a decimal comma: export it with decimal points"),
+        (' x ', "'x', not a finite number"),
     ],
 )
 def test_why_no_number(text, reason):
     assert why_no_number(text) == reason
 
 
-MTG = "CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nENTITY-CODE\t\tXX\n"
+MTG = 'CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nENTITY-CODE\t\tXX\n'
 NASTY = {
-    "cell.csv": lambda digits: f"segment,parent,x0,y0,z0,x1,y1,z1,d0\n0,-1,0,0,0,0,0,1,{digits}x\n",
-    "node.yaml": lambda digits: f"branches: [{{name: a, nodes: [[0, 0, 0, {digits}x]]}}]\n",
-    "wind.csv": lambda digits: f"time,u,v\n0,{digits}x,1\n",
-    "wind.nmea": lambda digits: f"$WIMWV,{digits}x,R,1,M,A\n",
-    "code.mtg": lambda digits: f"{MTG}/P{digits}!\n",
-    "sway.csv": lambda digits: f"time,x{digits.replace('1', ' a')}!\n0,1\n",
-    "point.swc": lambda digits: f"1 1 0 0 0 1 -1\n2 1 0 0 {digits}.{digits}x 1 1\n",
+    'cell.csv': lambda digits: (
+        f'segment,parent,x0,y0,z0,x1,y1,z1,d0\n0,-1,0,0,0,0,0,1,{digits}x\n'
+    ),
+    'node.yaml': lambda digits: f'branches: [{{name: a, nodes: [[0, 0, 0, {digits}x]]}}]\n',
+    'wind.csv': lambda digits: f'time,u,v\n0,{digits}x,1\n',
+    'wind.nmea': lambda digits: f'$WIMWV,{digits}x,R,1,M,A\n',
+    'code.mtg': lambda digits: f'{MTG}/P{digits}!\n',
+    'sway.csv': lambda digits: f'time,x{digits.replace("1", " a")}!\n0,1\n',
+    'point.swc': lambda digits: f'1 1 0 0 0 1 -1\n2 1 0 0 {digits}.{digits}x 1 1\n',
 }
 
 
-@pytest.mark.parametrize("name", NASTY)
+@pytest.mark.parametrize('name', NASTY)
 def test_twice_the_digits_take_twice_the_time(tmp_path, name):
-    read = read_csv_sway if name[:4] == "sway" else read_wind if name[:4] == "wind" else read_tree
+    read = read_csv_sway if name[:4] == 'sway' else read_wind if name[:4] == 'wind' else read_tree
 
     def seconds(n):
         path = tmp_path / name
-        path.write_text(NASTY[name]("1" * n))
-        best = float("inf")
+        path.write_text(NASTY[name]('1' * n))
+        best = float('inf')
         for _ in range(5):
             begin = time.process_time()
             with pytest.raises(FormatError):

@@ -2,39 +2,39 @@
 # SPDX-License-Identifier: Apache-2.0
 """The whole chain as ``launch_test`` runs it; `test_launch_testing` starts this file."""
 
+from pathlib import Path
 import time
 import unittest
-from pathlib import Path
 
-import launch_testing.actions
-import launch_testing.asserts
-import rclpy
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration
+import launch_testing.actions
+import launch_testing.asserts
+import rclpy
 
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES, message_class, qos_profile
+from tree_sway_ros.ros.process.topics import message_class, qos_profile, SEGMENT_POSES
 
-SWAY = Path(__file__).parents[2] / "launch" / "sway.launch.py"
+SWAY = Path(__file__).parents[2] / 'launch' / 'sway.launch.py'
 DEADLINE = 60.0
 
 
 def generate_test_description():
-    told = {"tree": LaunchConfiguration("tree")}
+    told = {'tree': LaunchConfiguration('tree')}
     sway = IncludeLaunchDescription(
         PythonLaunchDescriptionSource(str(SWAY)), launch_arguments=told.items()
     )
-    tree = DeclareLaunchArgument("tree")
+    tree = DeclareLaunchArgument('tree')
     return LaunchDescription([tree, sway, launch_testing.actions.ReadyToTest()])
 
 
 class TestWhileItSways(unittest.TestCase):
     def test_it_says_when_it_is_ready_and_streams(self, proc_output):
-        proc_output.assertWaitFor("ready after", timeout=DEADLINE, stream="stderr")
-        proc_output.assertWaitFor("reading wind as: blows TO", timeout=DEADLINE, stream="stderr")
+        proc_output.assertWaitFor('ready after', timeout=DEADLINE, stream='stderr')
+        proc_output.assertWaitFor('reading wind as: blows TO', timeout=DEADLINE, stream='stderr')
         rclpy.init()
-        node, frames = rclpy.create_node("observer"), []
+        node, frames = rclpy.create_node('observer'), []
         quality = qos_profile(SEGMENT_POSES)
         kind = message_class(SEGMENT_POSES)
         node.create_subscription(kind, SEGMENT_POSES.name, frames.append, quality)

@@ -4,18 +4,18 @@
 
 import importlib.util
 import os
+from pathlib import Path
 import re
 import signal
 import subprocess
 import sys
 import threading
-from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 _spec = importlib.util.spec_from_file_location(
-    "fixtures_of_nodes", ROOT / "test" / "nodes" / "conftest.py"
+    'fixtures_of_nodes', ROOT / 'test' / 'nodes' / 'conftest.py'
 )
 nodes_conftest = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(nodes_conftest)
@@ -50,7 +50,7 @@ class Launched:
         self._is_over = False
         self._more = threading.Condition()
         self.process = subprocess.Popen(
-            [sys.executable, "-c", RUN, mode, str(path), *told],
+            [sys.executable, '-c', RUN, mode, str(path), *told],
             env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -71,7 +71,7 @@ class Launched:
 
     @property
     def text(self):
-        return "".join(self.said)
+        return ''.join(self.said)
 
     def until(self, pattern):
         """The match of a pattern in what is said."""
@@ -105,15 +105,15 @@ def prefix(tmp_path):
     """What ``colcon build`` installs, as far as launch looks at it."""
     from tree_sway_ros.nodes import executables
 
-    made = tmp_path / "prefix"
-    index = made / "share" / "ament_index" / "resource_index" / "packages"
-    share, programs = made / "share" / "tree_sway_ros", made / "lib" / "tree_sway_ros"
+    made = tmp_path / 'prefix'
+    index = made / 'share' / 'ament_index' / 'resource_index' / 'packages'
+    share, programs = made / 'share' / 'tree_sway_ros', made / 'lib' / 'tree_sway_ros'
     for folder in (index, share, programs):
         folder.mkdir(parents=True)
-    (index / "tree_sway_ros").touch()
-    for name in ("config", "launch"):
+    (index / 'tree_sway_ros').touch()
+    for name in ('config', 'launch'):
         (share / name).symlink_to(ROOT / name)
-    for name in ("anemometer", "player", "sensor", "wind", "solver", "viewer"):
+    for name in ('anemometer', 'player', 'sensor', 'wind', 'solver', 'viewer'):
         assert hasattr(executables, name)
         (programs / name).write_text(EXECUTABLE.format(name, python=sys.executable))
         (programs / name).chmod(0o755)
@@ -123,25 +123,25 @@ def prefix(tmp_path):
 @pytest.fixture
 def environment(prefix, ros_environment):
     """Variables of a process that launches what stands in `prefix`."""
-    paths = [str(prefix), *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
+    paths = [str(prefix), *os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)]
     return {
         **ros_environment,
-        "AMENT_PREFIX_PATH": os.pathsep.join(filter(None, paths)),
-        "PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)]),
-        "PYTHONUNBUFFERED": "1",
+        'AMENT_PREFIX_PATH': os.pathsep.join(filter(None, paths)),
+        'PYTHONPATH': os.pathsep.join([str(ROOT), *filter(None, sys.path)]),
+        'PYTHONUNBUFFERED': '1',
     }
 
 
 @pytest.fixture
 def launched(environment):
     """Launch a file: ``launched("sway.launch.py", tree="goldcrest")``."""
-    pytest.importorskip("launch_ros", reason="launch_ros is not installed")
+    pytest.importorskip('launch_ros', reason='launch_ros is not installed')
     made, variables = [], environment
 
-    def start(path, mode="terminal", environment=None, **told):
-        words = [f"{name}:={value}" for name, value in told.items()]
+    def start(path, mode='terminal', environment=None, **told):
+        words = [f'{name}:={value}' for name, value in told.items()]
         whole = {**variables, **(environment or {})}
-        made.append(Launched(ROOT / "launch" / path, words, whole, mode))
+        made.append(Launched(ROOT / 'launch' / path, words, whole, mode))
         return made[-1]
 
     yield start

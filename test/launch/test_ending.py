@@ -7,41 +7,41 @@ import urllib.request
 
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-NAMES = ("anemometer", "wind", "solver")
+NAMES = ('anemometer', 'wind', 'solver')
 
 
 def assert_ended_well(said, names=NAMES):
-    assert "escalating" not in said, said
-    assert "Traceback" not in said, said
+    assert 'escalating' not in said, said
+    assert 'Traceback' not in said, said
     for name in names:
-        assert f"[{name}-" in said
-    assert said.count("process has finished cleanly") == len(names), said
+        assert f'[{name}-' in said
+    assert said.count('process has finished cleanly') == len(names), said
 
 
 def test_while_it_sways_and_serves_its_page(launched, tmp_path):
-    told = tmp_path / "told.yaml"
-    told.write_text("/**/viewer: {ros__parameters: {port: 0}}\n")
-    run = launched("sway.launch.py", tree="goldcrest", page="true", params_file=told)
-    page = run.until(r"the page is at (http://\S+)")[1]
+    told = tmp_path / 'told.yaml'
+    told.write_text('/**/viewer: {ros__parameters: {port: 0}}\n')
+    run = launched('sway.launch.py', tree='goldcrest', page='true', params_file=told)
+    page = run.until(r'the page is at (http://\S+)')[1]
     with urllib.request.urlopen(page, timeout=10.0) as answer:
-        assert b"<canvas" in answer.read()
-    run.until("ready after")
-    assert_ended_well(run.end()[1], (*NAMES, "viewer"))
+        assert b'<canvas' in answer.read()
+    run.until('ready after')
+    assert_ended_well(run.end()[1], (*NAMES, 'viewer'))
 
 
 def test_while_kernels_compile(launched, tmp_path):
-    cold = {"TREE_SWAY_CACHE": str(tmp_path / "cold")}
-    run = launched("sway.launch.py", tree="goldcrest", environment=cold)
-    run.until("making the kernels ready")
+    cold = {'TREE_SWAY_CACHE': str(tmp_path / 'cold')}
+    run = launched('sway.launch.py', tree='goldcrest', environment=cold)
+    run.until('making the kernels ready')
     assert_ended_well(run.end()[1])
 
 
 def test_as_a_service(launched, tree_file):
     """Nobody sends the signal to the nodes but launch itself."""
-    run = launched("sway.launch.py", mode="service", tree=tree_file)
-    run.until("ready after")
+    run = launched('sway.launch.py', mode='service', tree=tree_file)
+    run.until('ready after')
     run.process.send_signal(signal.SIGINT)
     assert_ended_well(run.ended()[1])

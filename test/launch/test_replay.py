@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
@@ -31,27 +31,27 @@ _POSES = 28
 
 def replayed(launched, observer, folder, tree, speed, seconds):
     """Digest of each frame's poses by its stamp, from a launch to the end of its record."""
-    record = folder / "wind.csv"
+    record = folder / 'wind.csv'
     record.write_text(
-        "time,u,v,w\n"
-        + "".join(f"{k / 20:.2f},{6 + k % 7},{0.1 * (k % 5):.1f},0\n" for k in range(20 * seconds))
+        'time,u,v,w\n'
+        + ''.join(f'{k / 20:.2f},{6 + k % 7},{0.1 * (k % 5):.1f},0\n' for k in range(20 * seconds))
     )
-    told = folder / f"told_{speed:g}.yaml"
+    told = folder / f'told_{speed:g}.yaml'
     told.write_text(TOLD.format(speed=speed))
     frames = observer.listen(SEGMENT_POSES, raw=True, depth=1000)
     run = launched(
-        "sway.launch.py",
+        'sway.launch.py',
         tree=tree,
-        source="player",
+        source='player',
         file=record,
-        use_sim_time="true",
+        use_sim_time='true',
         params_file=told,
     )
     last = BEGIN + seconds * 10**9 - FRAME
-    observer.until(lambda: frames and stamp_of(frames[-1]) >= last, "the last frame", 90.0)
+    observer.until(lambda: frames and stamp_of(frames[-1]) >= last, 'the last frame', 90.0)
     _, said = run.end()
-    assert "escalating" not in said
-    assert "not be exact" not in said, said
+    assert 'escalating' not in said
+    assert 'not be exact' not in said, said
     found = {stamp_of(data): hashlib.sha1(data[_POSES:]).digest() for data in frames}
     # While the clock still stands the rest pose comes once, and nobody has to have heard it.
     return {stamp: digest for stamp, digest in found.items() if BEGIN <= stamp <= last}
@@ -59,7 +59,7 @@ def replayed(launched, observer, folder, tree, speed, seconds):
 
 def stamp_of(data):
     """Of a serialised pose array in [ns]."""
-    second, nanosecond = struct.unpack_from("<iI", data, 4)
+    second, nanosecond = struct.unpack_from('<iI', data, 4)
     return second * 10**9 + nanosecond
 
 
@@ -89,5 +89,5 @@ def test_three_launches_give_the_same_poses(launched, observer, tree_file, tmp_p
 
 @pytest.mark.long
 def test_twenty_launches_give_the_same_poses(launched, observer, tmp_path):
-    given = (launched, observer, tmp_path, "goldcrest")
+    given = (launched, observer, tmp_path, 'goldcrest')
     assert_alike([replayed(*given, speed, seconds=10) for speed in (1.0, 10.0) * 10])

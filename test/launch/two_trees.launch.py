@@ -14,36 +14,36 @@ from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
 
 def generate_launch_description():
     """Start the mast and both trees."""
-    share = get_package_share_directory("tree_sway_ros")
-    sway = PythonLaunchDescriptionSource(os.path.join(share, "launch", "sway.launch.py"))
+    share = get_package_share_directory('tree_sway_ros')
+    sway = PythonLaunchDescriptionSource(os.path.join(share, 'launch', 'sway.launch.py'))
 
     def tree(name, x):
-        told = {"tree": LaunchConfiguration("tree"), "params_file": LaunchConfiguration("told")}
+        told = {'tree': LaunchConfiguration('tree'), 'params_file': LaunchConfiguration('told')}
         return GroupAction(
             [
                 PushRosNamespace(name),
-                SetRemap("wind", "/mast/wind"),
+                SetRemap('wind', '/mast/wind'),
                 IncludeLaunchDescription(
-                    sway, launch_arguments={**told, "source": "live", "x": x}.items()
+                    sway, launch_arguments={**told, 'source': 'live', 'x': x}.items()
                 ),
             ]
         )
 
     mast = Node(
-        package="tree_sway_ros",
-        executable="anemometer",
-        namespace="mast",
-        name="anemometer",
-        parameters=[{"mean_speed": 9.0}],
+        package='tree_sway_ros',
+        executable='anemometer',
+        namespace='mast',
+        name='anemometer',
+        parameters=[{'mean_speed': 9.0}],
     )
     return LaunchDescription(
         [
-            DeclareLaunchArgument("tree"),
-            DeclareLaunchArgument("told"),
-            SetParameter("exposure", 0.1),
-            SetParameter("decay", 3.0),
+            DeclareLaunchArgument('tree'),
+            DeclareLaunchArgument('told'),
+            SetParameter('exposure', 0.1),
+            SetParameter('decay', 3.0),
             mast,
-            tree("elm", "0.0"),
-            tree("oak", "5.0"),
+            tree('elm', '0.0'),
+            tree('oak', '5.0'),
         ]
     )

@@ -1,22 +1,22 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import os
+from pathlib import Path
 import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
 import tree_sway_ros
 
 # An int in a float field can end the process: have every field checked.
-os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 # An observer announces itself as often as nodes do.
-PROFILE = Path(tree_sway_ros.__file__).parent / "ros" / "process" / "discovery.xml"
-os.environ.setdefault("FASTRTPS_DEFAULT_PROFILES_FILE", str(PROFILE))
+PROFILE = Path(tree_sway_ros.__file__).parent / 'ros' / 'process' / 'discovery.xml'
+os.environ.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', str(PROFILE))
 
 DEADLINE = 10.0
 
@@ -32,7 +32,7 @@ segment,parent,branch,x0,y0,z0,x1,y1,z1,d0,d1
 """
 
 
-START = "from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())"
+START = 'from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())'
 
 
 class Observer:
@@ -45,7 +45,7 @@ class Observer:
 
         self.context = Context()
         rclpy.init(args=[], context=self.context, domain_id=domain)
-        self.node = rclpy.create_node("observer", context=self.context)
+        self.node = rclpy.create_node('observer', context=self.context)
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
         self._more = threading.Condition()
@@ -78,7 +78,7 @@ class Observer:
         made = self.node.create_publisher(
             kind or message_class(topic), name or topic.name, qos_profile(topic)
         )
-        self.until(lambda: made.get_subscription_count() > 0, "a subscriber")
+        self.until(lambda: made.get_subscription_count() > 0, 'a subscriber')
         return made
 
     def call(self, kind, name, request):
@@ -86,7 +86,7 @@ class Observer:
         client = self.node.create_client(kind, name)
         self.until(client.service_is_ready, name)
         future = client.call_async(request)
-        self.until(future.done, f"a response of {name}")
+        self.until(future.done, f'a response of {name}')
         return future.result()
 
     def until(self, condition, what, deadline=DEADLINE, poll=0.02):
@@ -94,7 +94,7 @@ class Observer:
         end = time.monotonic() + deadline
         with self._more:
             while not condition():
-                assert time.monotonic() < end, f"waited {deadline} s for {what}"
+                assert time.monotonic() < end, f'waited {deadline} s for {what}'
                 self._more.wait(poll)
 
     def close(self):
@@ -124,7 +124,7 @@ def compose(domain):
 
     made = []
 
-    def start(namespace="", **parameters):
+    def start(namespace='', **parameters):
         made.append(Composition(parameters, namespace=namespace, domain_id=domain))
         return made[-1]
 
@@ -141,7 +141,7 @@ def compose(domain):
 
 @pytest.fixture
 def tree_file(tmp_path):
-    path = tmp_path / "sapling.csv"
+    path = tmp_path / 'sapling.csv'
     path.write_text(TREE)
     return str(path)
 
@@ -176,12 +176,12 @@ def run(domain):
     """Start an executable in a process of its own."""
     processes = []
 
-    def start(name, *parameters, remap=(), before="", **environment):
-        arguments = [part for p in parameters for part in ("-p", p)]
-        arguments += [part for r in remap for part in ("-r", r)]
+    def start(name, *parameters, remap=(), before='', **environment):
+        arguments = [part for p in parameters for part in ('-p', p)]
+        arguments += [part for r in remap for part in ('-r', r)]
         process = subprocess.Popen(
-            [sys.executable, "-c", before + START.format(name), "--ros-args", *arguments],
-            env=os.environ | {"ROS_DOMAIN_ID": str(domain)} | environment,
+            [sys.executable, '-c', before + START.format(name), '--ros-args', *arguments],
+            env=os.environ | {'ROS_DOMAIN_ID': str(domain)} | environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

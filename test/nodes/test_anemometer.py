@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from rcl_interfaces.srv import SetParameters  # noqa: E402
@@ -15,9 +15,9 @@ from tree_sway_ros.ros.process.topics import WIND  # noqa: E402
 
 
 def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
-    compose(anemometer={"rate": 50.0, "seed": 3, "mean_speed": 8.0})
+    compose(anemometer={'rate': 50.0, 'seed': 3, 'mean_speed': 8.0})
     said = observer.listen(WIND)
-    observer.until(lambda: len(said) > 40, "wind")
+    observer.until(lambda: len(said) > 40, 'wind')
     stamps = np.array([m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in said])
     periods = np.diff(stamps) / 2e7
     np.testing.assert_allclose(periods, np.round(periods), atol=1e-9)
@@ -27,55 +27,55 @@ def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
 
 
 def test_the_wind_changes_while_it_blows(compose, observer):
-    nodes = compose(anemometer={"turbulence": "none", "rate": 50.0})
+    nodes = compose(anemometer={'turbulence': 'none', 'rate': 50.0})
     said = observer.listen(WIND)
-    observer.until(lambda: said, "wind")
+    observer.until(lambda: said, 'wind')
     assert said[-1].vector.x == pytest.approx(6.0)
-    (result,) = nodes["anemometer"].set_parameters([Parameter("mean_speed", value=9)])
+    (result,) = nodes['anemometer'].set_parameters([Parameter('mean_speed', value=9)])
     assert result.successful
-    observer.until(lambda: said[-1].vector.x == pytest.approx(9.0), "9 m/s")
-    (result,) = nodes["anemometer"].set_parameters([Parameter("mean_speed", value=99.0)])
+    observer.until(lambda: said[-1].vector.x == pytest.approx(9.0), '9 m/s')
+    (result,) = nodes['anemometer'].set_parameters([Parameter('mean_speed', value=99.0)])
     assert not result.successful
     n = len(said)
-    observer.until(lambda: len(said) > n + 2, "more wind")
+    observer.until(lambda: len(said) > n + 2, 'more wind')
     assert said[-1].vector.x == pytest.approx(9.0)
 
 
-@pytest.mark.parametrize("kind", ["one_minus_cos", "extreme_operating_gust", "step"])
+@pytest.mark.parametrize('kind', ['one_minus_cos', 'extreme_operating_gust', 'step'])
 def test_gusts_rise_over_the_mean(compose, observer, kind):
-    gust = {"gust": kind, "gust_speed": 5.0, "gust_duration": 0.5, "gust_every": 1.0}
-    compose(anemometer={"turbulence": "none", "rate": 50.0, **gust})
+    gust = {'gust': kind, 'gust_speed': 5.0, 'gust_duration': 0.5, 'gust_every': 1.0}
+    compose(anemometer={'turbulence': 'none', 'rate': 50.0, **gust})
     said = observer.listen(WIND)
-    observer.until(lambda: said and max(m.vector.x for m in said) > 8.0, "a gust")
+    observer.until(lambda: said and max(m.vector.x for m in said) > 8.0, 'a gust')
 
 
 def test_a_turn_turns(compose, observer):
-    gust = {"gust": "turn", "gust_angle": 1.5708, "gust_duration": 0.3, "gust_every": 0.5}
-    compose(anemometer={"turbulence": "none", "rate": 50.0, **gust})
+    gust = {'gust': 'turn', 'gust_angle': 1.5708, 'gust_duration': 0.3, 'gust_every': 0.5}
+    compose(anemometer={'turbulence': 'none', 'rate': 50.0, **gust})
     said = observer.listen(WIND)
-    observer.until(lambda: said and max(m.vector.y for m in said) > 5.9, "a turn to the north")
+    observer.until(lambda: said and max(m.vector.y for m in said) > 5.9, 'a turn to the north')
 
 
 def test_gusts_that_overlap_are_refused(compose):
-    with pytest.raises(TreeSwayError, match="every"):
-        compose(anemometer={"gust": "step", "gust_duration": 5.0, "gust_every": 1.0})
+    with pytest.raises(TreeSwayError, match='every'):
+        compose(anemometer={'gust': 'step', 'gust_duration': 5.0, 'gust_every': 1.0})
 
 
-@pytest.mark.parametrize(("name", "value"), [("gust_every", 3), ("gust_duration", 21)])
+@pytest.mark.parametrize(('name', 'value'), [('gust_every', 3), ('gust_duration', 21)])
 def test_a_live_change_that_overlaps_gusts_is_refused_with_an_answer(
     compose, observer, name, value
 ):
     """Each value is in its range; together they cannot be."""
-    compose(anemometer={"gust": "step", "rate": 50.0})
+    compose(anemometer={'gust': 'step', 'rate': 50.0})
     request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
-    (result,) = observer.call(SetParameters, "anemometer/set_parameters", request).results
+    (result,) = observer.call(SetParameters, 'anemometer/set_parameters', request).results
     assert not result.successful
-    assert "overlap" in result.reason
+    assert 'overlap' in result.reason
     said = observer.listen(WIND)
-    observer.until(lambda: len(said) > 5, "wind that goes on")
+    observer.until(lambda: len(said) > 5, 'wind that goes on')
 
 
 def test_both_together_are_taken(compose):
-    nodes = compose(anemometer={"gust": "step"})
-    changes = [Parameter("gust_every", value=3.0), Parameter("gust_duration", value=2.0)]
-    assert nodes["anemometer"].set_parameters_atomically(changes).successful
+    nodes = compose(anemometer={'gust': 'step'})
+    changes = [Parameter('gust_every', value=3.0), Parameter('gust_duration', value=2.0)]
+    assert nodes['anemometer'].set_parameters_atomically(changes).successful

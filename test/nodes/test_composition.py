@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402
@@ -18,8 +18,8 @@ from tree_sway_ros.ros.reports.diagnostics import WARN  # noqa: E402
 
 def test_it_closes_twice_and_leaves_no_thread(domain):
     before = set(threading.enumerate())
-    with Composition({"wind": {}, "anemometer": {}}, domain_id=domain) as nodes:
-        assert nodes["wind"].get_name() == "wind"
+    with Composition({'wind': {}, 'anemometer': {}}, domain_id=domain) as nodes:
+        assert nodes['wind'].get_name() == 'wind'
         nodes.check()
         assert not nodes.is_done
     nodes.close()
@@ -27,66 +27,66 @@ def test_it_closes_twice_and_leaves_no_thread(domain):
 
 
 def test_namespaces_keep_two_apart(compose, observer):
-    nodes = compose(namespace="oak", wind={}, anemometer={})
-    nodes.add("wind", {}, namespace="elm")
-    assert nodes["elm/wind"].get_namespace() == "/elm"
-    oak = observer.listen(WIND_FILTERED, name="oak/wind/filtered")
-    elm = observer.listen(WIND_FILTERED, name="elm/wind/filtered")
-    observer.until(lambda: len(oak) > 5, "wind for the oak")
+    nodes = compose(namespace='oak', wind={}, anemometer={})
+    nodes.add('wind', {}, namespace='elm')
+    assert nodes['elm/wind'].get_namespace() == '/elm'
+    oak = observer.listen(WIND_FILTERED, name='oak/wind/filtered')
+    elm = observer.listen(WIND_FILTERED, name='elm/wind/filtered')
+    observer.until(lambda: len(oak) > 5, 'wind for the oak')
     assert elm == []
 
 
 def test_a_start_that_fails_cleans_up(domain):
     before = set(threading.enumerate())
-    with pytest.raises(TreeSwayError, match="out of range"):
-        Composition({"anemometer": {}, "wind": {"max_speed": -1.0}}, domain_id=domain)
+    with pytest.raises(TreeSwayError, match='out of range'):
+        Composition({'anemometer': {}, 'wind': {'max_speed': -1.0}}, domain_id=domain)
     assert set(threading.enumerate()) == before
 
 
 def test_an_error_in_a_callback_ends_nothing_and_is_told(domain, observer, statuses, monkeypatch):
     from tree_sway_ros.nodes import wind
 
-    parts = Composition({"wind": {}, "anemometer": {"rate": 50.0}}, domain_id=domain)
+    parts = Composition({'wind': {}, 'anemometer': {'rate': 50.0}}, domain_id=domain)
     filtered = observer.listen(WIND_FILTERED)
     with parts as nodes:
-        observer.until(lambda: filtered, "wind")
+        observer.until(lambda: filtered, 'wind')
         good = wind.wind_from_message
-        monkeypatch.setattr(wind, "wind_from_message", lambda message: message.no_such_field)
-        guard = nodes["wind"].guard
-        observer.until(lambda: guard.count > 5, "failures")
-        observer.until(lambda: statuses("wind: callbacks") is not None, "diagnostics")
-        assert statuses("wind: callbacks").level[0] == WARN
-        monkeypatch.setattr(wind, "wind_from_message", good)
+        monkeypatch.setattr(wind, 'wind_from_message', lambda message: message.no_such_field)
+        guard = nodes['wind'].guard
+        observer.until(lambda: guard.count > 5, 'failures')
+        observer.until(lambda: statuses('wind: callbacks') is not None, 'diagnostics')
+        assert statuses('wind: callbacks').level[0] == WARN
+        monkeypatch.setattr(wind, 'wind_from_message', good)
         n = len(filtered)
-        observer.until(lambda: len(filtered) > n, "wind again")
+        observer.until(lambda: len(filtered) > n, 'wind again')
         nodes.check()
 
 
 def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses):
-    nodes = compose(namespace="oak", wind={})
-    compose(namespace="oak", wind={})
-    observer.until(lambda: statuses("oak/wind: topics") is not None, "a warning")
-    status = statuses("oak/wind: topics")
+    nodes = compose(namespace='oak', wind={})
+    compose(namespace='oak', wind={})
+    observer.until(lambda: statuses('oak/wind: topics') is not None, 'a warning')
+    status = statuses('oak/wind: topics')
     assert status.level[0] == WARN
-    assert "2 nodes publish /oak/wind/filtered: /oak/wind and /oak/wind" in status.message
-    nodes["oak/wind"].reporter.report()
-    assert nodes["oak/wind"]._alone["/oak/wind/filtered"] == {"/oak/wind and /oak/wind"}
+    assert '2 nodes publish /oak/wind/filtered: /oak/wind and /oak/wind' in status.message
+    nodes['oak/wind'].reporter.report()
+    assert nodes['oak/wind']._alone['/oak/wind/filtered'] == {'/oak/wind and /oak/wind'}
 
 
 def test_two_senders_of_wind_are_named_though_neither_is_ours(compose, observer, statuses):
     compose(wind={})
     for _ in range(2):
         observer.publisher(WIND)
-    text = "2 nodes publish /wind: /observer and /observer; what they send mixes"
-    observer.until(lambda: text == getattr(statuses("wind: topics"), "message", ""), "a warning")
-    assert statuses("wind: topics").level[0] == WARN
+    text = '2 nodes publish /wind: /observer and /observer; what they send mixes'
+    observer.until(lambda: text == getattr(statuses('wind: topics'), 'message', ''), 'a warning')
+    assert statuses('wind: topics').level[0] == WARN
 
 
 def test_a_clock_that_cannot_be_ends_nothing(compose, observer):
-    nodes = compose(wind={"use_sim_time": True})
+    nodes = compose(wind={'use_sim_time': True})
     clock = observer.publisher(CLOCK)
     tell = lambda second: clock.publish(Clock(clock=Time(sec=second)))  # noqa: E731
-    observer.until(lambda: tell(-5) or nodes["wind"].guard.count, "the failure")
-    now = nodes["wind"].get_clock().now
-    observer.until(lambda: tell(7) or now().nanoseconds == 7 * 10**9, "the time")
-    nodes["wind"].guard.count = 0  # seen; the fixture asks for none
+    observer.until(lambda: tell(-5) or nodes['wind'].guard.count, 'the failure')
+    now = nodes['wind'].get_clock().now
+    observer.until(lambda: tell(7) or now().nanoseconds == 7 * 10**9, 'the time')
+    nodes['wind'].guard.count = 0  # seen; the fixture asks for none

@@ -4,7 +4,7 @@ import signal
 
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
@@ -22,33 +22,35 @@ def ended(process):
 def started(observer, process, name=None):
     """Frames of a solver that runs; start-up includes imports on a busy machine."""
     frames = observer.listen(SEGMENT_POSES, name=name)
-    observer.until(lambda: frames or process.poll() is not None, "frames", deadline=60.0)
+    observer.until(lambda: frames or process.poll() is not None, 'frames', deadline=60.0)
     assert process.poll() is None, process.communicate()[1]
     return frames
 
 
 @pytest.mark.parametrize(
-    "signals", [[signal.SIGINT], [signal.SIGTERM], [signal.SIGINT] * 3], ids=["int", "term", "int3"]
+    'signals',
+    [[signal.SIGINT], [signal.SIGTERM], [signal.SIGINT] * 3],
+    ids=['int', 'term', 'int3'],
 )
 def test_a_node_that_is_told_to_end_ends_well(run, observer, tree_file, signals):
-    process = run("solver", f"tree:={tree_file}", "rate:=40")  # a whole number for a double
+    process = run('solver', f'tree:={tree_file}', 'rate:=40')  # a whole number for a double
     started(observer, process)
     for number in signals:
         process.send_signal(number)
     code, errors = ended(process)
     assert code == 0, errors
-    assert "Traceback" not in errors
+    assert 'Traceback' not in errors
 
 
 @pytest.mark.parametrize(
-    ("name", "parameters", "environment", "message"),
+    ('name', 'parameters', 'environment', 'message'),
     [
-        ("solver", ["rats:=40"], {}, "unknown parameter 'rats'; did you mean 'rate'"),
-        ("player", [], {}, "no file to play"),
-        ("wind", [], {"ROS_DOMAIN_ID": "three"}, "ROS_DOMAIN_ID=three is no domain"),
-        ("wind", [], {"ROS_DOMAIN_ID": "300"}, "ROS_DOMAIN_ID=300 is no domain"),
-        ("wind", ["max_speed:=-1.0"], {}, "give 1 .. 150 [m/s]"),
-        ("anemometer", ["rate:=[1"], {}, "ROS 2 cannot start"),
+        ('solver', ['rats:=40'], {}, "unknown parameter 'rats'; did you mean 'rate'"),
+        ('player', [], {}, 'no file to play'),
+        ('wind', [], {'ROS_DOMAIN_ID': 'three'}, 'ROS_DOMAIN_ID=three is no domain'),
+        ('wind', [], {'ROS_DOMAIN_ID': '300'}, 'ROS_DOMAIN_ID=300 is no domain'),
+        ('wind', ['max_speed:=-1.0'], {}, 'give 1 .. 150 [m/s]'),
+        ('anemometer', ['rate:=[1'], {}, 'ROS 2 cannot start'),
     ],
 )
 def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
@@ -56,33 +58,33 @@ def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
 ):
     code, errors = ended(run(name, *parameters, **environment))
     assert code == 2, errors
-    assert errors.splitlines()[-1].startswith(f"{name}: ")
+    assert errors.splitlines()[-1].startswith(f'{name}: ')
     assert message in errors
-    assert "Traceback" not in errors
+    assert 'Traceback' not in errors
 
 
 def test_without_ros_one_line_says_so(run):
-    code, errors = ended(run("wind", before=WITHOUT_ROS))
+    code, errors = ended(run('wind', before=WITHOUT_ROS))
     assert code == 2
     assert len(errors.splitlines()) == 1
-    assert "rclpy" in errors
-    assert "source /opt/ros/jazzy/setup.bash" in errors
+    assert 'rclpy' in errors
+    assert 'source /opt/ros/jazzy/setup.bash' in errors
 
 
 def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
     run, compose, observer, tree_file
 ):
     """Beside it a solver that was never killed; both tick on the same grid."""
-    parameters = {"tree": tree_file, "damping_ratio": 0.5, "wind_delay": 0.5}
-    compose(solver=parameters, wind={}, anemometer={"mean_speed": 8.0})
+    parameters = {'tree': tree_file, 'damping_ratio': 0.5, 'wind_delay': 0.5}
+    compose(solver=parameters, wind={}, anemometer={'mean_speed': 8.0})
     steady = observer.listen(SEGMENT_POSES)
-    arguments = [f"{name}:={value}" for name, value in parameters.items()]
-    remap = ["segment_poses:=mortal", "__node:=mortal"]
-    process = run("solver", *arguments, remap=remap)
-    started(observer, process, "mortal")
+    arguments = [f'{name}:={value}' for name, value in parameters.items()]
+    remap = ['segment_poses:=mortal', '__node:=mortal']
+    process = run('solver', *arguments, remap=remap)
+    started(observer, process, 'mortal')
     process.send_signal(signal.SIGKILL)
     process.wait()
-    frames = started(observer, run("solver", *arguments, remap=remap), "mortal")
+    frames = started(observer, run('solver', *arguments, remap=remap), 'mortal')
     begin = stamp_to_ns(frames[0].header.stamp)
     # What remembers longest is the estimate of the sensor's period: 0.9 per sample, 20 per second.
     settled = begin + 8 * 10**9
@@ -100,5 +102,5 @@ def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
         last = sorted(set(ours) & set(theirs))[-30:]
         return len(last) == 30 and all(abs(ours[stamp] - theirs[stamp]) < 1e-7 for stamp in last)
 
-    observer.until(agree, "both to sway alike", deadline=40.0)
+    observer.until(agree, 'both to sway alike', deadline=40.0)
     assert max(late(frames).values()) > 1e-3

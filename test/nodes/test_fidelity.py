@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402
@@ -19,7 +19,7 @@ from tree_sway_ros.ros.process.topics import (  # noqa: E402
     WIND_FILTERED,
 )
 from tree_sway_ros.ros.reports.diagnostics import WARN  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import WindSample, wind_to_message  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
 def told(status):
@@ -27,56 +27,56 @@ def told(status):
 
 
 def test_a_camera_that_comes_nearer_gets_a_better_model(compose, observer, statuses, tree_file):
-    compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 5.0})
-    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
-    assert told(statuses("solver: model"))["fidelity"] == "frozen"
+    compose(solver={'tree': tree_file, 'fidelity': 'auto', 'tolerance': 5.0})
+    observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
+    assert told(statuses('solver: model'))['fidelity'] == 'frozen'
     near = PoseStamped()
     near.pose.position.x = 1.0
     camera = observer.publisher(CAMERA)
     expected = 0.5 * (1.0 / 1000.0)
 
     def tolerance():
-        return float(told(statuses("solver: model"))["tolerance [m]"])
+        return float(told(statuses('solver: model'))['tolerance [m]'])
 
     observer.until(
-        lambda: camera.publish(near) or tolerance() < 0.01, "the tolerance of the camera"
+        lambda: camera.publish(near) or tolerance() < 0.01, 'the tolerance of the camera'
     )
     assert tolerance() == pytest.approx(expected, rel=0.2)
 
 
 def test_every_segment_solved_streams_as_the_reduced_tree_does(compose, observer, tree_file):
-    compose(solver={"tree": tree_file, "fidelity": "segments"})
+    compose(solver={'tree': tree_file, 'fidelity': 'segments'})
     frames = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: len(frames) > 30, "frames")
+    observer.until(lambda: len(frames) > 30, 'frames')
     assert len(frames[-1].poses) == 7
 
 
 def test_a_tolerance_nobody_can_meet_is_told(compose, observer, statuses, tree_file):
-    compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 1e-6})
-    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
-    assert statuses("solver: model").level[0] == WARN
-    assert "no model is within the tolerance; allow" in statuses("solver: model").message
+    compose(solver={'tree': tree_file, 'fidelity': 'auto', 'tolerance': 1e-6})
+    observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
+    assert statuses('solver: model').level[0] == WARN
+    assert 'no model is within the tolerance; allow' in statuses('solver: model').message
 
 
 def test_a_budget_is_told_and_kept_where_it_can_be(compose, observer, statuses, tree_file):
-    compose(solver={"tree": tree_file, "fidelity": "auto", "tolerance": 1e-6, "budget": 0.5})
-    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
-    status = statuses("solver: model")
+    compose(solver={'tree': tree_file, 'fidelity': 'auto', 'tolerance': 1e-6, 'budget': 0.5})
+    observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
+    status = statuses('solver: model')
     assert status.level[0] == WARN
-    assert "no model is within the budget; allow" in status.message
+    assert 'no model is within the budget; allow' in status.message
     values = told(status)
-    assert float(values["budget [us]"]) == 0.5
-    assert float(values["estimated cost [us]"]) > 0.5
-    assert values["fidelity"] == "frozen"
-    assert int(values["branches frozen"]) > 0
+    assert float(values['budget [us]']) == 0.5
+    assert float(values['estimated cost [us]']) > 0.5
+    assert values['fidelity'] == 'frozen'
+    assert int(values['branches frozen']) > 0
 
 
 def test_what_the_wind_basis_leaves_out_and_the_gate_refuses_is_counted(
     compose, observer, statuses, tree_file
 ):
-    nodes = compose(solver={"tree": tree_file, "fidelity": "wind_basis"})
+    nodes = compose(solver={'tree': tree_file, 'fidelity': 'wind_basis'})
     wind = observer.publisher(WIND_FILTERED)
-    bank = nodes["solver"].simulator.bank.oscillators
+    bank = nodes['solver'].simulator.bank.oscillators
     stamp = observer.node.get_clock().now
 
     def said(name, count):
@@ -85,37 +85,37 @@ def test_what_the_wind_basis_leaves_out_and_the_gate_refuses_is_counted(
 
     def blow(w):
         now = stamp().nanoseconds
-        wind.publish(wind_to_message(Vector3Stamped, WindSample(now, "map", 0.5, 0.2, w)))
+        wind.publish(wind_to_message(Vector3Stamped, WindSample(now, 'map', 0.5, 0.2, w)))
 
-    observer.until(lambda: blow(3.0) or bank.n_outside > 10, "steep wind")
+    observer.until(lambda: blow(3.0) or bank.n_outside > 10, 'steep wind')
     blow(math.nan)
     observer.until(
-        lambda: said("solver: model", "steps outside of the wind basis") > 10, "the steps"
+        lambda: said('solver: model', 'steps outside of the wind basis') > 10, 'the steps'
     )
-    observer.until(lambda: said("solver: wind", "not_finite") == 1, "the refusal")
+    observer.until(lambda: said('solver: wind', 'not_finite') == 1, 'the refusal')
 
 
 def test_leaves_are_told_once_and_never_by_the_frame(compose, observer, tree_file):
-    compose(solver={"tree": tree_file, "leaves": "on", "leaf_clusters": 40, "profile": "power"})
+    compose(solver={'tree': tree_file, 'leaves': 'on', 'leaf_clusters': 40, 'profile': 'power'})
     described = observer.listen(TREE_DESCRIPTION)
     frames = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: described and len(frames) > 30, "the description and frames")
-    leaves = json.loads(described[0].data)["leaves"]
-    assert len(leaves["segment"]) == 40
-    assert set(leaves["segment"]) <= set(range(7))
-    assert leaves["flutter"]["gain"] > 0.0
+    observer.until(lambda: described and len(frames) > 30, 'the description and frames')
+    leaves = json.loads(described[0].data)['leaves']
+    assert len(leaves['segment']) == 40
+    assert set(leaves['segment']) <= set(range(7))
+    assert leaves['flutter']['gain'] > 0.0
     assert len(frames[-1].poses) == 7
 
 
-@pytest.mark.parametrize("bad", [float("nan"), float("inf"), 1e300])
+@pytest.mark.parametrize('bad', [float('nan'), float('inf'), 1e300])
 def test_a_camera_nowhere_is_refused_and_counted(compose, observer, statuses, tree_file, bad):
-    nodes = compose(solver={"tree": tree_file, "fidelity": "auto"})
+    nodes = compose(solver={'tree': tree_file, 'fidelity': 'auto'})
     frames, camera = observer.listen(SEGMENT_POSES), observer.publisher(CAMERA)
     wrong = PoseStamped()
     wrong.pose.position.y = bad
     # Again and again: a sample of best effort is lost until the other side is matched as well.
-    observer.until(lambda: camera.publish(wrong) or statuses("solver: camera") is not None, "WARN")
-    assert int(told(statuses("solver: camera"))["refused"]) > 0
+    observer.until(lambda: camera.publish(wrong) or statuses('solver: camera') is not None, 'WARN')
+    assert int(told(statuses('solver: camera'))['refused']) > 0
     n = len(frames)
-    observer.until(lambda: len(frames) > n + 10, "frames that go on")
-    assert nodes["solver"].simulator.tolerance == 0.005
+    observer.until(lambda: len(frames) > n + 10, 'frames that go on')
+    assert nodes['solver'].simulator.tolerance == 0.005

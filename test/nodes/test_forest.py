@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402
@@ -20,43 +20,45 @@ from tree_sway_ros.ros.process.topics import (  # noqa: E402
     TREE_DESCRIPTION,
     WIND_FILTERED,
 )
-from tree_sway_ros.ros.wire.wind_messages import WindSample, wind_to_message  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
 @pytest.fixture
 def forest_file(tmp_path, tree_file):
     """Two trees of the test tree, one of them in leaf, 3 m apart."""
-    path = tmp_path / "glade.yaml"
+    path = tmp_path / 'glade.yaml'
     path.write_text(
-        "trees:\n"
-        f"- {{name: oak, tree: {tree_file}, species: oak}}\n"
-        f"- {{name: elm, tree: {tree_file}, x: 3, leaf_on: true}}\n"
+        'trees:\n'
+        f'- {{name: oak, tree: {tree_file}, species: oak}}\n'
+        f'- {{name: elm, tree: {tree_file}, x: 3, leaf_on: true}}\n'
     )
     return str(path)
 
 
 def positions(message):
-    return np.array([(pose.position.x, pose.position.y, pose.position.z) for pose in message.poses])
+    return np.array(
+        [(pose.position.x, pose.position.y, pose.position.z) for pose in message.poses]
+    )
 
 
 def blow(observer, publisher, vector):
     stamp = observer.node.get_clock().now().nanoseconds
-    publisher.publish(wind_to_message(Vector3Stamped, WindSample(stamp, "map", *vector)))
+    publisher.publish(wind_to_message(Vector3Stamped, WindSample(stamp, 'map', *vector)))
 
 
 def test_a_forest_is_streamed_as_one(compose, observer, statuses, forest_file):
-    compose(solver={"tree": forest_file, "leaf_clusters": 20})
+    compose(solver={'tree': forest_file, 'leaf_clusters': 20})
     described = observer.listen(TREE_DESCRIPTION)
     frames, markers = observer.listen(SEGMENT_POSES), observer.listen(MARKERS)
-    observer.until(lambda: described and frames and markers, "a frame")
+    observer.until(lambda: described and frames and markers, 'a frame')
     told = json.loads(described[0].data)
     tree = open_scene(forest_file).tree
-    assert told["name"] == "glade"
-    assert told["segments"]["names"] == list(tree.segment_names)
-    assert told["segments"]["names"][0].startswith("oak/")
-    assert told["segments"]["names"][7].startswith("elm/")
+    assert told['name'] == 'glade'
+    assert told['segments']['names'] == list(tree.segment_names)
+    assert told['segments']['names'][0].startswith('oak/')
+    assert told['segments']['names'][7].startswith('elm/')
     # Only the elm is in leaf, whatever the parameter.
-    assert set(told["leaves"]["segment"]) <= set(range(7, 14))
+    assert set(told['leaves']['segment']) <= set(range(7, 14))
     rest = positions(frames[0])
     assert rest == pytest.approx(tree.start, abs=1e-12)
     assert sum(len(marker.points) for marker in markers[0].markers) == 2 * 14
@@ -66,31 +68,33 @@ def test_a_forest_is_streamed_as_one(compose, observer, statuses, forest_file):
         blow(observer, wind, (8.0, 0.0, 0.0))
         return (positions(frames[-1])[[2, 9], 0] > rest[[2, 9], 0] + 1e-3).all()
 
-    observer.until(both_bend, "both to bend east")
-    assert observer.call(Trigger, "solver/reset", Trigger.Request()).success
-    observer.until(lambda: statuses("solver: model") is not None, "diagnostics")
-    values = {pair.key: pair.value for pair in statuses("solver: model").values}
-    assert values["fidelity of oak"] == values["fidelity of elm"] == "modes"
-    assert "s late" in statuses("solver: gusts").message
+    observer.until(both_bend, 'both to bend east')
+    assert observer.call(Trigger, 'solver/reset', Trigger.Request()).success
+    observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
+    values = {pair.key: pair.value for pair in statuses('solver: model').values}
+    assert values['fidelity of oak'] == values['fidelity of elm'] == 'modes'
+    assert 's late' in statuses('solver: gusts').message
 
 
-def test_each_tree_is_as_exact_as_its_distance_from_the_camera_asks(compose, observer, forest_file):
-    nodes = compose(solver={"tree": forest_file, "fidelity": "auto"})
+def test_each_tree_is_as_exact_as_its_distance_from_the_camera_asks(
+    compose, observer, forest_file
+):
+    nodes = compose(solver={'tree': forest_file, 'fidelity': 'auto'})
     camera = observer.publisher(CAMERA)
     message = PoseStamped()
     message.pose.position.x = 13.0
-    oak, elm = nodes["solver"].simulator.simulators
+    oak, elm = nodes['solver'].simulator.simulators
 
     def seen():
         camera.publish(message)
         return 0.005 not in (oak.tolerance, elm.tolerance)
 
-    observer.until(seen, "the camera to be seen")
+    observer.until(seen, 'the camera to be seen')
     assert oak.tolerance / elm.tolerance == pytest.approx(13.0 / 10.0, abs=0.03)
 
 
 def test_a_forest_that_cannot_be_says_where(compose, tmp_path):
-    path = tmp_path / "glade.yaml"
-    path.write_text("trees:\n- {name: oak, tree: none.yaml}\n")
+    path = tmp_path / 'glade.yaml'
+    path.write_text('trees:\n- {name: oak, tree: none.yaml}\n')
     with pytest.raises(TreeSwayError, match=r"glade\.yaml:2: tree 'oak': no tree 'none.yaml'"):
-        compose(solver={"tree": str(path)})
+        compose(solver={'tree': str(path)})

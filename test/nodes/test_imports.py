@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-pytest.importorskip("rclpy")
+pytest.importorskip('rclpy')
 
 PROGRAM = """
 import importlib, sys
@@ -19,9 +19,9 @@ print([name for name in sys.modules if name == "numba" or name == "tree_sway_ros
 
 
 @pytest.mark.ros
-@pytest.mark.parametrize("node", ["wind", "anemometer", "player", "viewer"])
+@pytest.mark.parametrize('node', ['wind', 'anemometer', 'player', 'viewer'])
 def test_a_node_without_kernels_loads_no_compiler(node):
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM.format(node)], capture_output=True, text=True, check=True
+        [sys.executable, '-c', PROGRAM.format(node)], capture_output=True, text=True, check=True
     )
-    assert done.stdout.strip() == "[]"
+    assert done.stdout.strip() == '[]'

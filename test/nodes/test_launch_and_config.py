@@ -11,19 +11,19 @@ from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
-    *("tree", "address", "file", "topic", "reader_options", "rate"),
-    *("input_convention", "sensor_yaw", "start", "speed", "loop"),
-    *("x", "y", "z", "yaw", "frame_id", "use_sim_time", "lifecycle"),
+    *('tree', 'address', 'file', 'topic', 'reader_options', 'rate'),
+    *('input_convention', 'sensor_yaw', 'start', 'speed', 'loop'),
+    *('x', 'y', 'z', 'yaw', 'frame_id', 'use_sim_time', 'lifecycle'),
 )
-GIVEN = dict.fromkeys(ARGUMENTS, "")
+GIVEN = dict.fromkeys(ARGUMENTS, '')
 
 
 @pytest.fixture
 def launch_file():
     """The launch file as a module; only where ROS's launch is installed."""
-    pytest.importorskip("launch_ros", reason="launch_ros is not installed")
-    path = ROOT / "launch" / "sway.launch.py"
-    spec = importlib.util.spec_from_file_location("sway_launch", path)
+    pytest.importorskip('launch_ros', reason='launch_ros is not installed')
+    path = ROOT / 'launch' / 'sway.launch.py'
+    spec = importlib.util.spec_from_file_location('sway_launch', path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -32,20 +32,22 @@ def launch_file():
 def start(launch_file, monkeypatch, **given):
     from launch import LaunchContext
 
-    monkeypatch.setattr(launch_file, "get_package_share_directory", lambda _: str(ROOT))
+    monkeypatch.setattr(launch_file, 'get_package_share_directory', lambda _: str(ROOT))
     context = LaunchContext()
-    context.launch_configurations.update({name: d for name, d, *_ in launch_file.ARGUMENTS} | given)
+    context.launch_configurations.update(
+        {name: d for name, d, *_ in launch_file.ARGUMENTS} | given
+    )
     return {node.node_executable: node for node in launch_file.start_nodes(context)}
 
 
 @pytest.mark.parametrize(
-    ("source", "executables"),
+    ('source', 'executables'),
     [
-        ("simulated", {"anemometer", "wind", "solver"}),
-        ("player", {"player", "wind", "solver"}),
-        ("live", {"wind", "solver"}),
-        ("sensor", {"sensor", "wind", "solver"}),
-        ("elsewhere", {"solver"}),
+        ('simulated', {'anemometer', 'wind', 'solver'}),
+        ('player', {'player', 'wind', 'solver'}),
+        ('live', {'wind', 'solver'}),
+        ('sensor', {'sensor', 'wind', 'solver'}),
+        ('elsewhere', {'solver'}),
     ],
 )
 def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executables):
@@ -54,68 +56,68 @@ def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executab
 
 def test_shards_hear_one_wind_and_speak_in_namespaces_of_their_own(launch_file):
     given = {name: default for name, default, *_ in launch_file.ARGUMENTS}
-    given |= {"shards": "3", "namespace": "wood"}
+    given |= {'shards': '3', 'namespace': 'wood'}
     assert launch_file.shards_here(given) == [0, 1, 2]
-    assert launch_file.shards_here(given | {"here": "2,0"}) == [2, 0]
-    node = launch_file.make_shard(2, given, str(ROOT / "config"), "/north")
-    assert node.expanded_node_namespace in ("wood/shard2", node.UNSPECIFIED_NODE_NAMESPACE)
-    for wrong in ({"here": "3"}, {"here": "-1"}, {"shards": "0"}):
+    assert launch_file.shards_here(given | {'here': '2,0'}) == [2, 0]
+    node = launch_file.make_shard(2, given, str(ROOT / 'config'), '/north')
+    assert node.expanded_node_namespace in ('wood/shard2', node.UNSPECIFIED_NODE_NAMESPACE)
+    for wrong in ({'here': '3'}, {'here': '-1'}, {'shards': '0'}):
         with pytest.raises(ValueError, match="'here'"):
             launch_file.shards_here(given | wrong)
 
 
 def test_a_host_that_hears_the_wind_of_another_starts_solvers_alone(launch_file, monkeypatch):
-    nodes = start(launch_file, monkeypatch, source="elsewhere", shards="2", here="1")
-    assert set(nodes) == {"solver"}
-    with pytest.raises(ValueError, match="page"):
-        start(launch_file, monkeypatch, shards="2", page="true")
+    nodes = start(launch_file, monkeypatch, source='elsewhere', shards='2', here='1')
+    assert set(nodes) == {'solver'}
+    with pytest.raises(ValueError, match='page'):
+        start(launch_file, monkeypatch, shards='2', page='true')
 
 
 def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):
-    assert "viewer" in start(launch_file, monkeypatch, page="1")
-    assert "rviz2" in start(launch_file, monkeypatch, rviz="true")
+    assert 'viewer' in start(launch_file, monkeypatch, page='1')
+    assert 'rviz2' in start(launch_file, monkeypatch, rviz='true')
 
 
-@pytest.mark.parametrize("word", ["True", "true", "1"])
+@pytest.mark.parametrize('word', ['True', 'true', '1'])
 def test_yes_is_yes_however_it_is_written(launch_file, monkeypatch, word):
-    nodes = start(launch_file, monkeypatch, use_sim_time=word, rviz=word, source="player")
-    assert "rviz2" in nodes
-    assert launch_file.overrides_of("solver", GIVEN | {"use_sim_time": word}) == {
-        "use_sim_time": True
+    nodes = start(launch_file, monkeypatch, use_sim_time=word, rviz=word, source='player')
+    assert 'rviz2' in nodes
+    assert launch_file.overrides_of('solver', GIVEN | {'use_sim_time': word}) == {
+        'use_sim_time': True
     }
-    assert launch_file.overrides_of("player", GIVEN | {"use_sim_time": word}) == {
-        "use_sim_time": False,
-        "publish_clock": True,
+    assert launch_file.overrides_of('player', GIVEN | {'use_sim_time': word}) == {
+        'use_sim_time': False,
+        'publish_clock': True,
     }
 
 
 def test_neither_yes_nor_no_is_refused(launch_file):
     with pytest.raises(ValueError, match="'use_sim_time': 'maybe' is neither true nor false"):
-        launch_file.overrides_of("wind", GIVEN | {"use_sim_time": "maybe"})
+        launch_file.overrides_of('wind', GIVEN | {'use_sim_time': 'maybe'})
 
 
 def test_arguments_that_are_not_given_override_nothing(launch_file):
-    for name in ("anemometer", "player", "wind", "solver"):
+    for name in ('anemometer', 'player', 'wind', 'solver'):
         assert launch_file.overrides_of(name, GIVEN) == {}
-    placed = launch_file.overrides_of("solver", GIVEN | {"x": "3", "yaw": "1.57"})
-    assert placed == {"x": 3.0, "yaw": 1.57}
+    placed = launch_file.overrides_of('solver', GIVEN | {'x': '3', 'yaw': '1.57'})
+    assert placed == {'x': 3.0, 'yaw': 1.57}
 
 
 def test_the_player_is_told_how_to_read_and_where_to_begin(launch_file):
-    given = {"input_convention": "from", "sensor_yaw": "1.57", "topic": "/mast/wind"}
-    given |= {"start": "30", "speed": "2", "loop": "False"}
-    told = launch_file.overrides_of("player", GIVEN | given)
+    given = {'input_convention': 'from', 'sensor_yaw': '1.57', 'topic': '/mast/wind'}
+    given |= {'start': '30', 'speed': '2', 'loop': 'False'}
+    told = launch_file.overrides_of('player', GIVEN | given)
     assert told == {
-        **{"input_convention": "from", "yaw": 1.57, "topic": "/mast/wind"},
-        **{"start": 30.0, "speed": 2.0, "loop": False},
+        **{'input_convention': 'from', 'yaw': 1.57, 'topic': '/mast/wind'},
+        **{'start': 30.0, 'speed': 2.0, 'loop': False},
     }
-    assert launch_file.overrides_of("solver", GIVEN | given) == {}
+    assert launch_file.overrides_of('solver', GIVEN | given) == {}
 
 
 def test_what_is_shipped_in_config_overrides_no_default():
-    for name in ("anemometer", "player", "sensor", "wind", "solver"):
-        content = yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text())
-        assert content == {f"/**/{name}": {"ros__parameters": {}}}
+    for name in ('anemometer', 'player', 'sensor', 'wind', 'solver'):
+        content = yaml.safe_load((ROOT / 'config' / f'{name}.yaml').read_text())
+        assert content == {f'/**/{name}': {'ros__parameters': {}}}
 
 
 def test_every_argument_is_declared(launch_file):
@@ -124,20 +126,20 @@ def test_every_argument_is_declared(launch_file):
 
 
 def test_rviz_shows_our_topics():
-    config = yaml.safe_load((ROOT / "config" / "tree_sway.rviz").read_text())
-    manager = config["Visualization Manager"]
-    shown = [d["Topic"] for d in manager["Displays"] if "Topic" in d]
+    config = yaml.safe_load((ROOT / 'config' / 'tree_sway.rviz').read_text())
+    manager = config['Visualization Manager']
+    shown = [d['Topic'] for d in manager['Displays'] if 'Topic' in d]
     by_name = {topic.name: topic for topic in TOPICS}
-    assert {topic["Value"] for topic in shown} == {"markers", "segment_poses", "wind/force_plane"}
+    assert {topic['Value'] for topic in shown} == {'markers', 'segment_poses', 'wind/force_plane'}
     for topic in shown:
-        assert by_name[topic["Value"]].reliable == (topic["Reliability Policy"] == "Reliable")
-    assert manager["Global Options"]["Fixed Frame"] == "map"
+        assert by_name[topic['Value']].reliable == (topic['Reliability Policy'] == 'Reliable')
+    assert manager['Global Options']['Fixed Frame'] == 'map'
 
 
 def test_the_transport_profile_has_room():
-    root = ElementTree.parse(ROOT / "config" / "fastdds.xml").getroot()
-    space = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
-    assert int(root.find(f".//{space}segment_size").text) == 32 * 2**20
-    assert int(root.find(f".//{space}receiveBufferSize").text) == 4_194_304
-    transports = {item.text for item in root.iterfind(f".//{space}transport_id")}
-    assert transports == {"large_shared_memory", "large_sockets"}
+    root = ElementTree.parse(ROOT / 'config' / 'fastdds.xml').getroot()
+    space = '{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}'
+    assert int(root.find(f'.//{space}segment_size').text) == 32 * 2**20
+    assert int(root.find(f'.//{space}receiveBufferSize').text) == 4_194_304
+    transports = {item.text for item in root.iterfind(f'.//{space}transport_id')}
+    assert transports == {'large_shared_memory', 'large_sockets'}

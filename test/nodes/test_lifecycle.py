@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from lifecycle_msgs.msg import Transition  # noqa: E402
@@ -15,36 +15,36 @@ from tree_sway_ros.ros.process.topics import SEGMENT_POSES, WIND, WIND_FILTERED 
 def manage(observer):
     def change(node, transition):
         request = ChangeState.Request(transition=Transition(id=transition))
-        return observer.call(ChangeState, f"{node}/change_state", request).success
+        return observer.call(ChangeState, f'{node}/change_state', request).success
 
     return change
 
 
 def state_of(observer, node):
-    return observer.call(GetState, f"{node}/get_state", GetState.Request()).current_state.label
+    return observer.call(GetState, f'{node}/get_state', GetState.Request()).current_state.label
 
 
 def goes_on(observer, messages):
     n = len(messages)
-    observer.until(lambda: len(messages) > n + 5, "messages")
+    observer.until(lambda: len(messages) > n + 5, 'messages')
 
 
 def stands(observer, messages, others):
     """Nothing more comes while others go on."""
     n, m = len(messages), len(others)
-    observer.until(lambda: len(others) > m + 10, "others")
+    observer.until(lambda: len(others) > m + 10, 'others')
     assert len(messages) <= n + 1
 
 
 def test_a_managed_chain_is_configured_started_stopped_and_started_again(
     compose, observer, manage, tree_file
 ):
-    managed = {"lifecycle": True}
-    compose(anemometer=managed, wind=managed, solver={"tree": tree_file, **managed})
+    managed = {'lifecycle': True}
+    compose(anemometer=managed, wind=managed, solver={'tree': tree_file, **managed})
     frames, said = observer.listen(SEGMENT_POSES), observer.listen(WIND)
     filtered = observer.listen(WIND_FILTERED)
-    assert state_of(observer, "solver") == "unconfigured"
-    names = ("anemometer", "wind", "solver")
+    assert state_of(observer, 'solver') == 'unconfigured'
+    names = ('anemometer', 'wind', 'solver')
     for node in names:
         assert manage(node, Transition.TRANSITION_CONFIGURE)
     assert (frames, said) == ([], [])
@@ -52,29 +52,29 @@ def test_a_managed_chain_is_configured_started_stopped_and_started_again(
         assert manage(node, Transition.TRANSITION_ACTIVATE)
     goes_on(observer, frames)
     goes_on(observer, filtered)
-    assert manage("wind", Transition.TRANSITION_DEACTIVATE)
+    assert manage('wind', Transition.TRANSITION_DEACTIVATE)
     stands(observer, filtered, said)
-    assert manage("solver", Transition.TRANSITION_DEACTIVATE)
+    assert manage('solver', Transition.TRANSITION_DEACTIVATE)
     stands(observer, frames, said)
-    for node in ("wind", "solver"):
+    for node in ('wind', 'solver'):
         assert manage(node, Transition.TRANSITION_CLEANUP)
         assert manage(node, Transition.TRANSITION_CONFIGURE)
         assert manage(node, Transition.TRANSITION_ACTIVATE)
     goes_on(observer, frames)
     goes_on(observer, filtered)
-    assert state_of(observer, "solver") == "active"
+    assert state_of(observer, 'solver') == 'active'
 
 
 def test_what_cannot_be_configured_says_so_and_stays_as_it_was(compose, observer, manage):
-    nodes = compose(solver={"tree": "elm.yaml", "lifecycle": True})
-    before = len(list(nodes["solver"].publishers))
-    assert not manage("solver", Transition.TRANSITION_CONFIGURE)
-    assert state_of(observer, "solver") == "unconfigured"
-    assert len(list(nodes["solver"].publishers)) == before
+    nodes = compose(solver={'tree': 'elm.yaml', 'lifecycle': True})
+    before = len(list(nodes['solver'].publishers))
+    assert not manage('solver', Transition.TRANSITION_CONFIGURE)
+    assert state_of(observer, 'solver') == 'unconfigured'
+    assert len(list(nodes['solver'].publishers)) == before
 
 
 def test_a_transition_that_is_none_ends_nothing(compose, observer, manage):
-    nodes = compose(wind={"lifecycle": True})
-    assert not manage("wind", Transition.TRANSITION_ACTIVATE)
-    assert state_of(observer, "wind") == "unconfigured"
-    nodes["wind"].guard.count = 0  # seen; the fixture asks for none
+    nodes = compose(wind={'lifecycle': True})
+    assert not manage('wind', Transition.TRANSITION_ACTIVATE)
+    assert state_of(observer, 'wind') == 'unconfigured'
+    nodes['wind'].guard.count = 0  # seen; the fixture asks for none

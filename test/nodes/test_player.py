@@ -6,7 +6,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
@@ -24,18 +24,18 @@ def gusty(tmp_path):
     """Four seconds of a gusty westerly at 20 Hz."""
     time = np.arange(80) * 0.05
     wind = 6.0 + 2.0 * np.sin(2.0 * time) + 0.3 * np.cos(9.0 * time)
-    path = tmp_path / "wind.csv"
-    rows = [f"{t:.2f},{u:.4f},{0.2 * np.sin(t):.4f},0.0" for t, u in zip(time, wind, strict=True)]
-    path.write_text("time,u,v,w\n" + "\n".join(rows) + "\n")
+    path = tmp_path / 'wind.csv'
+    rows = [f'{t:.2f},{u:.4f},{0.2 * np.sin(t):.4f},0.0' for t, u in zip(time, wind, strict=True)]
+    path.write_text('time,u,v,w\n' + '\n'.join(rows) + '\n')
     return str(path)
 
 
 def test_a_record_is_played_as_it_is_and_then_ends(compose, observer, wind_file):
     said = observer.listen(WIND)
-    nodes = compose(player={"file": wind_file, "speed": 20.0, "loop": False})
-    observer.until(lambda: nodes.is_done, "the end")
+    nodes = compose(player={'file': wind_file, 'speed': 20.0, 'loop': False})
+    observer.until(lambda: nodes.is_done, 'the end')
     record = read_wind(wind_file)
-    observer.until(lambda: len(said) >= 78, "the samples")
+    observer.until(lambda: len(said) >= 78, 'the samples')
     known = {tuple(v) for v in record.velocity}
     assert all((m.vector.x, m.vector.y, m.vector.z) in known for m in said)
     periods = np.diff([stamp_to_ns(m.header.stamp) for m in said])
@@ -44,8 +44,8 @@ def test_a_record_is_played_as_it_is_and_then_ends(compose, observer, wind_file)
 
 def test_the_clock_goes_on_over_the_seam_of_a_loop(compose, observer, wind_file):
     said, ticks = observer.listen(WIND), observer.listen(CLOCK)
-    compose(player={"file": wind_file, "speed": 40.0, "publish_clock": True})
-    observer.until(lambda: len(said) > 200, "two rounds and a half")
+    compose(player={'file': wind_file, 'speed': 40.0, 'publish_clock': True})
+    observer.until(lambda: len(said) > 200, 'two rounds and a half')
     clock = [stamp_to_ns(tick.clock) for tick in ticks]
     stamps = [stamp_to_ns(m.header.stamp) for m in said]
     assert (np.diff(clock) >= 0).all()  # it stands until the player begins
@@ -60,22 +60,22 @@ FRAME = 16_666_667
 def poses_of(compose, observer, wind_file, tree_file, speed):
     """What a whole record moves a tree to, frame by frame."""
     frames = observer.listen(SEGMENT_POSES, depth=1000)
-    simulated = {"use_sim_time": True}
+    simulated = {'use_sim_time': True}
     nodes = compose(
-        solver={"tree": tree_file, "exact_replay": True, **simulated},
+        solver={'tree': tree_file, 'exact_replay': True, **simulated},
         wind=simulated,
         player={
-            "file": wind_file,
-            "publish_clock": True,
-            "loop": False,
-            "speed": speed,
-            "wait_for": "wind wind/filtered segment_poses /clock:2",
+            'file': wind_file,
+            'publish_clock': True,
+            'loop': False,
+            'speed': speed,
+            'wait_for': 'wind wind/filtered segment_poses /clock:2',
         },
     )
-    observer.until(lambda: nodes.is_done, "the end of the record", deadline=60.0)
+    observer.until(lambda: nodes.is_done, 'the end of the record', deadline=60.0)
     last = 495 * 10**7  # the last sample; what follows is cut by the player's end
-    observer.until(lambda: stamp_to_ns(frames[-1].header.stamp) >= last - FRAME, "the end")
-    missed = nodes["player"]._answers.missing
+    observer.until(lambda: stamp_to_ns(frames[-1].header.stamp) >= last - FRAME, 'the end')
+    missed = nodes['player']._answers.missing
     nodes.close()
     found = {
         stamp_to_ns(frame.header.stamp): [
@@ -91,7 +91,9 @@ def test_a_replay_is_the_same_from_the_first_frame_at_any_speed(
     compose, observer, wind_file, tree_file
 ):
     """Time waits for every sample to have gone through, so that no load changes a bit."""
-    runs = [poses_of(compose, observer, wind_file, tree_file, speed) for speed in (1.0, 10.0, 10.0)]
+    runs = [
+        poses_of(compose, observer, wind_file, tree_file, speed) for speed in (1.0, 10.0, 10.0)
+    ]
     assert [missed for _, missed in runs] == [0, 0, 0]
     for found, _ in runs:
         assert min(found) < 102 * 10**7
@@ -101,12 +103,12 @@ def test_a_replay_is_the_same_from_the_first_frame_at_any_speed(
 
 def test_who_is_missing_is_told_and_nothing_begins(compose, observer, wind_file):
     ticks, said = observer.listen(CLOCK), observer.listen(WIND)
-    nodes = compose(player={"file": wind_file, "publish_clock": True, "wait_for": "wind camera:2"})
-    observer.until(lambda: len(ticks) > 10, "a clock that stands")
+    nodes = compose(player={'file': wind_file, 'publish_clock': True, 'wait_for': 'wind camera:2'})
+    observer.until(lambda: len(ticks) > 10, 'a clock that stands')
     assert len({stamp_to_ns(tick.clock) for tick in ticks}) == 1
     assert said == []
-    told = "waiting for subscribers of camera (0 of 2)"  # once the listener to the wind is seen
-    observer.until(lambda: nodes["player"]._audience._said == told, "who is missing")
+    told = 'waiting for subscribers of camera (0 of 2)'  # once the listener to the wind is seen
+    observer.until(lambda: nodes['player']._audience._said == told, 'who is missing')
 
 
 def test_a_bag_of_the_graph_itself_plays_back(compose, observer, tmp_path, monkeypatch):
@@ -116,17 +118,17 @@ def test_a_bag_of_the_graph_itself_plays_back(compose, observer, tmp_path, monke
     asked = {}
     monkeypatch.setattr(
         player,
-        "read_wind",
+        'read_wind',
         lambda path, **options: asked.update(options) or read_wind(gusty(tmp_path)),
     )
-    options = {"topic": "/wind", "yaw": 0.5, "input_convention": "from"}
-    compose(player={"file": "bag", **options, "reader_options": "rate=20"})
-    assert asked == {"topic": "/wind", "yaw": 0.5, "direction_convention": "from", "rate": 20.0}
+    options = {'topic': '/wind', 'yaw': 0.5, 'input_convention': 'from'}
+    compose(player={'file': 'bag', **options, 'reader_options': 'rate=20'})
+    assert asked == {'topic': '/wind', 'yaw': 0.5, 'direction_convention': 'from', 'rate': 20.0}
 
 
 @pytest.mark.parametrize(
-    ("parameters", "message"),
-    [({}, "no file to play"), ({"file": "nowhere.csv"}, "nowhere.csv"), ({"speed": 0.0}, "speed")],
+    ('parameters', 'message'),
+    [({}, 'no file to play'), ({'file': 'nowhere.csv'}, 'nowhere.csv'), ({'speed': 0.0}, 'speed')],
 )
 def test_what_cannot_be_played_says_why(compose, parameters, message):
     with pytest.raises(TreeSwayError, match=message):
@@ -134,27 +136,27 @@ def test_what_cannot_be_played_says_why(compose, parameters, message):
 
 
 def test_a_start_behind_the_end_is_refused(compose, wind_file):
-    with pytest.raises(TreeSwayError, match="smaller start"):
-        compose(player={"file": wind_file, "start": 100.0})
+    with pytest.raises(TreeSwayError, match='smaller start'):
+        compose(player={'file': wind_file, 'start': 100.0})
 
 
-@pytest.mark.parametrize("epoch", ["1969-06-01T00:00:00Z", "2039-01-01T00:00:00Z"])
+@pytest.mark.parametrize('epoch', ['1969-06-01T00:00:00Z', '2039-01-01T00:00:00Z'])
 def test_a_date_that_no_clock_can_say_is_left_out(compose, observer, tmp_path, epoch, monkeypatch):
     from tree_sway_ros.nodes import player
 
     record = read_wind(gusty(tmp_path))
-    date = datetime.fromisoformat(epoch.replace("Z", "+00:00")).timestamp()
-    monkeypatch.setattr(player, "read_wind", lambda _: dataclasses.replace(record, epoch=date))
+    date = datetime.fromisoformat(epoch.replace('Z', '+00:00')).timestamp()
+    monkeypatch.setattr(player, 'read_wind', lambda _: dataclasses.replace(record, epoch=date))
     ticks = observer.listen(CLOCK)
-    compose(player={"file": "dated", "publish_clock": True, "wait_for_subscriber": False})
-    observer.until(lambda: len(ticks) > 5, "/clock")
+    compose(player={'file': 'dated', 'publish_clock': True, 'wait_for_subscriber': False})
+    observer.until(lambda: len(ticks) > 5, '/clock')
     assert 10**9 <= stamp_to_ns(ticks[0].clock) < 5 * 10**9
 
 
 def test_a_clock_in_steps_that_no_node_follows_is_refused(compose, tmp_path):
-    options = {"file": gusty(tmp_path), "publish_clock": True}
+    options = {'file': gusty(tmp_path), 'publish_clock': True}
     with pytest.raises(
-        TreeSwayError, match=r"steps of 1 s.* give speed up to 62.5, or clock_rate 1000$"
+        TreeSwayError, match=r'steps of 1 s.* give speed up to 62.5, or clock_rate 1000$'
     ):
-        compose(player={**options, "speed": 250.0})
-    compose(player={**options, "speed": 250.0, "clock_rate": 1000.0})
+        compose(player={**options, 'speed': 250.0})
+    compose(player={**options, 'speed': 250.0, 'clock_rate': 1000.0})

@@ -3,16 +3,16 @@
 """What is recorded of a running tree over real DDS, and what the player makes of it again."""
 
 import json
+from pathlib import Path
 import re
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-pytest.importorskip("rosbags", reason="rosbags is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+pytest.importorskip('rosbags', reason='rosbags is not installed')
 pytestmark = pytest.mark.ros
 
 from rosbags.highlevel import AnyReader  # noqa: E402
@@ -26,7 +26,7 @@ from tree_sway_ros.ros.process.topics import TREE_DESCRIPTION, TREE_STATE  # noq
 from tree_sway_ros.ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
 from tree_sway_ros.tools.stream.record import _MORE, _USUAL, Recorder  # noqa: E402
 
-CONFIG = Path(__file__).resolve().parents[2] / "config"
+CONFIG = Path(__file__).resolve().parents[2] / 'config'
 DEADLINE = 60.0
 
 
@@ -36,7 +36,7 @@ def recorded(observer, path, format, topics):
         recorder = Recorder(observer.context, bag, topics)
         try:
             end = time.monotonic() + DEADLINE
-            while min(bag.counts.get(name, 0) for name in ("/tree_state", "/wind")) < 30:
+            while min(bag.counts.get(name, 0) for name in ('/tree_state', '/wind')) < 30:
                 assert time.monotonic() < end, bag.counts
                 recorder.spin(0.1)
         finally:
@@ -44,18 +44,18 @@ def recorded(observer, path, format, topics):
     return bag.counts
 
 
-@pytest.mark.parametrize(("format", "topics"), [("mcap", _USUAL + _MORE), ("sqlite3", _USUAL)])
+@pytest.mark.parametrize(('format', 'topics'), [('mcap', _USUAL + _MORE), ('sqlite3', _USUAL)])
 def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path, format, topics):
-    nodes = compose(anemometer={"rate": 40.0}, wind={}, solver={"tree": tree_file})
-    bag = tmp_path / "bag"
+    nodes = compose(anemometer={'rate': 40.0}, wind={}, solver={'tree': tree_file})
+    bag = tmp_path / 'bag'
     counts = recorded(observer, bag, format, topics)
     nodes.close()
     assert len(counts) == len(topics)
-    assert len(read_wind(bag, topic="/wind").time) >= 28
+    assert len(read_wind(bag, topic='/wind').time) >= 28
 
     described, states = observer.listen(TREE_DESCRIPTION), observer.listen(TREE_STATE)
-    compose(player={"file": str(bag), "play": "state", "speed": 2.0})
-    observer.until(lambda: len(states) >= 30 and described, "states", DEADLINE)
+    compose(player={'file': str(bag), 'play': 'state', 'speed': 2.0})
+    observer.until(lambda: len(states) >= 30 and described, 'states', DEADLINE)
     stamps = [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in states]
     assert (np.diff(stamps) > 0).all()
     assert abs(stamps[-1] - time.time()) < DEADLINE
@@ -68,33 +68,33 @@ def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path
 
 def test_the_layouts_show_what_a_bag_holds(compose, observer, tree_file, tmp_path):
     """Every topic that RViz and Foxglove are told to show is there, of a type that they show."""
-    compose(anemometer={"rate": 40.0}, wind={}, solver={"tree": tree_file})
-    counts = recorded(observer, tmp_path / "bag", "mcap", _USUAL + _MORE)
-    layout = json.loads((CONFIG / "tree_sway.foxglove.json").read_text())["configById"]
-    rviz = yaml.safe_load((CONFIG / "tree_sway.rviz").read_text())["Visualization Manager"]
-    shown = {f"/{d['Topic']['Value']}": d["Class"] for d in rviz["Displays"] if "Topic" in d}
-    in_space = {"MarkerArray", "PoseArray", "PoseStamped"}
-    plotted = [p["value"] for panel in layout.values() for p in panel.get("paths", ())]
-    with AnyReader([tmp_path / "bag"]) as bag:
-        types = {c.topic: c.msgtype.rpartition("/")[2] for c in bag.connections}
+    compose(anemometer={'rate': 40.0}, wind={}, solver={'tree': tree_file})
+    counts = recorded(observer, tmp_path / 'bag', 'mcap', _USUAL + _MORE)
+    layout = json.loads((CONFIG / 'tree_sway.foxglove.json').read_text())['configById']
+    rviz = yaml.safe_load((CONFIG / 'tree_sway.rviz').read_text())['Visualization Manager']
+    shown = {f'/{d["Topic"]["Value"]}': d['Class'] for d in rviz['Displays'] if 'Topic' in d}
+    in_space = {'MarkerArray', 'PoseArray', 'PoseStamped'}
+    plotted = [p['value'] for panel in layout.values() for p in panel.get('paths', ())]
+    with AnyReader([tmp_path / 'bag']) as bag:
+        types = {c.topic: c.msgtype.rpartition('/')[2] for c in bag.connections}
         assert all(counts[topic] > 0 for topic in types)
         for topic, kind in shown.items():
-            assert types[topic].startswith(kind.rpartition("/")[2])
-        assert {types[topic] for topic in layout["3D!tree"]["topics"]} <= in_space
-        assert types[layout["DiagnosticSummary!nodes"]["topicToRender"]] == "DiagnosticArray"
+            assert types[topic].startswith(kind.rpartition('/')[2])
+        assert {types[topic] for topic in layout['3D!tree']['topics']} <= in_space
+        assert types[layout['DiagnosticSummary!nodes']['topicToRender']] == 'DiagnosticArray'
         for path in plotted:
-            topic, *fields = re.split(r"[.\[]", path.rstrip("]"))
+            topic, *fields = re.split(r'[.\[]', path.rstrip(']'))
             (connection,) = [c for c in bag.connections if c.topic == topic]
             *_, data = next(bag.messages([connection]))
             value = bag.deserialize(data, connection.msgtype)
             for field in fields:
                 value = value[int(field)] if field.isdecimal() else getattr(value, field)
             assert np.isfinite(value)
-    assert layout["3D!tree"]["followTf"] == rviz["Global Options"]["Fixed Frame"] == "map"
+    assert layout['3D!tree']['followTf'] == rviz['Global Options']['Fixed Frame'] == 'map'
 
 
 def test_a_bag_without_a_state_is_refused(compose, tmp_path):
-    with BagWriter(tmp_path / "bag"):
+    with BagWriter(tmp_path / 'bag'):
         pass
-    with pytest.raises(TreeSwayError, match="record both"):
-        compose(player={"file": str(tmp_path / "bag"), "play": "state"})
+    with pytest.raises(TreeSwayError, match='record both'):
+        compose(player={'file': str(tmp_path / 'bag'), 'play': 'state'})

@@ -12,44 +12,44 @@ from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
-POLICY = ElementTree.parse(ROOT / "config" / "sros2_policy.xml").getroot()
-RUN = {"eval", "exec", "compile", "__import__"}
-UNSAFE = {"load", "load_all", "full_load", "unsafe_load", "Loader", "FullLoader", "UnsafeLoader"}
+POLICY = ElementTree.parse(ROOT / 'config' / 'sros2_policy.xml').getroot()
+RUN = {'eval', 'exec', 'compile', '__import__'}
+UNSAFE = {'load', 'load_all', 'full_load', 'unsafe_load', 'Loader', 'FullLoader', 'UnsafeLoader'}
 
 
 def runs_what_it_reads(source):
     """Names by which a module might run what it reads."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import | ast.ImportFrom):
-            names = [getattr(node, "module", None) or "", *(each.name for each in node.names)]
-            yield from {"pickle", "marshal", "shelve", "dill"} & set(names)
+            names = [getattr(node, 'module', None) or '', *(each.name for each in node.names)]
+            yield from {'pickle', 'marshal', 'shelve', 'dill'} & set(names)
         elif isinstance(node, ast.Name) and node.id in RUN:
             yield node.id
-        elif isinstance(node, ast.Attribute) and getattr(node.value, "id", "") == "yaml":
+        elif isinstance(node, ast.Attribute) and getattr(node.value, 'id', '') == 'yaml':
             yield from {node.attr} & UNSAFE
-        elif isinstance(node, ast.keyword) and node.arg == "allow_pickle":
-            yield "allow_pickle"
+        elif isinstance(node, ast.keyword) and node.arg == 'allow_pickle':
+            yield 'allow_pickle'
 
 
 def test_no_file_and_no_message_is_run():
     """Compiled kernels alone are pickled, in the user's own cache."""
     found = {
-        path.name: set(runs_what_it_reads(path.read_text(encoding="utf-8")))
-        for path in (ROOT / "tree_sway_ros").rglob("*.py")
+        path.name: set(runs_what_it_reads(path.read_text(encoding='utf-8')))
+        for path in (ROOT / 'tree_sway_ros').rglob('*.py')
     }
     assert {name: names for name, names in found.items() if names} == {
-        "kernel_cache.py": {"pickle"}
+        'kernel_cache.py': {'pickle'}
     }
 
 
 @pytest.mark.parametrize(
-    "text", ["import pickle", "eval('1')", "yaml.load(f, Loader)", "np.load(f, allow_pickle=True)"]
+    'text', ['import pickle', "eval('1')", 'yaml.load(f, Loader)', 'np.load(f, allow_pickle=True)']
 )
 def test_the_check_sees_what_it_looks_for(text):
     assert list(runs_what_it_reads(text))
 
 
-@pytest.mark.parametrize("name", ["tree", "file", "species", "certificate", "private_key"])
+@pytest.mark.parametrize('name', ['tree', 'file', 'species', 'certificate', 'private_key'])
 def test_nobody_in_the_graph_names_a_file(name):
     named = [each for table in NODE_PARAMETERS.values() for each in table if each.name == name]
     assert named
@@ -57,32 +57,32 @@ def test_nobody_in_the_graph_names_a_file(name):
 
 
 def test_every_node_has_an_enclave():
-    assert {each.get("node") for each in POLICY.iter("profile")} == set(NODE_PARAMETERS)
-    paths = {each.get("path") for each in POLICY.iter("enclave")}
-    assert paths == {f"/tree_sway/{name}" for name in NODE_PARAMETERS}
+    assert {each.get('node') for each in POLICY.iter('profile')} == set(NODE_PARAMETERS)
+    paths = {each.get('path') for each in POLICY.iter('enclave')}
+    assert paths == {f'/tree_sway/{name}' for name in NODE_PARAMETERS}
 
 
 def test_every_topic_may_be_said_by_somebody():
     allowed = {
-        topic.text for topics in POLICY.iter("topics") if topics.get("publish") for topic in topics
+        topic.text for topics in POLICY.iter('topics') if topics.get('publish') for topic in topics
     }
-    assert {topic.name for topic in TOPICS} - allowed == {"camera", "/tf_static"}  # of others
+    assert {topic.name for topic in TOPICS} - allowed == {'camera', '/tf_static'}  # of others
 
 
 @pytest.mark.ros
 def test_what_nodes_say_and_hear_is_allowed(compose, tree_file):
-    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-    parameters = {"solver": {"tree": tree_file}, "wind": {}, "anemometer": {}, "sensor": {}}
-    parameters["player"] = {
-        "file": "canopy",
-        "publish_clock": True,
-        "wait_for": "wind/filtered nobody",
+    pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+    parameters = {'solver': {'tree': tree_file}, 'wind': {}, 'anemometer': {}, 'sensor': {}}
+    parameters['player'] = {
+        'file': 'canopy',
+        'publish_clock': True,
+        'wait_for': 'wind/filtered nobody',
     }
     nodes = compose(**parameters).nodes
     assert {node.get_name() for node in nodes} >= set(parameters)
     for node in nodes:
-        profile = next(p for p in POLICY.iter("profile") if p.get("node") == node.get_name())
-        for way, made in (("publish", node.publishers), ("subscribe", node.subscriptions)):
+        profile = next(p for p in POLICY.iter('profile') if p.get('node') == node.get_name())
+        for way, made in (('publish', node.publishers), ('subscribe', node.subscriptions)):
             allowed = {t.text for topics in profile if topics.get(way) for t in topics}
             names = {each.topic_name for each in made}
-            assert names <= {f"/{name.lstrip('/')}" for name in allowed}, (node.get_name(), way)
+            assert names <= {f'/{name.lstrip("/")}' for name in allowed}, (node.get_name(), way)

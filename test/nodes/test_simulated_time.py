@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
-    WindSample,
     clock_message,
     stamp_to_ns,
     wind_class,
     wind_to_message,
+    WindSample,
 )
 
-VECTOR = wind_class("geometry_msgs/Vector3Stamped")
+VECTOR = wind_class('geometry_msgs/Vector3Stamped')
 START = 1_000 * 10**9
 STEP = 4_000_000  # of /clock
 
@@ -24,7 +24,7 @@ class World:
     """A solver on simulated time, and a hand on the clock and the wind."""
 
     def __init__(self, compose, observer, tree_file):
-        self.nodes = compose(solver={"tree": tree_file, "use_sim_time": True})
+        self.nodes = compose(solver={'tree': tree_file, 'use_sim_time': True})
         self.frames = observer.listen(SEGMENT_POSES)
         self._observer = observer
         self._clock = observer.publisher(CLOCK)
@@ -36,15 +36,15 @@ class World:
         for _ in range(round(seconds * 1e9 / STEP)):
             self.now += STEP
             if wind is not None and self.now % 48_000_000 == 0:
-                sample = WindSample(self.now, "map", *wind)
+                sample = WindSample(self.now, 'map', *wind)
                 self._wind.publish(wind_to_message(VECTOR, sample))
             self.set(self.now)
 
     def set(self, now):
         self.now = now
         self._clock.publish(clock_message(now))
-        solver = self.nodes["solver"].get_clock()
-        self._observer.until(lambda: self._heard(solver), "the clock to be heard", poll=0.0005)
+        solver = self.nodes['solver'].get_clock()
+        self._observer.until(lambda: self._heard(solver), 'the clock to be heard', poll=0.0005)
 
     def _heard(self, clock):
         if clock.now().nanoseconds != self.now:
@@ -62,13 +62,13 @@ class World:
 @pytest.fixture
 def world(compose, observer, tree_file):
     made = World(compose, observer, tree_file)
-    observer.until(lambda: made.run(0.05) or made.frames, "a frame")
+    observer.until(lambda: made.run(0.05) or made.frames, 'a frame')
     return made
 
 
 def test_poses_follow_the_clock_and_stop_with_it(world, observer):
     world.run(0.5, wind=(6.0, 0.0, 0.0))
-    observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, "the newest frame")
+    observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, 'the newest frame')
     n = len(world.frames)
     for _ in range(20):  # paused: the same time again and again
         world.set(world.now)
@@ -79,22 +79,22 @@ def test_poses_follow_the_clock_and_stop_with_it(world, observer):
 
 def test_a_clock_set_back_resets_and_goes_on_within_two_periods(world, observer):
     world.run(2.0, wind=(8.0, 0.0, 0.0))
-    observer.until(lambda: world.sway() > 1e-3, "the tree to bend")
+    observer.until(lambda: world.sway() > 1e-3, 'the tree to bend')
     world.set(START - 500 * 10**9)
     world.run(2 / 60)
-    observer.until(lambda: world.stamps[-1] < START, "a frame of the new time")
+    observer.until(lambda: world.stamps[-1] < START, 'a frame of the new time')
     assert world.stamps[-1] <= START - 500 * 10**9 + 2 * 16_666_667
     assert abs(world.sway()) < 1e-9
     world.run(1.0, wind=(8.0, 0.0, 0.0))
-    observer.until(lambda: world.sway() > 1e-3, "the tree to bend again")
+    observer.until(lambda: world.sway() > 1e-3, 'the tree to bend again')
 
 
 def test_a_clock_set_forward_is_no_explosion(world, observer):
     world.run(2.0, wind=(8.0, 0.0, 0.0))
-    observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, "the newest frame")
+    observer.until(lambda: world.stamps[-1] > world.now - 2 * 16_666_667, 'the newest frame')
     before = world.sway()
     world.set(world.now + 3600 * 10**9)
     world.run(0.1)
-    observer.until(lambda: world.stamps[-1] > START + 3600 * 10**9, "a frame of the new time")
+    observer.until(lambda: world.stamps[-1] > START + 3600 * 10**9, 'a frame of the new time')
     assert 0.0 < world.sway() < 2.0 * before
-    assert world.nodes["solver"].pacer.pace().clamped == 1
+    assert world.nodes['solver'].pacer.pace().clamped == 1

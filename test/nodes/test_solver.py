@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-import rclpy  # noqa: E402
 from geometry_msgs.msg import PoseArray, Vector3Stamped  # noqa: E402
 from rcl_interfaces.srv import SetParameters  # noqa: E402
+import rclpy  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
@@ -20,14 +20,14 @@ from tree_sway_ros.errors import MissingDependencyError, ParameterError, TreeSwa
 from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.ros.process.topics import (  # noqa: E402
     MARKERS,
+    qos_profile,
     SEGMENT_POSES,
     TF,
     TREE_DESCRIPTION,
     WIND_FILTERED,
-    qos_profile,
 )
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import WindSample, wind_to_message  # noqa: E402
+from tree_sway_ros.ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
 def block(message):
@@ -53,35 +53,35 @@ class Breeze:
 
     def blow(self):
         if self.vector is not None:
-            sample = WindSample(self._clock.now().nanoseconds, "map", *self.vector)
+            sample = WindSample(self._clock.now().nanoseconds, 'map', *self.vector)
             self._publisher.publish(wind_to_message(Vector3Stamped, sample))
 
 
 def test_without_wind_the_rest_pose_comes_at_the_full_rate(compose, observer, statuses, tree_file):
-    compose(solver={"tree": tree_file})
+    compose(solver={'tree': tree_file})
     frames = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: len(frames) > 60, "a second of frames")
+    observer.until(lambda: len(frames) > 60, 'a second of frames')
     rest = SwaySimulator(open_tree(tree_file).tree).place()
-    assert frames[0].header.frame_id == "map"
+    assert frames[0].header.frame_id == 'map'
     np.testing.assert_array_equal(block(frames[0]), rest)
     np.testing.assert_array_equal(block(frames[60]), rest)
     stamps = np.array([stamp(frame) for frame in frames])
     assert np.median(np.diff(stamps)) == pytest.approx(1e9 / 60, rel=1e-6)
-    observer.until(lambda: statuses("solver: wind") is not None, "diagnostics")
-    assert statuses("solver: wind").level[0] == WARN
-    assert "no wind yet" in statuses("solver: wind").message
-    assert statuses("solver: model").level[0] == OK
+    observer.until(lambda: statuses('solver: wind') is not None, 'diagnostics')
+    assert statuses('solver: wind').level[0] == WARN
+    assert 'no wind yet' in statuses('solver: wind').message
+    assert statuses('solver: model').level[0] == OK
 
 
 def test_a_late_joiner_gets_the_structure_and_the_next_pose(compose, observer, tree_file):
-    compose(solver={"tree": tree_file})
+    compose(solver={'tree': tree_file})
     described = observer.listen(TREE_DESCRIPTION)
-    observer.until(lambda: described, "the description")
+    observer.until(lambda: described, 'the description')
     told = json.loads(described[0].data)
     frames = observer.listen(SEGMENT_POSES)
     markers = observer.listen(MARKERS)
-    observer.until(lambda: frames and markers, "a frame")
-    assert len(frames[0].poses) == len(told["segments"]["names"]) == 7
+    observer.until(lambda: frames and markers, 'a frame')
+    assert len(frames[0].poses) == len(told['segments']['names']) == 7
     lines = sum(len(marker.points) for marker in markers[0].markers)
     assert lines == 2 * 7
 
@@ -91,22 +91,22 @@ def test_a_subscriber_that_takes_nothing_slows_nobody(compose, observer, tree_fi
     It asks for every message and never takes one; when it does, it gets the latest, no backlog.
 
     """
-    nodes = compose(solver={"tree": tree_file})
+    nodes = compose(solver={'tree': tree_file})
     idle = rclpy.create_node(
-        "idle", context=observer.context
+        'idle', context=observer.context
     )  # in no executor: nobody takes for it
-    late = idle.create_subscription(PoseArray, "segment_poses", print, qos_profile(SEGMENT_POSES))
-    solver = nodes["solver"]
+    late = idle.create_subscription(PoseArray, 'segment_poses', print, qos_profile(SEGMENT_POSES))
+    solver = nodes['solver']
     frames = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: frames, "a frame")
+    observer.until(lambda: frames, 'a frame')
     ticks, published = solver.pacer.pace().ticks, solver.stream.frames
-    observer.until(lambda: solver.pacer.pace().ticks > ticks + 90, "a second and a half of ticks")
+    observer.until(lambda: solver.pacer.pace().ticks > ticks + 90, 'a second and a half of ticks')
     # As the solver sees it: what the observer loses itself on a busy machine is not the solver's.
     assert solver.stream.frames - published >= solver.pacer.pace().ticks - ticks - 1
     waited = solver.pacer.pace()
     assert waited.work_mean < 0.5 / 60.0
     begin = stamp(frames[-1])
-    observer.until(lambda: stamp(frames[-1]) > begin, "the newest frame")
+    observer.until(lambda: stamp(frames[-1]) > begin, 'the newest frame')
     queued = []
     with late.handle:
         while (taken := late.handle.take_message(PoseArray, False)) is not None:
@@ -117,142 +117,142 @@ def test_a_subscriber_that_takes_nothing_slows_nobody(compose, observer, tree_fi
 
 
 def test_a_dropout_decays_to_rest_while_poses_go_on(compose, observer, level, tree_file):
-    nodes = compose(solver={"tree": tree_file, "timeout": 0.4, "decay": 0.2, "damping_ratio": 0.5})
+    nodes = compose(solver={'tree': tree_file, 'timeout': 0.4, 'decay': 0.2, 'damping_ratio': 0.5})
     frames = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: frames, "a frame")
+    observer.until(lambda: frames, 'a frame')
     rest = block(frames[0])
     breeze = Breeze(observer, (8.0, 0.0, 0.0))
-    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, "the tree to bend east")
-    observer.until(lambda: level("solver: wind") == OK, "OK")
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, 'the tree to bend east')
+    observer.until(lambda: level('solver: wind') == OK, 'OK')
     breeze.vector = None
     levels = []
 
     def at_rest():
-        levels.append(level("solver: wind"))
+        levels.append(level('solver: wind'))
         return levels[-1] == STALE and np.abs(block(frames[-1]) - rest).max() < 1e-4
 
-    observer.until(at_rest, "rest")
+    observer.until(at_rest, 'rest')
     breeze.vector = (8.0, 0.0, 0.0)
-    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, "the tree to bend again")
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, 'the tree to bend again')
     x = np.array([block(frame)[2, 0] for frame in frames])
     seconds = np.diff([stamp(frame) for frame in frames]) * 1e-9
-    fastest_swing = 2.0 * np.pi * nodes["solver"].simulator.frequencies()[0] * np.ptp(x)
+    fastest_swing = 2.0 * np.pi * nodes['solver'].simulator.frequencies()[0] * np.ptp(x)
     assert (np.abs(np.diff(x)) / seconds).max() < fastest_swing
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e300])
+@pytest.mark.parametrize('bad', [np.nan, np.inf, 1e300])
 def test_bad_wind_leaves_the_state_alone(compose, observer, tree_file, bad):
-    nodes = compose(solver={"tree": tree_file})
+    nodes = compose(solver={'tree': tree_file})
     frames = observer.listen(SEGMENT_POSES)
     breeze = Breeze(observer, (bad, 0.0, 0.0))
-    counts = nodes["solver"]._intake.counts
-    observer.until(lambda: counts.refused > 3 and len(frames) > 5, "refusals")
+    counts = nodes['solver']._intake.counts
+    observer.until(lambda: counts.refused > 3 and len(frames) > 5, 'refusals')
     np.testing.assert_array_equal(block(frames[-1]), block(frames[0]))
     breeze.vector = (5.0, 0.0, 0.0)
-    observer.until(lambda: block(frames[-1])[2, 0] > 1e-4, "the tree to bend")
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-4, 'the tree to bend')
 
 
 def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tree_file):
-    nodes = compose(solver={"tree": tree_file})
+    nodes = compose(solver={'tree': tree_file})
 
     def change(name, value):
         request = SetParameters.Request(
             parameters=[Parameter(name, value=value).to_parameter_msg()]
         )
-        return observer.call(SetParameters, "solver/set_parameters", request).results[0]
+        return observer.call(SetParameters, 'solver/set_parameters', request).results[0]
 
-    assert not change("publish_every", 0).successful
-    assert "0 .. 2" in change("wind_delay", "x").reason
-    assert "read-only" in change("rate", 30.0).reason
-    assert nodes["solver"].values["rate"] == 60.0
+    assert not change('publish_every', 0).successful
+    assert '0 .. 2' in change('wind_delay', 'x').reason
+    assert 'read-only' in change('rate', 30.0).reason
+    assert nodes['solver'].values['rate'] == 60.0
     frames = observer.listen(SEGMENT_POSES)
-    assert change("publish_every", 4).successful
+    assert change('publish_every', 4).successful
     n = len(frames)
-    observer.until(lambda: len(frames) > n + 6, "frames")
+    observer.until(lambda: len(frames) > n + 6, 'frames')
     ticks = [round(stamp(frame) * 60 / 1e9) for frame in frames[n + 2 :]]
     assert len({tick // 4 for tick in ticks}) == len(ticks)  # none of four has two, however late
 
 
 def test_the_description_comes_again_for_whoever_lost_it(compose, observer, tree_file):
-    compose(solver={"tree": tree_file})
+    compose(solver={'tree': tree_file})
     described = observer.listen(TREE_DESCRIPTION)
-    observer.until(lambda: len(described) > 2, "the description, again", deadline=60.0)
+    observer.until(lambda: len(described) > 2, 'the description, again', deadline=60.0)
     assert len({each.data for each in described}) == 1
 
 
 def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):
-    nodes = compose(solver={"tree": tree_file, "fidelity": "subtree", "gravity": 0.0})
-    solver = nodes["solver"]
+    nodes = compose(solver={'tree': tree_file, 'fidelity': 'subtree', 'gravity': 0.0})
+    solver = nodes['solver']
 
     def change(name, value):
         request = SetParameters.Request(
             parameters=[Parameter(name, value=value).to_parameter_msg()]
         )
-        return observer.call(SetParameters, "solver/set_parameters", request).results[0]
+        return observer.call(SetParameters, 'solver/set_parameters', request).results[0]
 
     frames = observer.listen(SEGMENT_POSES)
     Breeze(observer, (8.0, 0.0, 0.0))
-    observer.until(lambda: frames and block(frames[-1])[2, 0] > 1e-3, "the tree to bend")
-    assert change("damping_ratio", 0.9).successful
-    observer.until(lambda: solver.simulator.check_tuning().damping_ratio == 0.9, "the damping")
+    observer.until(lambda: frames and block(frames[-1])[2, 0] > 1e-3, 'the tree to bend')
+    assert change('damping_ratio', 0.9).successful
+    observer.until(lambda: solver.simulator.check_tuning().damping_ratio == 0.9, 'the damping')
     n = len(frames)
     still = lambda: np.ptp([block(frame)[2, 0] for frame in frames[-30:]]) < 1e-5  # noqa: E731
-    observer.until(lambda: len(frames) > n + 60 and still(), "a steady bend")
+    observer.until(lambda: len(frames) > n + 60 and still(), 'a steady bend')
     lean = block(frames[-1])[2, 0]
-    assert change("stiffness_factor", 8.0).successful
-    observer.until(lambda: block(frames[-1])[2, 0] < 0.5 * lean, "less bend")
-    assert "out of range" in change("stiffness_factor", 11.0).reason
-    assert "without weight" in change("gravity", 9.81).reason
-    assert "volume rule" in change("volume_stiffness", 1.0e5).reason
-    assert "for the start" in change("damping_ratio", 0.0).reason
-    assert solver.values["gravity"] == 0.0
+    assert change('stiffness_factor', 8.0).successful
+    observer.until(lambda: block(frames[-1])[2, 0] < 0.5 * lean, 'less bend')
+    assert 'out of range' in change('stiffness_factor', 11.0).reason
+    assert 'without weight' in change('gravity', 9.81).reason
+    assert 'volume rule' in change('volume_stiffness', 1.0e5).reason
+    assert 'for the start' in change('damping_ratio', 0.0).reason
+    assert solver.values['gravity'] == 0.0
     assert solver.simulator.check_tuning().stiffness_factor == 8.0
 
 
 def test_pause_holds_the_pose_and_reset_goes_to_rest(compose, observer, tree_file):
-    compose(solver={"tree": tree_file})
+    compose(solver={'tree': tree_file})
     frames = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: frames, "a frame")
+    observer.until(lambda: frames, 'a frame')
     rest = block(frames[0])
     breeze = Breeze(observer, (8.0, 3.0, 0.0))
-    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, "the tree to bend")
-    assert observer.call(SetBool, "solver/pause", SetBool.Request(data=True)).success
+    observer.until(lambda: block(frames[-1])[2, 0] > 1e-3, 'the tree to bend')
+    assert observer.call(SetBool, 'solver/pause', SetBool.Request(data=True)).success
     n = len(frames) + 2
-    observer.until(lambda: len(frames) > n + 10, "frames while paused")
+    observer.until(lambda: len(frames) > n + 10, 'frames while paused')
     held = [block(frame) for frame in frames[n:]]
     assert all((pose == held[0]).all() for pose in held)
-    assert observer.call(Trigger, "solver/reset", Trigger.Request()).success
-    observer.until(lambda: (block(frames[-1]) == rest).all(), "rest")
+    assert observer.call(Trigger, 'solver/reset', Trigger.Request()).success
+    observer.until(lambda: (block(frames[-1]) == rest).all(), 'rest')
     breeze.vector = None
-    assert observer.call(SetBool, "solver/pause", SetBool.Request(data=False)).message == "running"
+    assert observer.call(SetBool, 'solver/pause', SetBool.Request(data=False)).message == 'running'
 
 
 def test_two_trees_side_by_side(compose, observer, tree_file):
-    compose(namespace="oak", solver={"tree": tree_file})
-    compose(namespace="elm", solver={"tree": tree_file})
-    oak = observer.listen(SEGMENT_POSES, name="oak/segment_poses")
-    elm = observer.listen(SEGMENT_POSES, name="elm/segment_poses")
-    Breeze(observer, (8.0, 0.0, 0.0), name="oak/wind/filtered")
-    observer.until(lambda: oak and block(oak[-1])[2, 0] > 1e-3, "the oak to bend")
+    compose(namespace='oak', solver={'tree': tree_file})
+    compose(namespace='elm', solver={'tree': tree_file})
+    oak = observer.listen(SEGMENT_POSES, name='oak/segment_poses')
+    elm = observer.listen(SEGMENT_POSES, name='elm/segment_poses')
+    Breeze(observer, (8.0, 0.0, 0.0), name='oak/wind/filtered')
+    observer.until(lambda: oak and block(oak[-1])[2, 0] > 1e-3, 'the oak to bend')
     np.testing.assert_array_equal(block(elm[-1]), block(elm[0]))
     topics = dict(observer.node.get_topic_names_and_types())
-    assert not {"/segment_poses", "/markers", "/tree_description"} & set(topics)
+    assert not {'/segment_poses', '/markers', '/tree_description'} & set(topics)
 
 
 def test_bytes_on_the_wire_are_a_pose_array(compose, observer, tree_file):
-    compose(solver={"tree": tree_file})
+    compose(solver={'tree': tree_file})
     raw = observer.listen(SEGMENT_POSES, raw=True)
-    observer.until(lambda: raw, "a frame")
+    observer.until(lambda: raw, 'a frame')
     assert len(deserialize_message(raw[0], PoseArray).poses) == 7
 
 
 @pytest.mark.parametrize(
-    ("parameters", "message"),
+    ('parameters', 'message'),
     [
-        ({"tree": "oka.yaml"}, "no tree 'oka.yaml'"),
-        ({"species": "oka"}, "unknown species 'oka'"),
-        ({"fidelity": "brnch"}, "did you mean 'branch'"),
-        ({"rats": 60.0}, "did you mean 'rate'"),
+        ({'tree': 'oka.yaml'}, "no tree 'oka.yaml'"),
+        ({'species': 'oka'}, "unknown species 'oka'"),
+        ({'fidelity': 'brnch'}, "did you mean 'branch'"),
+        ({'rats': 60.0}, "did you mean 'rate'"),
     ],
 )
 def test_what_cannot_start_says_why(compose, parameters, message):
@@ -264,38 +264,38 @@ def test_transforms_need_their_message(compose, tree_file):
     try:
         import tf2_msgs  # noqa: F401
     except ImportError:
-        with pytest.raises(MissingDependencyError, match="leave publish_tf false"):
-            compose(solver={"tree": tree_file, "publish_tf": True})
+        with pytest.raises(MissingDependencyError, match='leave publish_tf false'):
+            compose(solver={'tree': tree_file, 'publish_tf': True})
     else:
-        pytest.skip("tf2_msgs is installed")
+        pytest.skip('tf2_msgs is installed')
 
 
 def test_transforms_are_published_where_their_message_is(compose, observer, tree_file):
-    kind = pytest.importorskip("tf2_msgs.msg", reason="tf2_msgs is not installed").TFMessage
-    compose(solver={"tree": tree_file, "publish_tf": True, "frame_id": "site"})
+    kind = pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is not installed').TFMessage
+    compose(solver={'tree': tree_file, 'publish_tf': True, 'frame_id': 'site'})
     frames, moved = observer.listen(SEGMENT_POSES), observer.listen(TF, kind)
-    observer.until(lambda: frames and moved, "transforms")
+    observer.until(lambda: frames and moved, 'transforms')
     transforms = moved[0].transforms
-    assert {each.header.frame_id for each in transforms} == {"site"}
+    assert {each.header.frame_id for each in transforms} == {'site'}
     assert len({each.child_frame_id for each in transforms}) == len(frames[0].poses)
-    at = np.array([[getattr(each.transform.translation, k) for k in "xyz"] for each in transforms])
+    at = np.array([[getattr(each.transform.translation, k) for k in 'xyz'] for each in transforms])
     np.testing.assert_allclose(at, block(frames[0])[:, :3], atol=1e-12)
 
 
 def test_a_parameter_of_another_kind_names_itself(compose):
     with pytest.raises(ParameterError, match="parameter 'rate': 'fast' is not a number"):
-        compose(solver={"rate": "fast"})
+        compose(solver={'rate': 'fast'})
 
 
 def test_two_trees_stand_in_one_frame_each_in_its_place(compose, observer, tree_file):
-    compose(namespace="oak", solver={"tree": tree_file, "x": 3.0, "hash_in_frame": True})
-    compose(namespace="elm", solver={"tree": tree_file, "y": -2.0, "yaw": 1.5708})
-    oak = observer.listen(SEGMENT_POSES, name="oak/segment_poses")
-    elm = observer.listen(SEGMENT_POSES, name="elm/segment_poses")
-    described = observer.listen(TREE_DESCRIPTION, name="oak/tree_description")
-    observer.until(lambda: oak and elm and described, "frames")
+    compose(namespace='oak', solver={'tree': tree_file, 'x': 3.0, 'hash_in_frame': True})
+    compose(namespace='elm', solver={'tree': tree_file, 'y': -2.0, 'yaw': 1.5708})
+    oak = observer.listen(SEGMENT_POSES, name='oak/segment_poses')
+    elm = observer.listen(SEGMENT_POSES, name='elm/segment_poses')
+    described = observer.listen(TREE_DESCRIPTION, name='oak/tree_description')
+    observer.until(lambda: oak and elm and described, 'frames')
     np.testing.assert_allclose(block(oak[0])[0, :3], (3.0, 0.0, 0.0), atol=1e-12)
     np.testing.assert_allclose(block(elm[0])[0, :3], (0.0, -2.0, 0.0), atol=1e-12)
-    assert elm[0].header.frame_id == "map"
+    assert elm[0].header.frame_id == 'map'
     told = json.loads(described[0].data)
-    assert oak[0].header.frame_id == f"map#{told['hash']}"
+    assert oak[0].header.frame_id == f'map#{told["hash"]}'

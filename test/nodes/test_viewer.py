@@ -10,8 +10,8 @@ import time
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.page.placer import Placer  # noqa: E402
@@ -21,18 +21,18 @@ from tree_sway_ros.ros.process.topics import (  # noqa: E402
     TREE_DESCRIPTION,
     TREE_STATE,
 )
-from tree_sway_ros.ros.wire.tree_state import WIND_NAMES, read_state_entry  # noqa: E402
+from tree_sway_ros.ros.wire.tree_state import read_state_entry, WIND_NAMES  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 DEADLINE = 60.0
-QUIET = {"control": True, "port": 0}
+QUIET = {'control': True, 'port': 0}
 
 
 def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_file):
-    compose(anemometer={"rate": 50.0}, wind={}, solver={"tree": tree_file})
+    compose(anemometer={'rate': 50.0}, wind={}, solver={'tree': tree_file})
     described = observer.listen(TREE_DESCRIPTION)
     states, poses = observer.listen(TREE_STATE), observer.listen(SEGMENT_POSES)
-    observer.until(lambda: len(states) > 20, "states", DEADLINE)
+    observer.until(lambda: len(states) > 20, 'states', DEADLINE)
     data = read_state_entry(json.loads(described[-1].data))
     description = decode_description(data)
     assert states[-1].name[:3] == list(WIND_NAMES)
@@ -41,7 +41,7 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    matrix = description.arrays["0/basis_matrix"]
+    matrix = description.arrays['0/basis_matrix']
     rebuilt = placer.place_rotations(matrix @ np.array(state.position[3:]))
     moved = np.linalg.norm(
         exact - Placer(description).place_rotations(np.zeros(len(matrix)))[:, :3]
@@ -51,57 +51,57 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
 
 
 def test_the_page_is_fed_and_passes_changes_on(compose, observer, tree_file):
-    nodes = compose(anemometer={}, wind={}, solver={"tree": tree_file}, viewer=QUIET)
-    url = nodes["viewer"].server.url
+    nodes = compose(anemometer={}, wind={}, solver={'tree': tree_file}, viewer=QUIET)
+    url = nodes['viewer'].server.url
     told = []
 
     async def look():
-        async with aiohttp.ClientSession() as session, session.ws_connect(f"{url}stream") as ws:
-            await ws.send_json({"credit": 64})
+        async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+            await ws.send_json({'credit': 64})
             description, frames = None, 0
             while frames < 5:
                 message = await asyncio.wait_for(ws.receive(), DEADLINE)
                 if message.type is not aiohttp.WSMsgType.BINARY:
                     continue
-                if message.data[:4] == b"TSWD":
+                if message.data[:4] == b'TSWD':
                     description = decode_description(message.data)
                 else:
                     frame = decode_frame(message.data)
                     frames += 1
             Placer(description).place(frame)
-            for name, value in (("mean_speed", 11.5), ("mean_speed", 500.0), ("reset", None)):
-                await ws.send_json({"set": {"name": name, "value": value}})
-            while not told or "refused" not in told[-1]:
+            for name, value in (('mean_speed', 11.5), ('mean_speed', 500.0), ('reset', None)):
+                await ws.send_json({'set': {'name': name, 'value': value}})
+            while not told or 'refused' not in told[-1]:
                 message = await asyncio.wait_for(ws.receive(), DEADLINE)
                 if message.type is aiohttp.WSMsgType.TEXT:
                     told.append(message.data)
 
     asyncio.run(look())
-    assert "out of range" in told[-1]
+    assert 'out of range' in told[-1]
     end = time.monotonic() + DEADLINE
-    while nodes["anemometer"].values["mean_speed"] != 11.5:
+    while nodes['anemometer'].values['mean_speed'] != 11.5:
         assert time.monotonic() < end
         threading.Event().wait(0.01)
 
 
 def test_a_page_without_solver_says_what_is_missing(compose):
     nodes = compose(viewer=QUIET)
-    url = nodes["viewer"].server.url
+    url = nodes['viewer'].server.url
 
     async def look():
-        async with aiohttp.ClientSession() as session, session.ws_connect(f"{url}stream") as ws:
-            await ws.send_json({"set": {"name": "pause", "value": True}})
+        async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+            await ws.send_json({'set': {'name': 'pause', 'value': True}})
             while True:
                 message = json.loads((await asyncio.wait_for(ws.receive(), DEADLINE)).data)
-                if "refused" in message:
-                    return message["refused"]["reason"]
+                if 'refused' in message:
+                    return message['refused']['reason']
 
-    assert "nothing offers" in asyncio.run(look())
+    assert 'nothing offers' in asyncio.run(look())
 
 
 def test_nobody_listens_and_no_basis_is_found(compose, observer, tree_file):
-    nodes = compose(anemometer={}, wind={}, solver={"tree": tree_file})
+    nodes = compose(anemometer={}, wind={}, solver={'tree': tree_file})
     poses = observer.listen(SEGMENT_POSES)
-    observer.until(lambda: len(poses) > 30, "poses")
-    assert "basis" not in {thread.name for thread in threading.enumerate()}
+    observer.until(lambda: len(poses) > 30, 'poses')
+    assert 'basis' not in {thread.name for thread in threading.enumerate()}
     nodes.check()

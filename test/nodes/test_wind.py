@@ -6,32 +6,32 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import TransformStamped  # noqa: E402
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree  # noqa: E402
+from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
 from tree_sway_ros.ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
 from tree_sway_ros.ros.process.topics import (  # noqa: E402
     FORCE_PLANE,
+    qos_profile,
     SEGMENT_POSES,
     TF,
     TF_STATIC,
     WIND,
     WIND_FILTERED,
-    qos_profile,
 )
 from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN  # noqa: E402
 from tree_sway_ros.ros.wire import frames  # noqa: E402
 from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
-    WindSample,
     fill_stamp,
     stamp_to_ns,
     wind_class,
     wind_from_message,
     wind_to_message,
+    WindSample,
 )
 
 STAMPED = wind_class(WIND_TYPE_NAMES[0])
@@ -46,7 +46,7 @@ class Mast:
         self._publisher = observer.publisher(WIND, self._kind)
         self._clock = observer.node.get_clock()
 
-    def say(self, u, v=0.0, w=0.0, stamp=None, frame_id="map"):
+    def say(self, u, v=0.0, w=0.0, stamp=None, frame_id='map'):
         stamp = self._clock.now().nanoseconds if stamp is None else stamp
         sample = WindSample(stamp, frame_id, u, v, w)
         self._publisher.publish(wind_to_message(self._kind, sample))
@@ -57,28 +57,30 @@ def vector(message):
     return message.vector.x, message.vector.y, message.vector.z
 
 
-@pytest.mark.parametrize("convention", ["to", "from"])
-@pytest.mark.parametrize("type_name", WIND_TYPE_NAMES)
-def test_a_westerly_bends_the_tree_to_the_east(compose, observer, tree_file, type_name, convention):
+@pytest.mark.parametrize('convention', ['to', 'from'])
+@pytest.mark.parametrize('type_name', WIND_TYPE_NAMES)
+def test_a_westerly_bends_the_tree_to_the_east(
+    compose, observer, tree_file, type_name, convention
+):
     """Through the nodes as they are launched: anemometer, wind, solver."""
-    kind = {"direction_convention": convention}
+    kind = {'direction_convention': convention}
     compose(
-        solver={"tree": tree_file},
-        wind={"input_type": type_name, **kind},
-        anemometer={"output_type": type_name, "turbulence": "none", **kind},
+        solver={'tree': tree_file},
+        wind={'input_type': type_name, **kind},
+        anemometer={'output_type': type_name, 'turbulence': 'none', **kind},
     )
     frames = observer.listen(SEGMENT_POSES)
     said = observer.listen(WIND, wind_class(type_name))
-    observer.until(lambda: said and frames, "wind and frames")
-    sign = 1.0 if convention == "to" else -1.0
+    observer.until(lambda: said and frames, 'wind and frames')
+    sign = 1.0 if convention == 'to' else -1.0
     assert wind_from_message(said[-1]).u == pytest.approx(sign * 6.0)
-    observer.until(lambda: frames[-1].poses[2].position.x > 1e-3, "the tree to bend east")
+    observer.until(lambda: frames[-1].poses[2].position.x > 1e-3, 'the tree to bend east')
     assert abs(frames[-1].poses[2].position.y) < 1e-4
 
 
-@pytest.mark.parametrize("tree", BUILTIN_TREES)
+@pytest.mark.parametrize('tree', BUILTIN_TREES)
 def test_a_westerly_bends_every_tree_to_the_east(compose, observer, tree):
-    compose(solver={"tree": tree}, wind={}, anemometer={"turbulence": "none"})
+    compose(solver={'tree': tree}, wind={}, anemometer={'turbulence': 'none'})
     frames = observer.listen(SEGMENT_POSES)
     start = builtin_tree(tree).start
     highest = int(np.argmax(start[:, 2]))
@@ -88,17 +90,17 @@ def test_a_westerly_bends_every_tree_to_the_east(compose, observer, tree):
         position = frames[-1].poses[highest].position
         return position.x - rest[0], position.y - rest[1]
 
-    observer.until(lambda: frames and sway()[0] > 1e-3, "the tree to bend east")
+    observer.until(lambda: frames and sway()[0] > 1e-3, 'the tree to bend east')
     assert abs(sway()[1]) < sway()[0]
 
 
 def test_the_wind_goes_through_with_its_stamp(compose, observer):
-    compose(wind={"speed_scale": 0.5, "yaw_offset": np.pi / 2})
+    compose(wind={'speed_scale': 0.5, 'yaw_offset': np.pi / 2})
     filtered, plane = observer.listen(WIND_FILTERED), observer.listen(FORCE_PLANE)
     mast = Mast(observer)
-    observer.until(lambda: mast.say(4.0) and filtered and plane, "wind")
+    observer.until(lambda: mast.say(4.0) and filtered and plane, 'wind')
     stamp = mast.say(4.0)
-    observer.until(lambda: abs(stamp_to_ns(filtered[-1].header.stamp) - stamp) < 1000, "the stamp")
+    observer.until(lambda: abs(stamp_to_ns(filtered[-1].header.stamp) - stamp) < 1000, 'the stamp')
     np.testing.assert_allclose(vector(filtered[-1]), (0.0, 2.0, 0.0), atol=1e-12)
     q = plane[-1].pose.orientation  # x along the wind, to the north
     np.testing.assert_allclose((q.w, q.x, q.y, q.z), np.sqrt((0.5, 0, 0, 0.5)), atol=1e-12)
@@ -122,7 +124,7 @@ def tf(monkeypatch):
             return subscribe(node, topic, callback, *more, **named)
         callbacks[topic.name] = lambda *given: callback(SimpleNamespace(transforms=given))
 
-    monkeypatch.setattr(WindNode, "subscription", listen)
+    monkeypatch.setattr(WindNode, 'subscription', listen)
     return callbacks
 
 
@@ -131,85 +133,85 @@ def test_wind_in_another_frame_is_turned_by_tf(compose, observer, statuses, tf, 
     nodes = compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    listens = lambda: mast.say(-4.0, frame_id="mast") and len(tf) == 2  # noqa: E731
-    observer.until(listens, "the node to listen to /tf")
+    listens = lambda: mast.say(-4.0, frame_id='mast') and len(tf) == 2  # noqa: E731
+    observer.until(listens, 'the node to listen to /tf')
     assert not filtered  # the transform may be on its way
-    tf["/tf_static"](transform("mast", "boat", 0.0))
-    tf["/tf"](transform("boat", "map", np.pi / 2, stamp=5))
-    observer.until(lambda: mast.say(-4.0, frame_id="/mast") and filtered, "wind")
+    tf['/tf_static'](transform('mast', 'boat', 0.0))
+    tf['/tf'](transform('boat', 'map', np.pi / 2, stamp=5))
+    observer.until(lambda: mast.say(-4.0, frame_id='/mast') and filtered, 'wind')
     np.testing.assert_allclose(vector(filtered[-1]), (0.0, -4.0, 0.0), atol=1e-12)
-    assert filtered[-1].header.frame_id == "map"
-    observer.until(lambda: statuses("wind: frame"), "diagnostics")
-    assert statuses("wind: frame").level[0] == OK
-    assert "turned into 'map' by /tf" in statuses("wind: frame").message
-    mast.say(np.nan, frame_id="mast")
-    observer.until(lambda: nodes["wind"]._intake.counts.not_finite == 1, "the refusal")
+    assert filtered[-1].header.frame_id == 'map'
+    observer.until(lambda: statuses('wind: frame'), 'diagnostics')
+    assert statuses('wind: frame').level[0] == OK
+    assert "turned into 'map' by /tf" in statuses('wind: frame').message
+    mast.say(np.nan, frame_id='mast')
+    observer.until(lambda: nodes['wind']._intake.counts.not_finite == 1, 'the refusal')
 
 
 def test_wind_in_a_frame_that_nobody_knows_is_taken_as_it_is(
     compose, observer, statuses, tf, capfd, monkeypatch
 ):
-    monkeypatch.setattr(frames, "_PATIENCE", 0.2)
+    monkeypatch.setattr(frames, '_PATIENCE', 0.2)
     compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    observer.until(lambda: mast.say(4.0, frame_id="mast") and len(filtered) > 2, "wind")
+    observer.until(lambda: mast.say(4.0, frame_id='mast') and len(filtered) > 2, 'wind')
     assert vector(filtered[-1]) == (4.0, 0.0, 0.0)
     said = "wind is in frame 'mast', taken as 'map': no transform between the two on /tf"
-    observer.until(lambda: statuses("wind: frame"), "diagnostics")
-    assert (statuses("wind: frame").level[0], statuses("wind: frame").message) == (WARN, said)
+    observer.until(lambda: statuses('wind: frame'), 'diagnostics')
+    assert (statuses('wind: frame').level[0], statuses('wind: frame').message) == (WARN, said)
     assert capfd.readouterr().err.count(said) == 1
 
 
 def test_without_tf2_one_line_says_so(compose, observer, capfd, monkeypatch):
-    monkeypatch.setitem(sys.modules, "tf2_msgs.msg", None)
+    monkeypatch.setitem(sys.modules, 'tf2_msgs.msg', None)
     compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    observer.until(lambda: mast.say(4.0, frame_id="mast") and len(filtered) > 2, "wind")
+    observer.until(lambda: mast.say(4.0, frame_id='mast') and len(filtered) > 2, 'wind')
     said = "wind is in frame 'mast', taken as 'map': tf2_msgs is not installed"
     assert capfd.readouterr().err.count(said) == 1
 
 
 def test_transforms_that_are_published_turn_the_wind(compose, observer):
-    kind = pytest.importorskip("tf2_msgs.msg", reason="tf2_msgs is not installed").TFMessage
+    kind = pytest.importorskip('tf2_msgs.msg', reason='tf2_msgs is not installed').TFMessage
     compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
     fixed = observer.node.create_publisher(kind, TF_STATIC.name, qos_profile(TF_STATIC))
-    fixed.publish(kind(transforms=[transform("mast", "map", np.pi / 2)]))
-    observer.until(lambda: mast.say(4.0, frame_id="mast") and filtered, "wind")
+    fixed.publish(kind(transforms=[transform('mast', 'map', np.pi / 2)]))
+    observer.until(lambda: mast.say(4.0, frame_id='mast') and filtered, 'wind')
     np.testing.assert_allclose(vector(filtered[0]), (0.0, 4.0, 0.0), atol=1e-12)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 999.99, 1e300, 41.0])
+@pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf, 999.99, 1e300, 41.0])
 def test_bad_samples_are_refused_and_counted(compose, observer, bad):
     nodes = compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    observer.until(lambda: mast.say(3.0) and filtered, "wind")
-    counts = nodes["wind"]._intake.counts
+    observer.until(lambda: mast.say(3.0) and filtered, 'wind')
+    counts = nodes['wind']._intake.counts
     for place in range(3):
         mast.say(*np.roll((bad, 0.0, 0.0), place))
-    observer.until(lambda: counts.refused == 3, "refusals")
+    observer.until(lambda: counts.refused == 3, 'refusals')
     n = len(filtered)
-    observer.until(lambda: mast.say(3.0) and len(filtered) > n, "good wind again")
+    observer.until(lambda: mast.say(3.0) and len(filtered) > n, 'good wind again')
     assert {vector(message) for message in filtered} == {(3.0, 0.0, 0.0)}
 
 
 def test_a_spike_is_refused_and_a_true_step_passes(compose, observer):
-    nodes = compose(wind={"longest_refusal": 0.2})
+    nodes = compose(wind={'longest_refusal': 0.2})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    counts = nodes["wind"]._intake.counts
-    observer.until(lambda: mast.say(2.0) and filtered, "wind")
+    counts = nodes['wind']._intake.counts
+    observer.until(lambda: mast.say(2.0) and filtered, 'wind')
     start, n = mast.say(2.0), counts.accepted
     mast.say(30.0, stamp=start + PERIOD)
     mast.say(2.0, stamp=start + 2 * PERIOD)
-    observer.until(lambda: counts.accepted >= n + 1 and counts.spike == 1, "a spike")
+    observer.until(lambda: counts.accepted >= n + 1 and counts.spike == 1, 'a spike')
     for k in range(3, 9):
         mast.say(30.0, stamp=start + k * PERIOD)
-    observer.until(lambda: filtered[-1].vector.x == 30.0, "the step")
+    observer.until(lambda: filtered[-1].vector.x == 30.0, 'the step')
     assert counts.forced == 1
 
 
@@ -217,13 +219,13 @@ def test_stamps_that_lie_are_counted_and_never_step_back(compose, observer):
     nodes = compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)
-    observer.until(lambda: mast.say(2.9) and filtered, "wind")
+    observer.until(lambda: mast.say(2.9) and filtered, 'wind')
     now = mast.say(3.0)
     stamps = (0, now + 3600 * 10**9, now, now - PERIOD, now - 3600 * 10**9)
     for k, stamp in enumerate(stamps):
         mast.say(3.1 + 0.1 * k, stamp=stamp)
-    observer.until(lambda: filtered[-1].vector.x == pytest.approx(3.5), "every sample")
-    counts = nodes["wind"]._intake.counts
+    observer.until(lambda: filtered[-1].vector.x == pytest.approx(3.5), 'every sample')
+    counts = nodes['wind']._intake.counts
     assert (counts.zero_stamp, counts.future_stamp, counts.old_stamp) == (1, 1, 1)
     assert counts.out_of_order + counts.duplicate_stamp == 2
     assert (np.diff([stamp_to_ns(m.header.stamp) for m in filtered]) > 0).all()
@@ -231,36 +233,36 @@ def test_stamps_that_lie_are_counted_and_never_step_back(compose, observer):
 
 
 def test_a_frozen_sensor_is_a_warning(compose, observer, statuses, level):
-    compose(wind={"frozen_after": 1.0})
+    compose(wind={'frozen_after': 1.0})
     mast = Mast(observer)
-    observer.until(lambda: mast.say(3.2) and mast.say(3.1) and level("wind: wind") == OK, "OK")
-    observer.until(lambda: mast.say(3.0) and level("wind: wind") == WARN, "a warning")
-    assert "frozen" in statuses("wind: wind").message
-    observer.until(lambda: mast.say(3.2) and mast.say(3.1) and level("wind: wind") == OK, "OK")
+    observer.until(lambda: mast.say(3.2) and mast.say(3.1) and level('wind: wind') == OK, 'OK')
+    observer.until(lambda: mast.say(3.0) and level('wind: wind') == WARN, 'a warning')
+    assert 'frozen' in statuses('wind: wind').message
+    observer.until(lambda: mast.say(3.2) and mast.say(3.1) and level('wind: wind') == OK, 'OK')
 
 
 def test_a_silent_sensor_goes_from_warn_to_stale(compose, observer, statuses, level):
-    compose(wind={"timeout": 0.3})
-    observer.until(lambda: level("wind: wind") == WARN, "a warning")
-    assert "no wind yet" in statuses("wind: wind").message
+    compose(wind={'timeout': 0.3})
+    observer.until(lambda: level('wind: wind') == WARN, 'a warning')
+    assert 'no wind yet' in statuses('wind: wind').message
     mast = Mast(observer)
-    observer.until(lambda: mast.say(3.0) and level("wind: wind") == OK, "OK")
-    observer.until(lambda: level("wind: wind") == STALE, "STALE")
+    observer.until(lambda: mast.say(3.0) and level('wind: wind') == OK, 'OK')
+    observer.until(lambda: level('wind: wind') == STALE, 'STALE')
 
 
 def test_a_sensor_of_another_type_is_named(compose, observer, statuses):
-    compose(wind={"input_type": "geometry_msgs/TwistStamped"})
+    compose(wind={'input_type': 'geometry_msgs/TwistStamped'})
     observer.node.create_publisher(STAMPED, WIND.name, 10)
-    named = "set input_type to read geometry_msgs/Vector3Stamped"
-    observer.until(lambda: named in getattr(statuses("wind: wind"), "message", ""), "the type")
+    named = 'set input_type to read geometry_msgs/Vector3Stamped'
+    observer.until(lambda: named in getattr(statuses('wind: wind'), 'message', ''), 'the type')
 
 
 def test_a_message_without_a_stamp_takes_its_arrival(compose, observer):
-    compose(wind={"input_type": "geometry_msgs/Vector3"})
+    compose(wind={'input_type': 'geometry_msgs/Vector3'})
     filtered = observer.listen(WIND_FILTERED)
-    mast = Mast(observer, "geometry_msgs/Vector3")
+    mast = Mast(observer, 'geometry_msgs/Vector3')
     before = observer.node.get_clock().now().nanoseconds
-    observer.until(lambda: mast.say(3.0) and len(filtered) > 2, "wind")
+    observer.until(lambda: mast.say(3.0) and len(filtered) > 2, 'wind')
     stamps = [stamp_to_ns(message.header.stamp) for message in filtered]
     assert stamps == sorted(stamps)
     assert 0 <= stamps[0] - before < 10 * 10**9

@@ -18,6 +18,7 @@ import fcntl
 import heapq
 import json
 import os
+from pathlib import Path
 import random
 import select
 import socket
@@ -26,15 +27,14 @@ import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-VECTORS = Path(__file__).parent / "vectors"
-TOKEN = "a-long-line"
-HERE, THERE = "10.93.0.1", "10.93.0.2"
+VECTORS = Path(__file__).parent / 'vectors'
+TOKEN = 'a-long-line'
+HERE, THERE = '10.93.0.1', '10.93.0.2'
 PORT = 8765
 PLAYOUT = 0.2
 RATE, SOLVED = 30.0, 60.0
@@ -45,14 +45,14 @@ _LARGEST = 2048
 def main() -> None:
     """Run the line, or one side of it, and print what the client saw as JSON."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("--delay", type=float, default=0.04, help="one way [s]")
-    parser.add_argument("--loss", type=float, default=0.01, help="of packets, either way")
-    parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--side", nargs=2)
+    parser.add_argument('--delay', type=float, default=0.04, help='one way [s]')
+    parser.add_argument('--loss', type=float, default=0.01, help='of packets, either way')
+    parser.add_argument('--seconds', type=float, default=60.0)
+    parser.add_argument('--side', nargs=2)
     given = parser.parse_args()
     if given.side:
-        join_line(int(given.side[1]), HERE if given.side[0] == "serve" else THERE)
-        if given.side[0] == "serve":
+        join_line(int(given.side[1]), HERE if given.side[0] == 'serve' else THERE)
+        if given.side[0] == 'serve':
             serve(given.seconds + 60.0)
         else:
             print(json.dumps(listen(given.seconds)))
@@ -64,9 +64,9 @@ def run_line(delay: float, loss: float, seconds: float) -> dict[str, float]:
     """What a client sees over a line of such delay [s] and loss."""
     ends = [socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(2)]
     sides = []
-    for name, (_, inner) in zip(("serve", "listen"), ends, strict=True):
-        command = ["unshare", "-rn", sys.executable, __file__, "--seconds", str(seconds)]
-        command += ["--side", name, str(inner.fileno())]
+    for name, (_, inner) in zip(('serve', 'listen'), ends, strict=True):
+        command = ['unshare', '-rn', sys.executable, __file__, '--seconds', str(seconds)]
+        command += ['--side', name, str(inner.fileno())]
         sides.append(
             subprocess.Popen(command, pass_fds=[inner.fileno()], stdout=subprocess.PIPE, cwd=ROOT)
         )
@@ -115,10 +115,10 @@ def carry(ends: list[socket.socket], delay: float, loss: float, ended: threading
 
 def join_line(descriptor: int, address: str) -> None:
     """Make this process's network one device whose packets go over a socket."""
-    tun = os.open("/dev/net/tun", os.O_RDWR)
-    fcntl.ioctl(tun, _SET_TUN, struct.pack("16sH", b"line", _TUN_WITHOUT_HEAD))
-    for told in (f"addr add {address}/24 dev line", "link set line mtu 1400 up", "link set lo up"):
-        subprocess.run(["ip", *told.split()], check=True)
+    tun = os.open('/dev/net/tun', os.O_RDWR)
+    fcntl.ioctl(tun, _SET_TUN, struct.pack('16sH', b'line', _TUN_WITHOUT_HEAD))
+    for told in (f'addr add {address}/24 dev line', 'link set line mtu 1400 up', 'link set lo up'):
+        subprocess.run(['ip', *told.split()], check=True)
     end = socket.socket(fileno=descriptor)
 
     def out() -> None:
@@ -135,10 +135,10 @@ def join_line(descriptor: int, address: str) -> None:
 
 def serve(seconds: float) -> None:
     """Publish a state 60 times per second."""
-    from tree_sway_ros.page.protocol import Frame, decode_description, encode_frame
+    from tree_sway_ros.page.protocol import decode_description, encode_frame, Frame
     from tree_sway_ros.page.server import PageServer, PageSettings
 
-    data = (VECTORS / "description.bin").read_bytes()
+    data = (VECTORS / 'description.bin').read_bytes()
     description = decode_description(data)
     steps = np.zeros(len(description.scale), dtype=np.int16)
     end, pause = time.monotonic() + seconds, threading.Event()
@@ -159,7 +159,7 @@ def listen(seconds: float) -> dict[str, Any]:
 
     seen: list[tuple[float, float]] = []
     with StreamClient(
-        f"http://{HERE}:{PORT}/?token={TOKEN}",
+        f'http://{HERE}:{PORT}/?token={TOKEN}',
         rate=RATE,
         delay=PLAYOUT,
         on_frame=lambda frame, arrival: seen.append((1e-9 * frame.stamp, arrival)),
@@ -172,14 +172,14 @@ def listen(seconds: float) -> dict[str, Any]:
     late = arrivals - stamps - (arrivals - stamps).min()
     expected = RATE * (stamps[-1] - stamps[0]) + 1.0
     return {
-        "expected": round(expected),
-        "missing": float(1.0 - np.sum(late <= PLAYOUT) / expected),
-        "late_p99_ms": float(1e3 * np.quantile(late, 0.99)),
-        "late_most_ms": float(1e3 * late.max()),
-        "quickest_ms": float(1e3 * (arrivals - stamps).min()),
-        "round_trip_ms": 1e3 * round_trip,
+        'expected': round(expected),
+        'missing': float(1.0 - np.sum(late <= PLAYOUT) / expected),
+        'late_p99_ms': float(1e3 * np.quantile(late, 0.99)),
+        'late_most_ms': float(1e3 * late.max()),
+        'quickest_ms': float(1e3 * (arrivals - stamps).min()),
+        'round_trip_ms': 1e3 * round_trip,
     }
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -15,8 +15,8 @@ import argparse
 import asyncio
 import contextlib
 import os
-import statistics
 from pathlib import Path
+import statistics
 
 from conftest import Browser
 
@@ -29,13 +29,13 @@ from tree_sway_ros.tools import show
 def main() -> None:
     """Measure each scene in turn."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("scenes", nargs="+", metavar="TREE:COUNT")
-    parser.add_argument("--seconds", type=float, default=8.0)
-    parser.add_argument("--profile", action="store_true", help="time of the parts of a frame")
+    parser.add_argument('scenes', nargs='+', metavar='TREE:COUNT')
+    parser.add_argument('--seconds', type=float, default=8.0)
+    parser.add_argument('--profile', action='store_true', help='time of the parts of a frame')
     given = parser.parse_args()
     for scene in given.scenes:
-        tree, _, count = scene.partition(":")
-        measure(tree, count or "1", given.seconds, given.profile)
+        tree, _, count = scene.partition(':')
+        measure(tree, count or '1', given.seconds, given.profile)
 
 
 def measure(tree: str, count: str, seconds: float, is_profiled: bool) -> None:
@@ -44,11 +44,13 @@ def measure(tree: str, count: str, seconds: float, is_profiled: bool) -> None:
     show.add_arguments(told)
     arguments = told.parse_args([tree])
     choices = Choices(tree, count)
-    session = Session(lambda wanted: show.build_scene(wanted, arguments), choices, SimulatedWind(9))
+    session = Session(
+        lambda wanted: show.build_scene(wanted, arguments), choices, SimulatedWind(9)
+    )
     with PageServer(PageSettings(port=0), None, session.status) as server:
         session.serve(server)
         try:
-            asyncio.run(look(server.url, f"{tree}:{count}", session, seconds, is_profiled))
+            asyncio.run(look(server.url, f'{tree}:{count}', session, seconds, is_profiled))
         finally:
             session.stop()
 
@@ -62,36 +64,36 @@ async def look(url: str, name: str, session: Session, seconds: float, is_profile
         if is_profiled:
             await browser.run(_PROFILE)
         found, cpu = [], cpu_time(browser)
-        drawn = await browser.run("treeSway.scene._frame")
+        drawn = await browser.run('treeSway.scene._frame')
         for _ in range(round(seconds / 0.5)):
             await asyncio.sleep(0.5)
-            found.append(await browser.run("treeSway.fps"))
-        frames = await browser.run("treeSway.scene._frame") - drawn
+            found.append(await browser.run('treeSway.fps'))
+        frames = await browser.run('treeSway.scene._frame') - drawn
         cpu = 1e3 * (cpu_time(browser) - cpu) / max(frames, 1)
         status = session.status()
         print(
-            f"{name}: {status['segments']} segments, {statistics.median(found):.0f} frames/s "
-            f"({min(found):.0f} .. {max(found):.0f}), {cpu:.1f} ms of a core per frame, "
-            f"{await browser.run('treeSway.scene.leftOut') or 'nothing left out'}; "
-            f"{status['rate']:.0f} steps/s of {status['work_us'] / 1e3:.2f} ms",
+            f'{name}: {status["segments"]} segments, {statistics.median(found):.0f} frames/s '
+            f'({min(found):.0f} .. {max(found):.0f}), {cpu:.1f} ms of a core per frame, '
+            f'{await browser.run("treeSway.scene.leftOut") or "nothing left out"}; '
+            f'{status["rate"]:.0f} steps/s of {status["work_us"] / 1e3:.2f} ms',
             flush=True,
         )
         if is_profiled:
-            print(await browser.run("JSON.stringify(times)"))
+            print(await browser.run('JSON.stringify(times)'))
 
 
 def cpu_time(browser: Browser) -> float:
     """What the browser's processes have used so far [s]."""
     parents = {}
-    for folder in Path("/proc").glob("[0-9]*"):
+    for folder in Path('/proc').glob('[0-9]*'):
         with contextlib.suppress(OSError):
-            words = (folder / "stat").read_text().rpartition(")")[2].split()
+            words = (folder / 'stat').read_text().rpartition(')')[2].split()
             parents[int(folder.name)] = (int(words[1]), int(words[11]) + int(words[12]))
     own, ticks = {browser._process.pid}, 0
     while more := {pid for pid, (parent, _) in parents.items() if parent in own} - own:
         own |= more
     ticks = sum(parents[pid][1] for pid in own if pid in parents)
-    return ticks / os.sysconf("SC_CLK_TCK")
+    return ticks / os.sysconf('SC_CLK_TCK')
 
 
 _PROFILE = """{
@@ -114,5 +116,5 @@ _PROFILE = """{
 }"""
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -4,18 +4,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 import json
+from pathlib import Path
 import shutil
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
@@ -25,17 +25,17 @@ from tree_sway_ros.page.controls import Control, ControlPanel
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.playout import ClockOffset, Moment, Playout
 from tree_sway_ros.page.protocol import (
-    RESTARTED,
-    Frame,
     decode_description,
     encode_frame,
+    Frame,
+    RESTARTED,
 )
 from tree_sway_ros.page.server import PageServer, PageSettings
 
 DEADLINE = 20.0
 HERE = Path(__file__).parent
-STATIC = HERE.parents[1] / "tree_sway_ros" / "page" / "static"
-DESCRIPTION = (HERE / "vectors" / "description.bin").read_bytes()
+STATIC = HERE.parents[1] / 'tree_sway_ros' / 'page' / 'static'
+DESCRIPTION = (HERE / 'vectors' / 'description.bin').read_bytes()
 PLACER = Placer(decode_description(DESCRIPTION))
 N = len(PLACER.description.scale)
 
@@ -67,12 +67,12 @@ def until(holds: Callable[[], bool]) -> None:
     """Wait for a condition, no longer than the deadline."""
     end = time.monotonic() + DEADLINE
     while not holds():
-        assert time.monotonic() < end, "it did not come to pass"
+        assert time.monotonic() < end, 'it did not come to pass'
         time.sleep(0.005)
 
 
 def serving(port: int = 0) -> tuple[PageServer, Sender]:
-    refuse = Control("mean_speed", "Wind", 3.0, minimum=0.0, maximum=9.0)
+    refuse = Control('mean_speed', 'Wind', 3.0, minimum=0.0, maximum=9.0)
     server = PageServer(PageSettings(port=port), ControlPanel((refuse,), lambda *_: None))
     server.start()
     server.describe(DESCRIPTION)
@@ -105,9 +105,9 @@ def test_poses_are_those_of_the_sender_a_delay_ago(server: PageServer) -> None:
         exact = PLACER.place_coordinates(scale * shape(moment.stamp % 1e4))
         assert np.linalg.norm(poses[:, :3] - exact[:, :3], axis=1).max() < 1e-3
         assert client.round_trip < 1.0
-        assert client.state == "open"
-        client.set("mean_speed", 99.0)
-        until(lambda: "out of range" in client.problem)
+        assert client.state == 'open'
+        client.set('mean_speed', 99.0)
+        until(lambda: 'out of range' in client.problem)
 
 
 def test_a_line_that_is_lost_is_made_again() -> None:
@@ -115,23 +115,23 @@ def test_a_line_that_is_lost_is_made_again() -> None:
     with StreamClient(server.url) as client:
         client.wait(DEADLINE)
         end(server, sender)
-        until(lambda: client.state == "lost")
+        until(lambda: client.state == 'lost')
         came = client.playout.received
         assert client.poses() is not None  # the last state stays
         again = serving(server.port)
         client.wait(DEADLINE, frames=came + 5)
-        assert client.state == "open"
+        assert client.state == 'open'
         end(*again)
 
 
 def test_who_is_not_there_or_sends_nonsense_is_told(server: PageServer) -> None:
-    with StreamClient("http://127.0.0.1:9/") as client:
-        with pytest.raises(TransportError, match="0 frames within"):
+    with StreamClient('http://127.0.0.1:9/') as client:
+        with pytest.raises(TransportError, match='0 frames within'):
             client.wait(0.2)
         until(lambda: bool(client.problem))
-    server.describe(b"TSWD" + bytes(80))
+    server.describe(b'TSWD' + bytes(80))
     with StreamClient(server.url) as client:
-        until(lambda: "version 0" in client.problem)
+        until(lambda: 'version 0' in client.problem)
         assert client.poses() is None
 
 
@@ -150,19 +150,19 @@ def arrivals() -> list[dict[str, object]]:
             latest = at
         at = max(at, latest)
         values = np.sin(moment + np.arange(4)).tolist()
-        frames.append({"stamp": stamp, "at": at, "values": values, "flags": flags})
+        frames.append({'stamp': stamp, 'at': at, 'values': values, 'flags': flags})
         if rng.random() < 0.1:
-            frames.append({**frames[-1], "at": at + 0.001})
-    return sorted(frames, key=lambda each: each["at"])  # type: ignore[arg-type,return-value]
+            frames.append({**frames[-1], 'at': at + 0.001})
+    return sorted(frames, key=lambda each: each['at'])  # type: ignore[arg-type,return-value]
 
 
 def test_javascript_plays_out_the_same() -> None:
-    node = shutil.which("node")
+    node = shutil.which('node')
     if node is None:
-        pytest.skip("node is not installed here")
+        pytest.skip('node is not installed here')
     told = arrivals()
     program = f"""
-      import {{ Playout }} from "{(STATIC / "playout.js").as_uri()}";
+      import {{ Playout }} from "{(STATIC / 'playout.js').as_uri()}";
       let text = "";
       for await (const chunk of process.stdin) text += chunk;
       const playout = new Playout(170), out = [];
@@ -177,25 +177,25 @@ def test_javascript_plays_out_the_same() -> None:
       console.log(JSON.stringify({{ out, late: playout.late, received: playout.received }}));
     """
     done = subprocess.run(
-        [node, "--input-type=module", "-e", program], input=json.dumps(told), text=True,
+        [node, '--input-type=module', '-e', program], input=json.dumps(told), text=True,
         capture_output=True, check=True, timeout=60,
     )  # fmt: skip
     theirs = json.loads(done.stdout)
     playout, ours = Playout(0.17), []
     for each in told:
-        values = np.array(each["values"])
+        values = np.array(each['values'])
         wind = np.array([values[0], 1.0, 2.0])
-        at = float(each["at"])  # type: ignore[arg-type]
-        stamp = float(each["stamp"])  # type: ignore[arg-type]
-        flags = int(each["flags"])  # type: ignore[call-overload]
+        at = float(each['at'])  # type: ignore[arg-type]
+        stamp = float(each['stamp'])  # type: ignore[arg-type]
+        flags = int(each['flags'])  # type: ignore[call-overload]
         moment = Moment(stamp, values, wind, flags)
         playout.push(moment, at)
         for later in (0.0, 0.011):
             shown = playout.sample(at + later)
             assert shown is not None
             ours.append([*shown.coordinates, shown.wind[0]])
-    np.testing.assert_allclose(ours, theirs["out"], atol=2e-5)
-    assert (playout.late, playout.received) == (theirs["late"], theirs["received"])
+    np.testing.assert_allclose(ours, theirs['out'], atol=2e-5)
+    assert (playout.late, playout.received) == (theirs['late'], theirs['received'])
     assert playout.late > 0
 
 

@@ -1,24 +1,25 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The examples as their pages say: against a server of this program, in Python and in a browser."""
+"""The examples as their pages say: against a server of this program, in Python and in a
+browser."""
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
 import functools
 import http.server
+from pathlib import Path
 import re
 import shutil
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.page.server import PageServer, PageSettings
@@ -27,7 +28,7 @@ from tree_sway_ros.page.wind_source import SimulatedWind
 from tree_sway_ros.tools.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-WEB = ROOT / "examples" / "web"
+WEB = ROOT / 'examples' / 'web'
 DEADLINE = 90
 """Until a tree has been seen to sway [s]."""
 
@@ -39,21 +40,21 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
         """Say nothing."""
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def files() -> Iterator[str]:
     """Address of a server of this repository's files."""
     handler = functools.partial(Quiet, directory=str(ROOT))
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as served:
+    with http.server.ThreadingHTTPServer(('127.0.0.1', 0), handler) as served:
         threading.Thread(target=served.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{served.server_port}"
+        yield f'http://127.0.0.1:{served.server_port}'
         served.shutdown()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def page(files: str) -> Iterator[PageServer]:
     """A live tree whose stream the pages of the examples may follow."""
-    simulator = open_tree("goldcrest").simulator(model="modes")
-    session = Session(lambda _: simulator, Choices("goldcrest"), SimulatedWind(9.0))
+    simulator = open_tree('goldcrest').simulator(model='modes')
+    session = Session(lambda _: simulator, Choices('goldcrest'), SimulatedWind(9.0))
     with PageServer(PageSettings(port=0, origins=(files,)), None, session.status) as server:
         session.serve(server)
         yield server
@@ -61,13 +62,15 @@ def page(files: str) -> Iterator[PageServer]:
 
 
 def test_python_follows_a_tree(page: PageServer) -> None:
-    command = [sys.executable, str(ROOT / "examples/python/follow.py"), page.url]
-    told = [*command, "--seconds", str(DEADLINE)]
+    command = [sys.executable, str(ROOT / 'examples/python/follow.py'), page.url]
+    told = [*command, '--seconds', str(DEADLINE)]
     tips: set[str] = set()
     with subprocess.Popen(told, stdout=subprocess.PIPE, text=True, cwd=ROOT) as running:
         assert running.stdout is not None
         for line in running.stdout:
-            wind, tip = re.fullmatch(r"wind +([\d.]+) m/s, tip at (\S+ \S+ \S+) m\n", line).groups()
+            wind, tip = re.fullmatch(
+                r'wind +([\d.]+) m/s, tip at (\S+ \S+ \S+) m\n', line
+            ).groups()
             tips |= {tip} if float(wind) > 0.5 else set()
             if len(tips) >= 3:
                 break
@@ -75,45 +78,53 @@ def test_python_follows_a_tree(page: PageServer) -> None:
     assert len(tips) >= 3
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def three() -> None:
     """three.js in the folder of the examples, from npm."""
-    npm = shutil.which("npm")
-    if (WEB / "node_modules" / "three").is_dir():
+    npm = shutil.which('npm')
+    if (WEB / 'node_modules' / 'three').is_dir():
         return
     if npm is None:
-        pytest.skip("npm is not installed here")
-    command = [npm, "install", "--no-package-lock", "--no-audit", "--no-fund", "--prefix", str(WEB)]
+        pytest.skip('npm is not installed here')
+    command = [
+        npm,
+        'install',
+        '--no-package-lock',
+        '--no-audit',
+        '--no-fund',
+        '--prefix',
+        str(WEB),
+    ]
     if subprocess.run(command, capture_output=True, timeout=180).returncode:
-        pytest.skip("npm cannot bring three.js here")
+        pytest.skip('npm cannot bring three.js here')
 
 
-@pytest.mark.parametrize("kind", ["poses", "gltf"])
-@pytest.mark.usefixtures("three")
+@pytest.mark.parametrize('kind', ['poses', 'gltf'])
+@pytest.mark.usefixtures('three')
 def test_three_draws_a_tree_that_sways(
     kind: str,
     page: PageServer,
     files: str,
     browser_class: Any,
 ) -> None:
-    if kind == "gltf":
-        target = WEB / "tree.glb"
-        command = ["convert", "goldcrest", "--sway", "morph"]
-        assert main([*command, "-o", str(target), "--force"]) == 0
+    if kind == 'gltf':
+        target = WEB / 'tree.glb'
+        command = ['convert', 'goldcrest', '--sway', 'morph']
+        assert main([*command, '-o', str(target), '--force']) == 0
 
     async def look() -> None:
         async with browser_class() as browser:
-            await browser.open(f"{files}/examples/web/{kind}.html?page={page.url}", 640, 480)
-            await browser.until("window.example && example.stream.playout.received > 10")
-            before = await browser.run("example.tip()")
+            await browser.open(f'{files}/examples/web/{kind}.html?page={page.url}', 640, 480)
+            await browser.until('window.example && example.stream.playout.received > 10')
+            before = await browser.run('example.tip()')
             await browser.until(
-                f"Math.hypot(...example.tip().map((x, k) => x - {before}[k])) > 1e-3"
+                f'Math.hypot(...example.tip().map((x, k) => x - {before}[k])) > 1e-3'
             )
-            assert await browser.run("document.getElementById('state').textContent") == "open"
+            assert await browser.run("document.getElementById('state').textContent") == 'open'
             assert browser.console == []
-            drawn = await browser.run("example.stage.renderer.info.render.triangles")
+            drawn = await browser.run('example.stage.renderer.info.render.triangles')
             assert drawn > 1000
-            (ROOT / "build").mkdir(exist_ok=True)
-            (ROOT / "build" / f"{kind}.png").write_bytes(await browser.screenshot())
+            (ROOT / 'build').mkdir(exist_ok=True)
+            (ROOT / 'build' / f'{kind}.png').write_bytes(await browser.screenshot())
 
     asyncio.run(look())

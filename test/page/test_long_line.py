@@ -10,32 +10,32 @@ What is timed to milliseconds wants a machine that does nothing else: ``pytest -
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
 import json
+from pathlib import Path
 import resource
 import shutil
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_ros.page.protocol import (  # noqa: E402
-    Frame,
     decode_description,
     decode_frame,
     encode_frame,
+    Frame,
 )
 from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
 
 HERE = Path(__file__).parent
-DESCRIPTION = (HERE / "vectors" / "description.bin").read_bytes()
+DESCRIPTION = (HERE / 'vectors' / 'description.bin').read_bytes()
 RATE = 60.0
 DEADLINE = 20.0
 SECONDS = 6.0
@@ -43,20 +43,20 @@ SECONDS = 6.0
 
 
 @pytest.mark.long
-@pytest.mark.skipif(sys.platform != "linux", reason="needs network namespaces")
+@pytest.mark.skipif(sys.platform != 'linux', reason='needs network namespaces')
 def test_a_long_line_that_loses_packets_loses_no_frame() -> None:
     """30 Hz over 80 ms there and back, 1 % lost, shown 200 ms late."""
-    tools = all(map(shutil.which, ("unshare", "ip"))) and Path("/dev/net/tun").exists()
-    if not tools or subprocess.run(["unshare", "-rn", "true"], check=False).returncode:
-        pytest.skip("network namespaces may not be made here")
-    command = [sys.executable, str(HERE / "lossy_line.py"), "--seconds", "20"]
+    tools = all(map(shutil.which, ('unshare', 'ip'))) and Path('/dev/net/tun').exists()
+    if not tools or subprocess.run(['unshare', '-rn', 'true'], check=False).returncode:
+        pytest.skip('network namespaces may not be made here')
+    command = [sys.executable, str(HERE / 'lossy_line.py'), '--seconds', '20']
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
     seen = json.loads(done.stdout)
     print(seen)
-    assert seen["expected"] >= 600
-    assert 80.0 <= seen["round_trip_ms"] < 200.0
-    assert seen["late_most_ms"] > 30.0  # packets were lost on the way
-    assert seen["missing"] <= 0.002
+    assert seen['expected'] >= 600
+    assert 80.0 <= seen['round_trip_ms'] < 200.0
+    assert seen['late_most_ms'] > 30.0  # packets were lost on the way
+    assert seen['missing'] <= 0.002
 
 
 @pytest.fixture
@@ -86,15 +86,15 @@ def server() -> Iterator[PageServer]:
 async def ages(url: str, seconds: float, credit: int, pause: float = 0.0) -> list[float]:
     """Age of each frame when a client reads it for a time, and rests after each [s]."""
     found: list[float] = []
-    async with aiohttp.ClientSession() as session, session.ws_connect(f"{url}stream") as ws:
-        await ws.send_json({"credit": credit})
+    async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+        await ws.send_json({'credit': credit})
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             message = await asyncio.wait_for(ws.receive(), DEADLINE)
-            if message.type is not aiohttp.WSMsgType.BINARY or message.data[:4] == b"TSWD":
+            if message.type is not aiohttp.WSMsgType.BINARY or message.data[:4] == b'TSWD':
                 continue
             found.append(time.time() - 1e-9 * decode_frame(message.data).stamp)
-            await ws.send_json({"credit": 1})
+            await ws.send_json({'credit': 1})
             await asyncio.sleep(pause)  # the slow reader that is tried
     return found
 
@@ -103,14 +103,14 @@ def test_a_slow_reader_sees_what_is_new(server: PageServer) -> None:
     """Ten frames per second of sixty: a queue would grow by five seconds' worth in six."""
     seconds = 4.0
     seen = asyncio.run(ages(server.url, seconds, credit=2, pause=0.1))
-    print(f"10 Hz reader: most {1e3 * max(seen[1:]):.0f} ms")
+    print(f'10 Hz reader: most {1e3 * max(seen[1:]):.0f} ms')
     assert 5 < len(seen) <= seconds / 0.1 + 2
     assert np.median(seen[len(seen) // 2 :]) < 0.25 * seconds
 
 
 @pytest.mark.long
 def test_sixty_four_clients_are_served_in_time(server: PageServer) -> None:
-    command = [sys.executable, str(HERE / "test_long_line.py"), server.url, "64", str(SECONDS)]
+    command = [sys.executable, str(HERE / 'test_long_line.py'), server.url, '64', str(SECONDS)]
     clients = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     before, began = resource.getrusage(resource.RUSAGE_SELF), time.monotonic()
     told, _ = clients.communicate(timeout=60)
@@ -119,7 +119,7 @@ def test_sixty_four_clients_are_served_in_time(server: PageServer) -> None:
     seen, counts = np.concatenate(each), [len(one) for one in each]
     used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / spent
     p99 = 1e3 * float(np.quantile(seen, 0.99))
-    print(f"64 clients: {len(seen)} frames, p99 {p99:.1f} ms, server {100 * used:.0f} % of a core")
+    print(f'64 clients: {len(seen)} frames, p99 {p99:.1f} ms, server {100 * used:.0f} % of a core')
     assert min(counts) > 0.5 * np.median(counts) > 0.0  # nobody is left behind
     assert p99 < 1e3 * SECONDS / 4  # nor served from a queue
 
@@ -134,5 +134,5 @@ def follow(url: str, count: int, seconds: float) -> list[list[float]]:
     return [one[len(one) // 2 :] for one in asyncio.run(all_of_them())]
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     print(json.dumps(follow(sys.argv[1], int(sys.argv[2]), float(sys.argv[3]))))

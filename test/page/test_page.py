@@ -6,17 +6,17 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+from collections.abc import Callable, Coroutine, Iterator
 import io
 import json
-from collections.abc import Callable, Coroutine, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-pytest.importorskip("aiohttp", reason="aiohttp is not installed")
-Image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
+pytest.importorskip('aiohttp', reason='aiohttp is not installed')
+Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
 from tree_sway_ros.core.simulator.settings import Settings  # noqa: E402
 from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
@@ -26,7 +26,7 @@ from tree_sway_ros.page.session import Choices, Session  # noqa: E402
 from tree_sway_ros.page.wind_source import SimulatedWind  # noqa: E402
 from tree_sway_ros.tools import show  # noqa: E402
 
-STAND = Path(__file__).parents[2] / "config" / "stand.yaml"
+STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
 Browser = Any
 Script = Callable[[Browser], Coroutine[Any, Any, None]]
 Visit = Callable[..., None]
@@ -36,14 +36,14 @@ class Live:
     """A tree in wind and the server of its page, which can be killed and started again."""
 
     def __init__(self) -> None:
-        source = open_tree("goldcrest")
-        simulator = source.simulator(Settings(), model="modes")
+        source = open_tree('goldcrest')
+        simulator = source.simulator(Settings(), model='modes')
         self.wind = SimulatedWind(9.0)
-        self.session = Session(lambda _: simulator, Choices("goldcrest"), self.wind)
+        self.session = Session(lambda _: simulator, Choices('goldcrest'), self.wind)
         controls = (
-            Control("mean_speed", "Wind", 9.0, "Mean", "m/s", 0.0, 40.0),
-            Control("pause", "Pause", False),
-            Control("reset", "Reset", None, is_action=True),
+            Control('mean_speed', 'Wind', 9.0, 'Mean', 'm/s', 0.0, 40.0),
+            Control('pause', 'Pause', False),
+            Control('reset', 'Reset', None, is_action=True),
         )
         self.panel = ControlPanel(controls, self.session.apply)
         self.port = 0
@@ -56,7 +56,7 @@ class Live:
         self.session.serve(self.server)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def live() -> Iterator[Live]:
     """One for all tests, as finding the basis takes a while."""
     made = Live()
@@ -74,11 +74,11 @@ def visit(live: Live, browser_class: Any) -> Visit:
             async with browser_class() as browser:
                 await browser.open(live.server.url, **size)
                 await browser.until("window.treeSway && treeSway.state === 'live'")
-                await browser.until("treeSway.fps > 0")
+                await browser.until('treeSway.fps > 0')
                 await script(browser)
                 assert browser.console == []
                 others = [url for url in browser.requests if not url.startswith(live.server.url)]
-                assert [url for url in others if not url.startswith("data:")] == []
+                assert [url for url in others if not url.startswith('data:')] == []
 
         asyncio.run(whole())
 
@@ -87,7 +87,7 @@ def visit(live: Live, browser_class: Any) -> Visit:
 
 def picture(data: bytes) -> Any:
     """A screenshot as (h, w, 3)."""
-    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=np.int16)
+    return np.asarray(Image.open(io.BytesIO(data)).convert('RGB'), dtype=np.int16)
 
 
 def test_the_tree_is_drawn_where_it_projects(visit: Visit) -> None:
@@ -96,10 +96,10 @@ def test_the_tree_is_drawn_where_it_projects(visit: Visit) -> None:
         await browser.run("document.getElementById('control-pause').click()")
         await browser.until("treeSway.state === 'paused'")
         await asyncio.sleep(0)
-        await browser.until("treeSway.fps > 0")
+        await browser.until('treeSway.fps > 0')
         stem = await browser.run(
-            "Array.from({length: 8}, (_, s) => treeSway.scene.camera.project("
-            "treeSway.scene.position(s + 1)))"
+            'Array.from({length: 8}, (_, s) => treeSway.scene.camera.project('
+            'treeSway.scene.position(s + 1)))'
         )
         image = picture(await browser.screenshot())
         high, wide, _ = image.shape
@@ -116,8 +116,8 @@ def test_the_tree_is_drawn_where_it_projects(visit: Visit) -> None:
 def test_it_moves_in_wind_and_stands_still_when_paused(visit: Visit) -> None:
     async def change(browser: Browser) -> float:
         before = picture(await browser.screenshot())[100:600, 380:900]
-        drawn = await browser.run("treeSway.scene._frame")
-        await browser.until(f"treeSway.scene._frame > {drawn} + 8")
+        drawn = await browser.run('treeSway.scene._frame')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 8')
         after = picture(await browser.screenshot())[100:600, 380:900]
         return float((np.abs(after - before).sum(axis=2) > 30).mean())
 
@@ -125,8 +125,8 @@ def test_it_moves_in_wind_and_stands_still_when_paused(visit: Visit) -> None:
         assert await change(browser) > 0.005
         await browser.run("document.getElementById('control-pause').click()")
         await browser.until("treeSway.state === 'paused'")
-        drawn = await browser.run("treeSway.scene._frame")
-        await browser.until(f"treeSway.scene._frame > {drawn} + 12")
+        drawn = await browser.run('treeSway.scene._frame')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 12')
         assert await change(browser) == 0.0
         await browser.run("document.getElementById('control-pause').click()")
         await browser.until("treeSway.state === 'live'")
@@ -140,13 +140,13 @@ def test_the_slider_moves_the_wind(live: Live, visit: Visit) -> None:
             "{const s = document.getElementById('control-mean_speed'); s.value = 30;"
             " s.dispatchEvent(new Event('input'));}"
         )
-        await browser.until("Math.hypot(...treeSway.playout.wind) < 5.5")
-        assert live.wind.values["mean_speed"] == 3.0
+        await browser.until('Math.hypot(...treeSway.playout.wind) < 5.5')
+        assert live.wind.values['mean_speed'] == 3.0
         await browser.run(
             "{const s = document.getElementById('control-mean_speed'); s.value = 90;"
             " s.dispatchEvent(new Event('input'));}"
         )
-        await browser.until("Math.hypot(...treeSway.playout.wind) > 5.5")
+        await browser.until('Math.hypot(...treeSway.playout.wind) > 5.5')
 
     visit(script)
 
@@ -157,7 +157,7 @@ def test_a_lost_server_is_told_and_found_again(live: Live, visit: Visit) -> None
         await browser.until("treeSway.state === 'lost'")
         await browser.until("!document.getElementById('notice').hidden")
         told = await browser.run("document.getElementById('notice').innerText")
-        assert "Connection lost" in told
+        assert 'Connection lost' in told
         live.start()
         await browser.until("treeSway.state === 'live'")
         assert await browser.run("document.getElementById('notice').hidden")
@@ -169,26 +169,26 @@ def test_everything_has_a_name_and_keys_turn_the_tree(visit: Visit) -> None:
     async def script(browser: Browser) -> None:
         nameless = await browser.run(
             "[...document.querySelectorAll('button, input, select, canvas')].filter((e) =>"
-            " !(e.ariaLabel || e.innerText || e.labels?.length)).map((e) => e.outerHTML)"
+            ' !(e.ariaLabel || e.innerText || e.labels?.length)).map((e) => e.outerHTML)'
         )
         assert nameless == []
-        before = await browser.run("treeSway.scene.camera.azimuth")
+        before = await browser.run('treeSway.scene.camera.azimuth')
         await browser.run("document.getElementById('view').focus()")
-        key = {"key": "ArrowRight", "code": "ArrowRight", "windowsVirtualKeyCode": 39}
-        await browser.call("Input.dispatchKeyEvent", type="keyDown", **key)
-        assert await browser.run("treeSway.scene.camera.azimuth") != before
-        for kind, x in (("mousePressed", 500), ("mouseMoved", 620), ("mouseReleased", 620)):
+        key = {'key': 'ArrowRight', 'code': 'ArrowRight', 'windowsVirtualKeyCode': 39}
+        await browser.call('Input.dispatchKeyEvent', type='keyDown', **key)
+        assert await browser.run('treeSway.scene.camera.azimuth') != before
+        for kind, x in (('mousePressed', 500), ('mouseMoved', 620), ('mouseReleased', 620)):
             await browser.call(
-                "Input.dispatchMouseEvent", type=kind, x=x, y=300, button="left", buttons=1,
+                'Input.dispatchMouseEvent', type=kind, x=x, y=300, button='left', buttons=1,
                 clickCount=1,
             )  # fmt: skip
-        assert abs(await browser.run("treeSway.scene.camera.azimuth") - before) > 0.3
+        assert abs(await browser.run('treeSway.scene.camera.azimuth') - before) > 0.3
         await browser.call(
-            "Input.dispatchMouseEvent", type="mouseWheel", x=600, y=300, deltaX=0, deltaY=-300
+            'Input.dispatchMouseEvent', type='mouseWheel', x=600, y=300, deltaX=0, deltaY=-300
         )
-        far = await browser.run("treeSway.scene.camera.distance")
+        far = await browser.run('treeSway.scene.camera.distance')
         await browser.run("document.getElementById('home').click()")
-        assert await browser.run("treeSway.scene.camera.distance") > far
+        assert await browser.run('treeSway.scene.camera.distance') > far
 
     visit(script)
 
@@ -205,24 +205,24 @@ def test_a_stand_of_a_thousand_trees_is_drawn_and_moves(browser_class: Any) -> N
         async with browser_class() as browser:
             await browser.open(url)
             await browser.until("window.treeSway && treeSway.state === 'live' && treeSway.fps > 0")
-            assert await browser.run("treeSway.scene.detail.trees.length") == 1000
-            assert await browser.run("treeSway.scene.description.nSegments") > 1_000_000
-            assert await browser.run("treeSway.scene.detail.segments") < 60_000
-            assert await browser.run("treeSway.scene.detail.level.every((each) => each >= 0)")
-            before = await browser.run("treeSway.scene.tip()")
+            assert await browser.run('treeSway.scene.detail.trees.length') == 1000
+            assert await browser.run('treeSway.scene.description.nSegments') > 1_000_000
+            assert await browser.run('treeSway.scene.detail.segments') < 60_000
+            assert await browser.run('treeSway.scene.detail.level.every((each) => each >= 0)')
+            before = await browser.run('treeSway.scene.tip()')
             shot = picture(await browser.screenshot())
             await browser.until(
-                "Math.hypot(...treeSway.scene.tip().map((each, c) => each - "
-                f"{json.dumps(before)}[c])) > 0.02"
+                'Math.hypot(...treeSway.scene.tip().map((each, c) => each - '
+                f'{json.dumps(before)}[c])) > 0.02'
             )
             dark = (shot.sum(axis=2) < 400).mean()  # of trees before a light ground
             assert dark > 0.01
             moved = np.abs(picture(await browser.screenshot()) - shot).sum(axis=2) > 30
             assert moved[220:600, 340:1000].mean() > 0.002
-            await browser.run("treeSway.scene.camera.zoom(0.1)")
-            await browser.until("treeSway.scene.detail.level.some((each) => each < 0)")
-            await browser.until("Math.max(...treeSway.scene.detail.level) > 2")
-            heap = await browser.run("performance.memory.usedJSHeapSize")
+            await browser.run('treeSway.scene.camera.zoom(0.1)')
+            await browser.until('treeSway.scene.detail.level.some((each) => each < 0)')
+            await browser.until('Math.max(...treeSway.scene.detail.level) > 2')
+            heap = await browser.run('performance.memory.usedJSHeapSize')
             assert heap < 1e9
             assert browser.console == []
 
@@ -235,14 +235,14 @@ def test_a_stand_of_a_thousand_trees_is_drawn_and_moves(browser_class: Any) -> N
     assert session.failure is None
 
 
-@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize('dark', [False, True])
 def test_it_fits_a_phone(visit: Visit, dark: bool) -> None:
     async def script(browser: Browser) -> None:
-        assert await browser.run("document.documentElement.scrollWidth") == 390
+        assert await browser.run('document.documentElement.scrollWidth') == 390
         boxes = await browser.run(
             "['head', 'traces', 'panel', 'tools'].map((id) => {"
-            " const b = document.getElementById(id).getBoundingClientRect();"
-            " return [b.left, b.top, b.right, b.bottom]; })"
+            ' const b = document.getElementById(id).getBoundingClientRect();'
+            ' return [b.left, b.top, b.right, b.bottom]; })'
         )
         for left, top, right, bottom in boxes:
             assert left >= 0 and top >= 0 and right <= 390 and bottom <= 844  # noqa: PT018

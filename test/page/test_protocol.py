@@ -5,32 +5,32 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 import shutil
 import struct
 import subprocess
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.protocol import (
     BEYOND_SCALE,
-    WIND_UNIT,
-    Frame,
     decode_description,
     decode_frame,
     encode_description,
     encode_frame,
+    Frame,
     quantised,
+    WIND_UNIT,
 )
 
 HERE = Path(__file__).parent
-VECTORS = HERE / "vectors"
+VECTORS = HERE / 'vectors'
 
 
 def vector(name: str) -> bytes:
@@ -38,54 +38,54 @@ def vector(name: str) -> bytes:
     return (VECTORS / name).read_bytes()
 
 
-EXPECTED: dict[str, Any] = json.loads(vector("expected.json"))
+EXPECTED: dict[str, Any] = json.loads(vector('expected.json'))
 
 
 def test_a_frame_is_small() -> None:
-    assert len(vector("frame0.bin")) == 28 + 2 * 15
+    assert len(vector('frame0.bin')) == 28 + 2 * 15
 
 
-@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize('number', range(4))
 def test_the_vectors_read_as_they_were_written(number: int) -> None:
-    description = decode_description(vector("description.bin"))
-    assert description.identity == EXPECTED["identity"]
-    frame, expected = decode_frame(vector(f"frame{number}.bin")), EXPECTED["frames"][number]
-    assert frame.sequence == expected["sequence"]
-    assert frame.stamp == int(expected["stamp_ns"])
-    assert frame.flags == expected["flags"]
-    np.testing.assert_allclose(frame.wind, expected["wind"], atol=0.5 * WIND_UNIT + 1e-9)
-    poses, exact = Placer(description).place(frame), np.array(expected["poses"])
+    description = decode_description(vector('description.bin'))
+    assert description.identity == EXPECTED['identity']
+    frame, expected = decode_frame(vector(f'frame{number}.bin')), EXPECTED['frames'][number]
+    assert frame.sequence == expected['sequence']
+    assert frame.stamp == int(expected['stamp_ns'])
+    assert frame.flags == expected['flags']
+    np.testing.assert_allclose(frame.wind, expected['wind'], atol=0.5 * WIND_UNIT + 1e-9)
+    poses, exact = Placer(description).place(frame), np.array(expected['poses'])
     np.testing.assert_allclose(poses[:, :3], exact[:, :3], atol=2e-6)
     dots = np.abs((poses[:, 3:] * exact[:, 3:]).sum(axis=1))
     np.testing.assert_allclose(dots, 1.0, atol=1e-6)
 
 
 def test_javascript_reads_the_same_vectors() -> None:
-    node = shutil.which("node")
+    node = shutil.which('node')
     if node is None:
-        pytest.skip("node is not installed here")
-    command = [node, "--test", *map(str, sorted(HERE.glob("*.test.mjs")))]
+        pytest.skip('node is not installed here')
+    command = [node, '--test', *map(str, sorted(HERE.glob('*.test.mjs')))]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_the_program_of_the_vectors_still_makes_such(tmp_path: Path) -> None:
     """The same arrays, whose poses are the solver's of today, whatever its law of bending."""
-    source = (VECTORS / "make_vectors.py").read_text(encoding="utf-8")
-    names: dict[str, Any] = {"__file__": str(tmp_path / "make_vectors.py"), "__name__": "made"}
-    exec(compile(source, "make_vectors.py", "exec"), names)
-    names["main"]()
-    made = decode_description((tmp_path / "description.bin").read_bytes())
-    kept = decode_description(vector("description.bin"))
+    source = (VECTORS / 'make_vectors.py').read_text(encoding='utf-8')
+    names: dict[str, Any] = {'__file__': str(tmp_path / 'make_vectors.py'), '__name__': 'made'}
+    exec(compile(source, 'make_vectors.py', 'exec'), names)
+    names['main']()
+    made = decode_description((tmp_path / 'description.bin').read_bytes())
+    kept = decode_description(vector('description.bin'))
     assert made.header.keys() == kept.header.keys()
     assert {name: array.dtype for name, array in made.arrays.items()} == {
         name: array.dtype for name, array in kept.arrays.items()
     }
-    expected = json.loads((tmp_path / "expected.json").read_text(encoding="utf-8"))
+    expected = json.loads((tmp_path / 'expected.json').read_text(encoding='utf-8'))
     placer = Placer(made)
-    for number, each in enumerate(expected["frames"]):
-        poses = placer.place(decode_frame((tmp_path / f"frame{number}.bin").read_bytes()))
-        exact = np.array(each["poses"])
+    for number, each in enumerate(expected['frames']):
+        poses = placer.place(decode_frame((tmp_path / f'frame{number}.bin').read_bytes()))
+        exact = np.array(each['poses'])
         np.testing.assert_allclose(poses[:, :3], exact[:, :3], atol=2e-6)
 
 
@@ -98,7 +98,7 @@ def test_the_program_of_the_vectors_still_makes_such(tmp_path: Path) -> None:
 def test_frames_come_back(
     wind: tuple[float, float, float], values: list[int], sequence: int, stamp: int
 ) -> None:
-    frame = Frame(7, sequence, stamp, 0, np.array(wind), np.array(values, dtype="<i2"))
+    frame = Frame(7, sequence, stamp, 0, np.array(wind), np.array(values, dtype='<i2'))
     back = decode_frame(encode_frame(frame))
     assert back[:4] == frame[:4]
     np.testing.assert_allclose(back.wind, wind, atol=0.5 * WIND_UNIT + 1e-9)
@@ -119,31 +119,31 @@ def test_random_bytes_are_refused(data: bytes) -> None:
     with pytest.raises(FormatError):
         decode_description(data)
     with pytest.raises(FormatError):
-        decode_frame(b"\0" + data)
+        decode_frame(b'\0' + data)
 
 
 def test_a_changed_or_newer_description_is_refused() -> None:
-    whole = vector("description.bin")
+    whole = vector('description.bin')
     changed = bytearray(whole)
     changed[-20] ^= 1
-    with pytest.raises(FormatError, match="identity"):
+    with pytest.raises(FormatError, match='identity'):
         decode_description(bytes(changed))
-    newer = whole[:4] + struct.pack("<I", 3) + whole[8:]
-    with pytest.raises(FormatError, match="version 3"):
+    newer = whole[:4] + struct.pack('<I', 3) + whole[8:]
+    with pytest.raises(FormatError, match='version 3'):
         decode_description(newer)
     with pytest.raises(FormatError):
         decode_description(whole[:-9])
 
 
 def test_a_frame_of_another_tree_is_refused() -> None:
-    description = decode_description(vector("description.bin"))
-    other = decode_frame(vector("frame0.bin"))._replace(identity=1)
-    with pytest.raises(FormatError, match="description 00000001"):
+    description = decode_description(vector('description.bin'))
+    other = decode_frame(vector('frame0.bin'))._replace(identity=1)
+    with pytest.raises(FormatError, match='description 00000001'):
         Placer(description).place(other)
 
 
 def test_a_description_with_an_array_missing_is_refused() -> None:
-    description = decode_description(vector("description.bin"))
-    arrays = {name: value for name, value in description.arrays.items() if name != "1/branch_skew"}
-    with pytest.raises(FormatError, match="branch_skew"):
+    description = decode_description(vector('description.bin'))
+    arrays = {name: value for name, value in description.arrays.items() if name != '1/branch_skew'}
+    with pytest.raises(FormatError, match='branch_skew'):
         Placer(decode_description(encode_description(description.header, arrays)))

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 import shutil
 import subprocess
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
-from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree, scaled_tree
+from tree_sway_ros.core.scene.stand import scaled_tree, Stand, StandKind, StandTree
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
@@ -59,11 +59,11 @@ def swayed(simulator: Any, state: SceneState, speed: float) -> tuple[list[bytes]
     return frames, poses
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def tall() -> tuple[SceneState, list[bytes], list[Any]]:
     """A broadleaf of 8 m in a wind of 7 m/s."""
-    tree = grow("broadleaf", 8.0, rng=np.random.default_rng(0))
-    simulator = make_simulator(tree, species_named(tree.species), model="modes")
+    tree = grow('broadleaf', 8.0, rng=np.random.default_rng(0))
+    simulator = make_simulator(tree, species_named(tree.species), model='modes')
     state = SceneState(simulator)
     return state, *swayed(simulator, state, 7.0)
 
@@ -90,33 +90,33 @@ def test_javascript_rebuilds_it_as_well(tall: Any, tmp_path: Path) -> None:
 
 def rebuilt_by_javascript(state: SceneState, frames: list[bytes], tmp_path: Path) -> list[Any]:
     """Poses of every frame as the page places them, each (n, 8)."""
-    node = shutil.which("node")
+    node = shutil.which('node')
     if node is None:
-        pytest.skip("node is not installed here")
-    (tmp_path / "description.bin").write_bytes(state.description)
+        pytest.skip('node is not installed here')
+    (tmp_path / 'description.bin').write_bytes(state.description)
     for i, frame in enumerate(frames):
-        (tmp_path / f"{i}.frame").write_bytes(frame)
-    program = tmp_path / "rebuild.mjs"
-    program.write_text(REBUILD, encoding="utf-8")
-    static = HERE.parents[1] / "tree_sway_ros" / "page" / "static"
+        (tmp_path / f'{i}.frame').write_bytes(frame)
+    program = tmp_path / 'rebuild.mjs'
+    program.write_text(REBUILD, encoding='utf-8')
+    static = HERE.parents[1] / 'tree_sway_ros' / 'page' / 'static'
     command = [node, str(program), str(static), str(tmp_path), str(len(frames))]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
     return [
-        np.fromfile(tmp_path / f"{i}.poses", dtype=np.float32).reshape(-1, 8)
+        np.fromfile(tmp_path / f'{i}.poses', dtype=np.float32).reshape(-1, 8)
         for i in range(len(frames))
     ]
 
 
-@pytest.mark.parametrize("name", BUILTIN_TREES)
+@pytest.mark.parametrize('name', BUILTIN_TREES)
 def test_a_frame_of_any_tree_of_the_package_is_small(name: str) -> None:
-    state = SceneState(open_tree(name).simulator(model="modes"))
+    state = SceneState(open_tree(name).simulator(model='modes'))
     assert len(state.frame(0)) <= 96
 
 
-@pytest.mark.parametrize("fidelity", ["branch", "wind_basis", "auto", "segments"])
+@pytest.mark.parametrize('fidelity', ['branch', 'wind_basis', 'auto', 'segments'])
 def test_every_model_can_be_told(fidelity: str) -> None:
-    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
+    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
     simulator = source.simulator(model=fidelity)
     state = SceneState(simulator)
     frames, exact = swayed(simulator, state, 4.0)
@@ -126,12 +126,12 @@ def test_every_model_can_be_told(fidelity: str) -> None:
 
 
 def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
-    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
+    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
     trees = tuple(
-        PlacedTree(f"t{i}", source.tree, x=2.0 * i, yaw=0.7 * i, species=source.species)
+        PlacedTree(f't{i}', source.tree, x=2.0 * i, yaw=0.7 * i, species=source.species)
         for i in range(3)
     )
-    simulator = ForestFile("three", trees, "").simulator(model="modes")
+    simulator = ForestFile('three', trees, '').simulator(model='modes')
     state = SceneState(simulator)
     assert [kind.numbers for kind in state.kinds] == [[0, 1, 2]]
     frames, exact = swayed(simulator, state, 5.0)
@@ -142,8 +142,8 @@ def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
 
 
 def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
-    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
-    simulator = source.simulator(model="modes")
+    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+    simulator = source.simulator(model='modes')
     for _ in range(30):
         simulator.step((6.0, 1.0, 0.0), 1.0 / 60.0)
     before = simulator.state().values
@@ -153,13 +153,13 @@ def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
 
 
 def test_a_stand_is_told_on_a_basis_per_kind() -> None:
-    source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
-    kinds = {"seedling": StandKind(source.tree, source.species)}
+    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+    kinds = {'seedling': StandKind(source.tree, source.species)}
     standing = [
-        StandTree("one", "seedling"),
-        StandTree("two", "seedling", x=3.0, yaw=0.7, scale=1.4),
-        StandTree("own", "seedling", y=2.0, yaw=2.0, fidelity="modes"),
-        StandTree("still", "seedling", y=4.0, yaw=1.0, fidelity="frozen"),
+        StandTree('one', 'seedling'),
+        StandTree('two', 'seedling', x=3.0, yaw=0.7, scale=1.4),
+        StandTree('own', 'seedling', y=2.0, yaw=2.0, fidelity='modes'),
+        StandTree('still', 'seedling', y=4.0, yaw=1.0, fidelity='frozen'),
     ]
     stand = Stand(standing, kinds)
     state = SceneState(stand)
@@ -172,31 +172,31 @@ def test_a_stand_is_told_on_a_basis_per_kind() -> None:
         rows = stand.segments_of(told.name)
         each = gaps([poses[rows] for poses in rebuilt], [poses[rows] for poses in exact])
         assert np.quantile(each, 0.99) < 0.02 * moved[rows].max()
-    assert moved[stand.segments_of("still")].max() == 0.0
+    assert moved[stand.segments_of('still')].max() == 0.0
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-4
     assert json.dumps(state.coordinate_names).startswith('["one/c0"')
 
 
 def test_a_scene_too_large_to_describe_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scene_state, "MOST_SEGMENTS", 5)
-    with pytest.raises(ParameterError, match="by their poses"):
-        SceneState(open_tree("goldcrest").simulator(model="frozen"))
+    monkeypatch.setattr(scene_state, 'MOST_SEGMENTS', 5)
+    with pytest.raises(ParameterError, match='by their poses'):
+        SceneState(open_tree('goldcrest').simulator(model='frozen'))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def avenue() -> tuple[Stand, SceneState]:
     """A thousand trees of two kinds, two of them on a model of their own."""
     kinds = {}
-    for name in ("seedling", "other"):
-        source = open_tree(HERE.parent / "files" / "data" / "seedling.yaml")
-        tree = source.tree if name == "seedling" else scaled_tree(source.tree, 1.7)
+    for name in ('seedling', 'other'):
+        source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+        tree = source.tree if name == 'seedling' else scaled_tree(source.tree, 1.7)
         kinds[name] = StandKind(tree, source.species)
     draw = np.random.default_rng(5)
     trees = [
         StandTree(
-            f"t{i}", ("seedling", "other")[i % 3 == 0], 3.0 * (i % 50), 3.0 * (i // 50), 0.1 * i,
+            f't{i}', ('seedling', 'other')[i % 3 == 0], 3.0 * (i % 50), 3.0 * (i // 50), 0.1 * i,
             scale=draw.uniform(0.6, 1.6), yaw=draw.uniform(-3.0, 9.0),
-            fidelity="modes" if i in (7, 700) else "wind_basis",
+            fidelity='modes' if i in (7, 700) else 'wind_basis',
         )
         for i in range(1000)
     ]  # fmt: skip
@@ -207,8 +207,8 @@ def avenue() -> tuple[Stand, SceneState]:
 def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Path) -> None:
     stand, state = avenue
     described = decode_description(state.description)
-    assert len(described.header["trees"]) == 1000
-    assert len(described.header["kinds"]) == 4
+    assert len(described.header['trees']) == 1000
+    assert len(described.header['kinds']) == 4
     assert len(state.description) < 300_000
     wind = simulate_turbulence(12.0, rate=60.0, duration=5.0, rng=np.random.default_rng(3))
     for each in wind:
@@ -219,7 +219,7 @@ def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Pat
     rebuilt = Placer(described).place(decode_frame(frame))
     assert np.linalg.norm(rebuilt[:, :3] - exact[:, :3], axis=1).max() < 2e-4
     rest = Placer(described).place_coordinates(np.zeros(len(described.scale)))
-    for name in ("t0", "t7", "t8", "t501", "t700", "t999"):
+    for name in ('t0', 't7', 't8', 't501', 't700', 't999'):
         rows = stand.segments_of(name)
         assert np.linalg.norm(rest[rows, :3] - exact[rows, :3], axis=1).max() > 2e-3
     by_javascript = rebuilt_by_javascript(state, [frame], tmp_path)[0]
@@ -242,6 +242,6 @@ def test_coordinates_of_a_stand_are_those_of_its_rotations(avenue: Any) -> None:
 def test_more_coordinates_than_a_frame_can_count_are_refused(
     avenue: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(scene_state, "MOST_COORDINATES", 999)
-    with pytest.raises(ParameterError, match="coordinates"):
+    monkeypatch.setattr(scene_state, 'MOST_COORDINATES', 999)
+    with pytest.raises(ParameterError, match='coordinates'):
         SceneState(avenue[0])

@@ -5,18 +5,18 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Iterator
 import gc
 import json
 import socket
 import threading
 import time
 import tracemalloc
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
-aiohttp = pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_ros.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway_ros.page import doorkeeper  # noqa: E402
@@ -25,14 +25,14 @@ from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
 
 DEADLINE = 10.0
-DESCRIPTION = b"TSWD" + bytes(96)
+DESCRIPTION = b'TSWD' + bytes(96)
 
 
 def until(holds: Callable[[], bool]) -> None:
     """Wait for a condition, no longer than the deadline."""
     end = time.monotonic() + DEADLINE
     while not holds():
-        assert time.monotonic() < end, "it did not come to pass"
+        assert time.monotonic() < end, 'it did not come to pass'
         time.sleep(0.005)
 
 
@@ -65,7 +65,7 @@ def run(server: PageServer, script: Callable[[Viewer], Any], **options: Any) -> 
 
     async def whole() -> Any:
         async with aiohttp.ClientSession() as session:
-            async with session.ws_connect(f"{server.url}stream", **options) as ws:
+            async with session.ws_connect(f'{server.url}stream', **options) as ws:
                 return await script(Viewer(session, ws))
 
     return asyncio.run(whole())
@@ -81,17 +81,17 @@ def server() -> Iterator[PageServer]:
 def test_a_viewer_gets_the_description_and_then_a_frame_per_credit(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         assert await viewer.binary() == DESCRIPTION
-        server.publish(b"F1")
+        server.publish(b'F1')
         await viewer.say(credit=1)
-        assert await viewer.binary() == b"F1"
+        assert await viewer.binary() == b'F1'
         for number in range(2, 9):
-            server.publish(f"F{number}".encode())
+            server.publish(f'F{number}'.encode())
         await viewer.say(ping=1)
-        await viewer.text("pong")  # nothing came before it: no credit was left
+        await viewer.text('pong')  # nothing came before it: no credit was left
         await viewer.say(credit=5)
-        assert await viewer.binary() == b"F8"  # the newest, not those between
-        server.publish(b"F9")
-        assert await viewer.binary() == b"F9"
+        assert await viewer.binary() == b'F8'  # the newest, not those between
+        server.publish(b'F9')
+        assert await viewer.binary() == b'F9'
 
     run(server, script)
 
@@ -101,7 +101,7 @@ def test_a_slow_viewer_sees_new_frames_and_holds_up_nobody(server: PageServer) -
 
     def solve() -> None:
         while not stop.wait(1.0 / 120.0):
-            server.publish(f"{time.monotonic():.6f}".encode())
+            server.publish(f'{time.monotonic():.6f}'.encode())
 
     solver = threading.Thread(target=solve)
     solver.start()
@@ -127,8 +127,8 @@ def test_a_slow_viewer_sees_new_frames_and_holds_up_nobody(server: PageServer) -
 def test_a_new_description_reaches_who_is_there(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         await viewer.binary()
-        server.describe(b"TSWD other")
-        assert await viewer.binary() == b"TSWD other"
+        server.describe(b'TSWD other')
+        assert await viewer.binary() == b'TSWD other'
 
     run(server, script)
 
@@ -137,15 +137,15 @@ def panel(applied: list[Any]) -> ControlPanel:
     """A slider, a choice and a button."""
 
     def apply(name: str, value: Any) -> None:
-        if value == "segments":
+        if value == 'segments':
             raise ParameterError("leaves on model 'segments'", cure="use 'coupled'")
         applied.append((name, value))
 
     return ControlPanel(
         (
-            Control("wind", "Wind", 6.0, unit="m/s", minimum=0.0, maximum=40.0),
-            Control("fidelity", "Model", "modes", choices=("modes", "segments")),
-            Control("reset", "Reset", None, is_action=True),
+            Control('wind', 'Wind', 6.0, unit='m/s', minimum=0.0, maximum=40.0),
+            Control('fidelity', 'Model', 'modes', choices=('modes', 'segments')),
+            Control('reset', 'Reset', None, is_action=True),
         ),
         apply,
     )
@@ -155,105 +155,106 @@ def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
     applied: list[Any] = []
 
     async def script(viewer: Viewer) -> None:
-        hello = await viewer.text("hello")
-        assert [control["name"] for control in hello["controls"]] == ["wind", "fidelity", "reset"]
-        await viewer.say(set={"name": "wind", "value": 12})
-        assert (await viewer.text("values"))["wind"] == 12.0
+        hello = await viewer.text('hello')
+        assert [control['name'] for control in hello['controls']] == ['wind', 'fidelity', 'reset']
+        await viewer.say(set={'name': 'wind', 'value': 12})
+        assert (await viewer.text('values'))['wind'] == 12.0
         for name, value, reason in (
-            ("wind", 41.0, "out of range; give 0 .. 40 m/s"),
-            ("wind", "strong", "is not a number"),
-            ("wind", float("nan"), "out of range"),
-            ("fidelity", "best", "not among its choices; use one of: modes, segments"),
-            ("fidelity", "segments", "leaves on model 'segments'; use 'coupled'"),
-            ("gravity", 0.0, "nothing called 'gravity'"),
-            (None, None, "nothing called"),
+            ('wind', 41.0, 'out of range; give 0 .. 40 m/s'),
+            ('wind', 'strong', 'is not a number'),
+            ('wind', float('nan'), 'out of range'),
+            ('fidelity', 'best', 'not among its choices; use one of: modes, segments'),
+            ('fidelity', 'segments', "leaves on model 'segments'; use 'coupled'"),
+            ('gravity', 0.0, "nothing called 'gravity'"),
+            (None, None, 'nothing called'),
         ):
-            await viewer.say(set={"name": name, "value": value})
-            assert reason in (await viewer.text("refused"))["reason"]
-        await viewer.say(set={"name": "reset"})
-        await viewer.text("values")
+            await viewer.say(set={'name': name, 'value': value})
+            assert reason in (await viewer.text('refused'))['reason']
+        await viewer.say(set={'name': 'reset'})
+        await viewer.text('values')
 
     with PageServer(PageSettings(port=0), panel(applied)) as server:
         run(server, script)
-    assert applied == [("wind", 12.0), ("reset", None)]
+    assert applied == [('wind', 12.0), ('reset', None)]
 
 
 def test_without_a_panel_nothing_can_be_changed(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
-        await viewer.say(set={"name": "wind", "value": 1.0})
-        assert "nothing called 'wind'" in (await viewer.text("refused"))["reason"]
+        await viewer.say(set={'name': 'wind', 'value': 1.0})
+        assert "nothing called 'wind'" in (await viewer.text('refused'))['reason']
 
     run(server, script)
 
 
 def test_other_pages_and_names_are_refused(server: PageServer) -> None:
-    for headers in ({"Origin": "http://evil.example"}, {"Host": "evil.example"}):
-        with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
+    for headers in ({'Origin': 'http://evil.example'}, {'Host': 'evil.example'}):
+        with pytest.raises(aiohttp.WSServerHandshakeError, match='403'):
             run(server, lambda viewer: viewer.binary(), headers=headers)
-    origin = server.url.rstrip("/")
-    assert run(server, lambda viewer: viewer.binary(), headers={"Origin": origin}) == DESCRIPTION
+    origin = server.url.rstrip('/')
+    assert run(server, lambda viewer: viewer.binary(), headers={'Origin': origin}) == DESCRIPTION
 
 
 def test_a_token_is_asked_for_elsewhere_than_here() -> None:
-    with pytest.raises(ParameterError, match="without a token"):
-        PageServer(PageSettings(address="0.0.0.0"))
-    require_token("127.0.0.1", "")
-    asked = {"address": "0.0.0.0", "token": "long enough"}
-    assert "token" in str(refusal({"Host": "tree.example"}, "", **asked))
-    assert "token" in str(refusal({"Host": "tree.example"}, "lóng", **asked))
-    assert refusal({"Host": "tree.example"}, "long enough", **asked) is None
-    other = {"Host": "tree.example", "Origin": "https://scene.example"}
-    assert "origin" in str(refusal(other, "long enough", **asked))
-    assert refusal(other, "long enough", **asked, origins=("https://scene.example",)) is None
-    assert is_loopback("::1")
-    assert is_loopback("localhost")
-    assert not is_loopback("10.0.0.1")
+    with pytest.raises(ParameterError, match='without a token'):
+        PageServer(PageSettings(address='0.0.0.0'))
+    require_token('127.0.0.1', '')
+    asked = {'address': '0.0.0.0', 'token': 'long enough'}
+    assert 'token' in str(refusal({'Host': 'tree.example'}, '', **asked))
+    assert 'token' in str(refusal({'Host': 'tree.example'}, 'lóng', **asked))
+    assert refusal({'Host': 'tree.example'}, 'long enough', **asked) is None
+    other = {'Host': 'tree.example', 'Origin': 'https://scene.example'}
+    assert 'origin' in str(refusal(other, 'long enough', **asked))
+    assert refusal(other, 'long enough', **asked, origins=('https://scene.example',)) is None
+    assert is_loopback('::1')
+    assert is_loopback('localhost')
+    assert not is_loopback('10.0.0.1')
 
 
 def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
-    with pytest.raises(TransportError, match="another port"):
+    with pytest.raises(TransportError, match='another port'):
         PageServer(PageSettings(port=server.port)).start()
 
 
 def test_health_metrics_and_headers(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         await viewer.binary()
-        async with viewer.session.get(f"{server.url}healthz") as answer:
-            assert (await answer.json())["status"] == "ok"
-        async with viewer.session.get(f"{server.url}metrics") as answer:
-            assert "tree_sway_page_clients 1" in await answer.text()
+        async with viewer.session.get(f'{server.url}healthz') as answer:
+            assert (await answer.json())['status'] == 'ok'
+        async with viewer.session.get(f'{server.url}metrics') as answer:
+            assert 'tree_sway_page_clients 1' in await answer.text()
         async with viewer.session.get(server.url) as answer:
-            assert answer.headers["Content-Security-Policy"].startswith("default-src 'self'")
-            assert "<!doctype html>" in (await answer.text()).lower()
-        async with viewer.session.get(f"{server.url}static/../server.py") as answer:
+            assert answer.headers['Content-Security-Policy'].startswith("default-src 'self'")
+            assert '<!doctype html>' in (await answer.text()).lower()
+        async with viewer.session.get(f'{server.url}static/../server.py') as answer:
             assert answer.status == 404
 
     run(server, script)
 
 
 HOSTILE = (
-    b"\x16\x03\x01" + bytes(range(256)),
-    b"GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 4611686018427387904\r\n\r\n",
-    b"GET / HTTP/1.1\r\nHost: " + b"a" * 100_000 + b"\r\n\r\n",
-    b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFF\r\n",
+    b'\x16\x03\x01' + bytes(range(256)),
+    b'GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 4611686018427387904\r\n\r\n',
+    b'GET / HTTP/1.1\r\nHost: ' + b'a' * 100_000 + b'\r\n\r\n',
+    b'POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n'
+    b'FFFFFFFFFFFFFFFF\r\n',
 )
 UPGRADE = (
-    b"GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
-    b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+    b'GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n'
+    b'Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n'
 )
 BAD_FRAMES = (
-    b"\x82\xff\x40" + bytes(7) + bytes(4),  # 2^62 bytes are to follow
-    b"\x81\x85\0\0\0\0hello",  # not JSON
-    b"\x81\x86\0\0\0\0[1, 2]",
-    b"\x83\x80\0\0\0\0",  # a reserved kind
-    b"\x01\x81\0\0\0\0{\x81\x81\0\0\0\0}",  # a message within another
-    b"\x82\x81\0\0\0\0x",  # bytes where text is spoken
+    b'\x82\xff\x40' + bytes(7) + bytes(4),  # 2^62 bytes are to follow
+    b'\x81\x85\0\0\0\0hello',  # not JSON
+    b'\x81\x86\0\0\0\0[1, 2]',
+    b'\x83\x80\0\0\0\0',  # a reserved kind
+    b'\x01\x81\0\0\0\0{\x81\x81\0\0\0\0}',  # a message within another
+    b'\x82\x81\0\0\0\0x',  # bytes where text is spoken
 )
 
 
 def is_closed_by_the_server(port: int, *parts: bytes) -> bool:
     """Whether the server ends a connection that sent this."""
-    with socket.create_connection(("127.0.0.1", port), timeout=DEADLINE) as connection:
+    with socket.create_connection(('127.0.0.1', port), timeout=DEADLINE) as connection:
         try:
             for part in parts:
                 connection.sendall(part)
@@ -267,15 +268,15 @@ def is_closed_by_the_server(port: int, *parts: bytes) -> bool:
     return True
 
 
-@pytest.mark.parametrize("data", HOSTILE, ids=range(len(HOSTILE)))
+@pytest.mark.parametrize('data', HOSTILE, ids=range(len(HOSTILE)))
 def test_what_is_no_request_is_closed(
     server: PageServer, data: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(doorkeeper, "ASKING_TIME", 0.3)
+    monkeypatch.setattr(doorkeeper, 'ASKING_TIME', 0.3)
     assert is_closed_by_the_server(server.port, data)
 
 
-@pytest.mark.parametrize("frame", BAD_FRAMES, ids=range(len(BAD_FRAMES)))
+@pytest.mark.parametrize('frame', BAD_FRAMES, ids=range(len(BAD_FRAMES)))
 def test_bad_frames_are_closed(server: PageServer, frame: bytes) -> None:
     assert is_closed_by_the_server(server.port, UPGRADE, frame)
     until(lambda: server.n_clients == 0)
@@ -284,7 +285,7 @@ def test_bad_frames_are_closed(server: PageServer, frame: bytes) -> None:
 def test_hostile_input_costs_no_memory_and_a_viewer_no_frame(
     server: PageServer, caplog: pytest.LogCaptureFixture
 ) -> None:
-    caplog.set_level("CRITICAL", "aiohttp.server")  # or what is logged is kept
+    caplog.set_level('CRITICAL', 'aiohttp.server')  # or what is logged is kept
     attacks = [(HOSTILE[0],), (HOSTILE[2],), *((UPGRADE, frame) for frame in BAD_FRAMES)]
 
     def attack() -> None:
@@ -298,9 +299,9 @@ def test_hostile_input_costs_no_memory_and_a_viewer_no_frame(
             attacked = asyncio.get_running_loop().run_in_executor(None, attack)
             before = number
             while not attacked.done():
-                server.publish(f"F{number}".encode())
+                server.publish(f'F{number}'.encode())
                 await viewer.say(credit=1)
-                assert await viewer.binary() == f"F{number}".encode()
+                assert await viewer.binary() == f'F{number}'.encode()
                 number += 1
             await attacked
             assert number > before
@@ -317,9 +318,9 @@ def test_hostile_input_costs_no_memory_and_a_viewer_no_frame(
 
 
 def test_slow_headers_are_closed(server: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doorkeeper, "ASKING_TIME", 0.2)
+    monkeypatch.setattr(doorkeeper, 'ASKING_TIME', 0.2)
     began = time.monotonic()
-    assert is_closed_by_the_server(server.port, b"GET / HTTP/1.1\r\nHost: 127")
+    assert is_closed_by_the_server(server.port, b'GET / HTTP/1.1\r\nHost: 127')
     assert time.monotonic() - began < DEADLINE / 2
 
 
@@ -329,8 +330,8 @@ def test_too_many_pages_are_refused() -> None:
 
         async def script(viewer: Viewer) -> None:
             await viewer.binary()
-            with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
-                await viewer.session.ws_connect(f"{server.url}stream")
+            with pytest.raises(aiohttp.WSServerHandshakeError, match='503'):
+                await viewer.session.ws_connect(f'{server.url}stream')
 
         run(server, script)
 

@@ -4,24 +4,24 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+import time
 from typing import Any
 
 import numpy as np
 import pytest
 
-pytest.importorskip("aiohttp", reason="aiohttp is not installed")
+pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.page.protocol import PAUSED, decode_description, decode_frame
+from tree_sway_ros.page.protocol import decode_description, decode_frame, PAUSED
 from tree_sway_ros.page.session import Choices, Session
 from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind
 
-SEEDLING = Path(__file__).parents[1] / "files" / "data" / "seedling.yaml"
+SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 30.0
 
 
@@ -44,8 +44,8 @@ class Sink:
 
 
 def build(choices: Choices) -> Any:
-    if choices.tree == "missing":
-        raise FormatError("no tree 'missing'", cure="name another")
+    if choices.tree == 'missing':
+        raise FormatError("no tree 'missing'", cure='name another')
     settings = Settings(damping_ratio=choices.damping_ratio or None)
     return open_tree(choices.tree).simulator(settings, model=choices.fidelity)
 
@@ -53,7 +53,7 @@ def build(choices: Choices) -> Any:
 def until(holds: Callable[[], Any]) -> None:
     end = time.monotonic() + DEADLINE
     while not holds():
-        assert time.monotonic() < end, "it did not come to pass"
+        assert time.monotonic() < end, 'it did not come to pass'
         time.sleep(0.005)
 
 
@@ -80,44 +80,44 @@ def test_frames_belong_to_the_description_and_keep_time(live: tuple[Session, Sin
 def test_pause_and_reset(live: tuple[Session, Sink]) -> None:
     session, sink = live
     until(lambda: len(sink.frames) > 30)
-    session.apply("pause", True)
+    session.apply('pause', True)
     until(lambda: decode_frame(sink.frames[-1]).flags & PAUSED)
     still = decode_frame(sink.frames[-1]).coordinates
     n = len(sink.frames)
     until(lambda: len(sink.frames) > n + 5)
     assert (decode_frame(sink.frames[-1]).coordinates == still).all()
-    session.apply("reset", None)
+    session.apply('reset', None)
     until(lambda: not decode_frame(sink.frames[-1]).coordinates.any())
 
 
 def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]) -> None:
     session, sink = live
-    session.apply("fidelity", "branch")
+    session.apply('fidelity', 'branch')
     until(lambda: len(sink.descriptions) == 2)
-    assert session.status()["model"] == "branch"
+    assert session.status()['model'] == 'branch'
     identity = decode_description(sink.descriptions[1]).short_identity
     until(lambda: decode_frame(sink.frames[-1]).identity == identity)
 
 
 def test_what_cannot_be_built_is_told_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:
     session, sink = live
-    session.apply("tree", "missing")
+    session.apply('tree', 'missing')
     until(lambda: sink.told)
-    assert "no tree 'missing'" in sink.told[0]["refused"]["reason"]
+    assert "no tree 'missing'" in sink.told[0]['refused']['reason']
     n = len(sink.frames)
     until(lambda: len(sink.frames) > n + 5)
     assert session.choices.tree == str(SEEDLING)
-    with pytest.raises(ParameterError, match="cannot be changed"):
-        session.apply("gravity", 0.0)
+    with pytest.raises(ParameterError, match='cannot be changed'):
+        session.apply('gravity', 0.0)
 
 
 def test_the_wind_changes_at_once_and_a_record_does_not(live: tuple[Session, Sink]) -> None:
     session, _ = live
     before = session.wind.mean(10.0, 10.02)
-    session.apply("mean_speed", 10.0)
+    session.apply('mean_speed', 10.0)
     after = session.wind.mean(10.0, 10.02)  # the same gusts about another mean
     assert 1.5 < np.linalg.norm(after) / np.linalg.norm(before) < 2.5
     session.wind = RecordedWind(np.array([0.0, 1.0]), np.array([[1.0, 0, 0], [3.0, 0, 0]]))
     np.testing.assert_allclose(session.wind.mean(1.5, 1.5), [2.0, 0.0, 0.0])
-    with pytest.raises(ParameterError, match="record"):
-        session.apply("mean_speed", 3.0)
+    with pytest.raises(ParameterError, match='record'):
+        session.apply('mean_speed', 3.0)

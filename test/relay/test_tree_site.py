@@ -26,8 +26,8 @@ def winds(seconds: float) -> list[tuple[int, Any]]:
     return [(START + round(t * SECOND), v) for t, v in zip(times, vectors, strict=True)]
 
 
-def made(name: str = "goldcrest", **options: Any) -> Site:
-    return Site(open_tree(name).simulator(model="modes"), **options)
+def made(name: str = 'goldcrest', **options: Any) -> Site:
+    return Site(open_tree(name).simulator(model='modes'), **options)
 
 
 def poses(site: Site) -> Any:
@@ -51,7 +51,7 @@ def test_who_joins_by_a_snapshot_goes_on_bit_for_bit() -> None:
     ends: list[int] = []
     one, other = made(), made(stepped=lambda stamp, _: ends.append(stamp))
     samples = winds(4.0)
-    assert one.snapshot() == ""
+    assert one.snapshot() == ''
     for k, (stamp, vector) in enumerate(samples):
         one.add_wind(stamp, vector)
         if k > 38:
@@ -75,29 +75,29 @@ def test_a_wind_that_ends_is_held() -> None:
 
 
 def test_another_tree_or_nonsense_is_refused() -> None:
-    one, other = made(), made("benjamina")
-    with pytest.raises(StateError, match="the other site has tree"):
+    one, other = made(), made('benjamina')
+    with pytest.raises(StateError, match='the other site has tree'):
         one.check(other.identity())
     one.check(made().identity())
     other.add_wind(START, (5.0, 0.0, 0.0))
-    with pytest.raises(StateError, match="state of tree"):
+    with pytest.raises(StateError, match='state of tree'):
         one.join(other.snapshot())
-    for broken in ("", "[]", "{}", json.dumps({"step": 1, "wind": [[1]], "state": ""})):
+    for broken in ('', '[]', '{}', json.dumps({'step': 1, 'wind': [[1]], 'state': ''})):
         with pytest.raises(StateError):
             one.join(broken)
 
 
-@pytest.mark.parametrize("frame_id", ["", "map", "a longer frame"])
+@pytest.mark.parametrize('frame_id', ['', 'map', 'a longer frame'])
 def test_the_wind_is_a_message_of_ros(frame_id: str) -> None:
     data = encode_wind(START, (1.5, -2.0, 0.25), frame_id)
     assert decode_wind(data) == (START, (1.5, -2.0, 0.25))
     with pytest.raises(FormatError):
         decode_wind(data[:-1])
-    with pytest.raises(FormatError, match="not finite"):
-        decode_wind(encode_wind(START, (float("nan"), 0.0, 0.0), frame_id))
-    typesys = pytest.importorskip("rosbags.typesys")
+    with pytest.raises(FormatError, match='not finite'):
+        decode_wind(encode_wind(START, (float('nan'), 0.0, 0.0), frame_id))
+    typesys = pytest.importorskip('rosbags.typesys')
     types = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
-    message = types.deserialize_cdr(data, "geometry_msgs/msg/Vector3Stamped")
+    message = types.deserialize_cdr(data, 'geometry_msgs/msg/Vector3Stamped')
     assert (message.header.frame_id, message.vector.y) == (frame_id, -2.0)
     assert message.header.stamp.sec * SECOND + message.header.stamp.nanosec == START
-    assert bytes(types.serialize_cdr(message, "geometry_msgs/msg/Vector3Stamped")) == data
+    assert bytes(types.serialize_cdr(message, 'geometry_msgs/msg/Vector3Stamped')) == data

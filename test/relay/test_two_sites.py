@@ -4,18 +4,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 import signal
 import socket
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tree_sway_ros.core.arrays import Floats
 
-pytest.importorskip("zenoh", reason="eclipse-zenoh is not installed")
+pytest.importorskip('zenoh', reason='eclipse-zenoh is not installed')
 
 ROOT = Path(__file__).resolve().parents[2]
 PACE = 8.0
@@ -24,14 +24,14 @@ SECONDS = 90.0
 
 def free_port() -> int:
     with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
+        trial.bind(('127.0.0.1', 0))
         return int(trial.getsockname()[1])
 
 
 def relay(role: str, output: Path, *given: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "relay", role, "goldcrest"]
+    command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'relay', role, 'goldcrest']
     return subprocess.Popen(
-        [*command, "--pace", str(PACE), "-o", str(output), *given],
+        [*command, '--pace', str(PACE), '-o', str(output), *given],
         cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
 
@@ -39,7 +39,7 @@ def relay(role: str, output: Path, *given: str) -> subprocess.Popen[str]:
 def apart(one: Path, other: Path) -> tuple[Floats, Floats]:
     """Time since the other began [s], and how far its tip is from that of the first [m]."""
     rows = [
-        {int(line.split(",")[0]): line.split(",")[1:] for line in path.read_text().split()[1:]}
+        {int(line.split(',')[0]): line.split(',')[1:] for line in path.read_text().split()[1:]}
         for path in (one, other)
     ]
     stamps = sorted(set(rows[0]) & set(rows[1]))
@@ -48,22 +48,22 @@ def apart(one: Path, other: Path) -> tuple[Floats, Floats]:
     return 1e-9 * (np.array(stamps) - stamps[0]), np.linalg.norm(tips[0] - tips[1], axis=1)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def sites(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Floats, Floats]]:
     """Distances of three sites from the one that sends: all join while it sends."""
-    folder = tmp_path_factory.mktemp("sites")
-    place = f"tcp/127.0.0.1:{free_port()}"
-    seconds = ["--seconds", str(SECONDS)]
-    sender = relay("send", folder / "sender", "--listen", place, "--wind", "canopy")
+    folder = tmp_path_factory.mktemp('sites')
+    place = f'tcp/127.0.0.1:{free_port()}'
+    seconds = ['--seconds', str(SECONDS)]
+    sender = relay('send', folder / 'sender', '--listen', place, '--wind', 'canopy')
     assert sender.stdout is not None
-    assert "sending" in sender.stdout.readline()
+    assert 'sending' in sender.stdout.readline()
     kinds = {
-        "snapshot": [],
-        "rest": ["--no-snapshot"],
-        "lossy": ["--lose", "0.05"],
+        'snapshot': [],
+        'rest': ['--no-snapshot'],
+        'lossy': ['--lose', '0.05'],
     }
     others = {
-        kind: relay("receive", folder / kind, "--connect", place, *seconds, *given)
+        kind: relay('receive', folder / kind, '--connect', place, *seconds, *given)
         for kind, given in kinds.items()
     }
     try:
@@ -76,12 +76,12 @@ def sites(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Floats, F
     finally:
         for process in (sender, *others.values()):
             process.kill()
-    return {kind: apart(folder / "sender", folder / kind) for kind in kinds}
+    return {kind: apart(folder / 'sender', folder / kind) for kind in kinds}
 
 
 def test_by_a_snapshot_tips_agree_at_once(sites: dict[str, tuple[Floats, Floats]]) -> None:
-    time, distance = sites["snapshot"]
-    print(f"snapshot: most {1e3 * distance.max():.3f} mm")
+    time, distance = sites['snapshot']
+    print(f'snapshot: most {1e3 * distance.max():.3f} mm')
     assert time[-1] > 60.0
     assert distance.max() <= 1e-3
 
@@ -89,15 +89,15 @@ def test_by_a_snapshot_tips_agree_at_once(sites: dict[str, tuple[Floats, Floats]
 def test_without_one_they_agree_after_half_a_minute(
     sites: dict[str, tuple[Floats, Floats]],
 ) -> None:
-    time, distance = sites["rest"]
+    time, distance = sites['rest']
     assert distance[time < 1.0].max() > 1e-3  # it began from rest
     later = np.quantile(distance[time > 30.0], 0.95)
-    print(f"from rest: p95 after 30 s {1e3 * later:.3f} mm")
+    print(f'from rest: p95 after 30 s {1e3 * later:.3f} mm')
     assert later <= 5e-3
 
 
 def test_lost_wind_is_told(sites: dict[str, tuple[Floats, Floats]]) -> None:
-    _, distance = sites["lossy"]
-    print(f"5 % lost: p95 {1e3 * np.quantile(distance, 0.95):.2f} mm, most "
-          f"{1e3 * distance.max():.2f} mm")  # fmt: skip
+    _, distance = sites['lossy']
+    print(f'5 % lost: p95 {1e3 * np.quantile(distance, 0.95):.2f} mm, most '
+          f'{1e3 * distance.max():.2f} mm')  # fmt: skip
     assert 0.0 < np.quantile(distance, 0.95) < 0.02

@@ -5,14 +5,14 @@ import os
 import pytest
 
 # An int in a float field can end the process: have every field checked.
-os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 
 
 @pytest.fixture
 def context(domain):
     """A ROS context in a domain of its own."""
-    rclpy = pytest.importorskip("rclpy")
+    rclpy = pytest.importorskip('rclpy')
     from rclpy.context import Context
 
     context = Context()

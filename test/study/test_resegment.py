@@ -1,13 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree cut anew: the same shape, the same names, and the same motion however finely it is cut."""
+"""A tree cut anew: the same shape, the same names, and the same motion however finely it is
+cut."""
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
@@ -20,7 +21,7 @@ CUTS = (3, 6, 12, 24)
 RATE = 60.0
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def gusty():
     """Ten seconds of a gusty day at 8 m/s."""
     turbulence = Turbulence(8.0).record(36_000, RATE, np.random.default_rng(1))
@@ -50,12 +51,14 @@ def limbs(sketch, cuts):
     return s.tree()
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
-@pytest.mark.parametrize("kind", ["one branch", "four branches"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'coupled'])
+@pytest.mark.parametrize('kind', ['one branch', 'four branches'])
 def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty, model, kind):
     # Cut in 4, so that a cut in 3 leaves the twig within a segment.
     tree = (
-        stem(length=2.0, base=0.02, tip=0.006, cuts=4) if kind == "one branch" else limbs(sketch, 4)
+        stem(length=2.0, base=0.02, tip=0.006, cuts=4)
+        if kind == 'one branch'
+        else limbs(sketch, 4)
     )
     finest, *others = [tip_motion(resegment(tree, cut), model, gusty) for cut in CUTS[::-1]]
     size = np.sqrt(np.square(finest).sum(axis=1).mean())
@@ -65,7 +68,7 @@ def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty
         assert away <= 1e-3 * size
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'coupled'])
 def test_finer_cuts_change_no_frequency(fork, model):
     tree = fork()
     for cut in (4, 7, 24):
@@ -92,7 +95,7 @@ def test_what_is_kept(random_tree, seed, cut):
     for old, new in enumerate(ours):
         carriers = [each.branch_parent[b] for each, b in ((tree, old), (anew, new))]
         names = [
-            each.branch_names[c] if c >= 0 else ""
+            each.branch_names[c] if c >= 0 else ''
             for each, c in zip((tree, anew), carriers, strict=True)
         ]
         assert names[0] == names[1]
@@ -109,7 +112,14 @@ def test_what_is_kept(random_tree, seed, cut):
 def test_a_cut_of_the_same_number_gives_the_same_tree(stem):
     tree = stem(cuts=5, tip=0.004)
     same = resegment(tree, 5)
-    for name in ("start", "end", "base_diameter", "tip_diameter", "segment_parent", "branch_first"):
+    for name in (
+        'start',
+        'end',
+        'base_diameter',
+        'tip_diameter',
+        'segment_parent',
+        'branch_first',
+    ):
         assert (getattr(same, name) == getattr(tree, name)).all()
 
 
@@ -136,14 +146,14 @@ def test_a_longest_length_is_kept_to(fork):
 
 
 def test_children_sit_on_the_segment_beside_them():
-    tree = builtin_tree("broadleaf")
+    tree = builtin_tree('broadleaf')
     for cut in (2, 5, 11):
         anew = resegment(tree, cut)
         first = anew.branch_first[1:-1]
         seat = anew.segment_parent[first]
         # Their start lies within the seat's length, a kept node at either end of it included.
         along = np.einsum(
-            "ij,ij->i", anew.start[first] - anew.start[seat], anew.end[seat] - anew.start[seat]
+            'ij,ij->i', anew.start[first] - anew.start[seat], anew.end[seat] - anew.start[seat]
         )
         share = along / anew.length[seat] ** 2
         assert share.min() > -0.35
@@ -153,15 +163,15 @@ def test_children_sit_on_the_segment_beside_them():
 
 
 @pytest.mark.parametrize(
-    "wish",
+    'wish',
     [
         {},
-        {"segments_per_branch": 3, "max_segment_length": 0.1},
-        {"segments_per_branch": 0},
-        {"segments_per_branch": MOST_SEGMENTS + 1},
-        {"max_segment_length": 0.0},
-        {"max_segment_length": float("nan")},
-        {"max_segment_length": 1e-9},
+        {'segments_per_branch': 3, 'max_segment_length': 0.1},
+        {'segments_per_branch': 0},
+        {'segments_per_branch': MOST_SEGMENTS + 1},
+        {'max_segment_length': 0.0},
+        {'max_segment_length': float('nan')},
+        {'max_segment_length': 1e-9},
     ],
 )
 def test_a_cut_that_cannot_be_is_refused(stem, wish):

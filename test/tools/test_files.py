@@ -12,49 +12,49 @@ import pytest
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools import cli
 
-PNG = b"\x89PNG\r\n\x1a\n"
-SEEDLING = str(Path(__file__).parents[1] / "files" / "data" / "seedling.yaml")
+PNG = b'\x89PNG\r\n\x1a\n'
+SEEDLING = str(Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml')
 
 
 @pytest.fixture
 def wind_file(tmp_path: Path) -> Path:
     """Six seconds of a wind that freshens from the west."""
-    path = tmp_path / "wind.csv"
-    rows = [f"{0.1 * k:.1f},{3 + 0.05 * k:.2f},0.5,0" for k in range(60)]
-    path.write_text("\n".join(["time,u,v,w", *rows]) + "\n")
+    path = tmp_path / 'wind.csv'
+    rows = [f'{0.1 * k:.1f},{3 + 0.05 * k:.2f},0.5,0' for k in range(60)]
+    path.write_text('\n'.join(['time,u,v,w', *rows]) + '\n')
     return path
 
 
 def test_plot_draws_wind_and_tip(
     tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    picture = tmp_path / "sway.png"
-    assert cli.main(["plot", "goldcrest", "--wind", str(wind_file), "-o", str(picture)]) == 0
+    picture = tmp_path / 'sway.png'
+    assert cli.main(['plot', 'goldcrest', '--wind', str(wind_file), '-o', str(picture)]) == 0
     assert picture.read_bytes().startswith(PNG)
-    assert capsys.readouterr().out == f"{picture}\n"
+    assert capsys.readouterr().out == f'{picture}\n'
 
 
-@pytest.mark.parametrize("arguments", [["goldcrest", "--portrait"], ["--portrait", SEEDLING]])
+@pytest.mark.parametrize('arguments', [['goldcrest', '--portrait'], ['--portrait', SEEDLING]])
 def test_plot_tree_draws_the_tree(tmp_path: Path, arguments: list[str]) -> None:
-    picture = tmp_path / "tree.png"
-    assert cli.main(["plot", *arguments, "--leaves", "on", "-o", str(picture)]) == 0
+    picture = tmp_path / 'tree.png'
+    assert cli.main(['plot', *arguments, '--leaves', 'on', '-o', str(picture)]) == 0
     assert picture.read_bytes().startswith(PNG)
 
 
 def test_plot_refuses_a_wind_too_short_to_draw(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = tmp_path / "wind.csv"
-    path.write_text("time,u,v,w\n0,1,0,0\n0.01,1,0,0\n")
-    arguments = ["plot", SEEDLING, "--wind", str(path), "-o", str(tmp_path / "x.png")]
+    path = tmp_path / 'wind.csv'
+    path.write_text('time,u,v,w\n0,1,0,0\n0.01,1,0,0\n')
+    arguments = ['plot', SEEDLING, '--wind', str(path), '-o', str(tmp_path / 'x.png')]
     assert cli.main(arguments) == 2
-    assert "wind.csv: too short a wind" in capsys.readouterr().err
+    assert 'wind.csv: too short a wind' in capsys.readouterr().err
 
 
 def test_plot_refuses_a_format_it_cannot_draw(
     tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    arguments = ["plot", SEEDLING, "--wind", str(wind_file), "-o", str(tmp_path / "x.doc")]
+    arguments = ['plot', SEEDLING, '--wind', str(wind_file), '-o', str(tmp_path / 'x.doc')]
     assert cli.main(arguments) == 2
     assert "'.doc' is no picture format" in capsys.readouterr().err
 
@@ -62,57 +62,57 @@ def test_plot_refuses_a_format_it_cannot_draw(
 def test_a_grown_tree_is_as_high_as_asked_for(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = tmp_path / "spruce.yaml"
-    command = ["grow", "--species", "spruce", "--height", "7", "--seed", "2", "-o", str(path)]
+    path = tmp_path / 'spruce.yaml'
+    command = ['grow', '--species', 'spruce', '--height', '7', '--seed', '2', '-o', str(path)]
     assert cli.main(command) == 0
-    assert "spruce, " in capsys.readouterr().out
+    assert 'spruce, ' in capsys.readouterr().out
     tree = open_tree(path).tree
     assert tree.height == pytest.approx(7.0)
-    assert tree.species == "spruce"
+    assert tree.species == 'spruce'
 
 
 def test_converting_keeps_the_tree(tmp_path: Path) -> None:
-    first, second = tmp_path / "a.yaml", tmp_path / "b.yaml"
-    assert cli.main(["convert", "goldcrest", "--density", "777", "-o", str(first)]) == 0
-    assert cli.main(["convert", str(first), "-o", str(second)]) == 0
-    built_in, again = open_tree("goldcrest"), open_tree(second)
-    for name in ("start", "end", "base_diameter", "tip_diameter", "segment_parent"):
+    first, second = tmp_path / 'a.yaml', tmp_path / 'b.yaml'
+    assert cli.main(['convert', 'goldcrest', '--density', '777', '-o', str(first)]) == 0
+    assert cli.main(['convert', str(first), '-o', str(second)]) == 0
+    built_in, again = open_tree('goldcrest'), open_tree(second)
+    for name in ('start', 'end', 'base_diameter', 'tip_diameter', 'segment_parent'):
         assert np.array_equal(getattr(again.tree, name), getattr(built_in.tree, name)), name
     assert again.species.density == 777.0
 
 
 def test_a_folder_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["convert", "goldcrest", "-o", "/no/such/folder/x.yaml"]) == 2
+    assert cli.main(['convert', 'goldcrest', '-o', '/no/such/folder/x.yaml']) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "/no/such/folder/x.yaml" in line
+    assert '/no/such/folder/x.yaml' in line
 
 
 def test_a_tree_that_sways_by_a_skin_or_by_weights(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for way in ("skin", "morph"):
-        path = tmp_path / f"{way}.glb"
-        arguments = ["convert", SEEDLING, "--leaves", "on", "--sway", way, "-o", str(path)]
+    for way in ('skin', 'morph'):
+        path = tmp_path / f'{way}.glb'
+        arguments = ['convert', SEEDLING, '--leaves', 'on', '--sway', way, '-o', str(path)]
         assert cli.main(arguments) == 0
-        assert path.read_bytes().startswith(b"glTF")
-        assert (b'"skins"' in path.read_bytes()) == (way == "skin")
-        assert (b'"targetNames"' in path.read_bytes()) == (way == "morph")
+        assert path.read_bytes().startswith(b'glTF')
+        assert (b'"skins"' in path.read_bytes()) == (way == 'skin')
+        assert (b'"targetNames"' in path.read_bytes()) == (way == 'morph')
         assert b'"leaves"' in path.read_bytes()
-    assert "weights; in a breeze that moves it by" in capsys.readouterr().out
+    assert 'weights; in a breeze that moves it by' in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ('arguments', 'message'),
     [
-        ([SEEDLING, "-o", "tree.obj", "--sway"], "--sway: 'tree.obj' cannot sway; write a .glb"),
-        (["FOREST", "-o", "trees.glb", "--sway", "morph"], "--sway: a forest by morph targets"),
+        ([SEEDLING, '-o', 'tree.obj', '--sway'], "--sway: 'tree.obj' cannot sway; write a .glb"),
+        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], '--sway: a forest by morph targets'),
     ],
 )
 def test_what_cannot_sway(
     tmp_path: Path, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    forest = tmp_path / "forest.yaml"
-    forest.write_text(f"trees: [{{name: a, tree: {SEEDLING}}}]\n")
-    given = [str(forest) if word == "FOREST" else word for word in arguments]
-    assert cli.main(["convert", *given]) == 2
+    forest = tmp_path / 'forest.yaml'
+    forest.write_text(f'trees: [{{name: a, tree: {SEEDLING}}}]\n')
+    given = [str(forest) if word == 'FOREST' else word for word in arguments]
+    assert cli.main(['convert', *given]) == 2
     assert message in capsys.readouterr().err

@@ -11,19 +11,19 @@ from tree_sway_ros.tools.mode_table import ModeRow
 
 
 @pytest.mark.parametrize(
-    ("axis", "text"),
+    ('axis', 'text'),
     [
-        ((1.0, 0.0, 0.0), "  0.0 deg"),
-        ((-1.0, 0.0, 0.0), "  0.0 deg"),
-        ((0.0, -1.0, 0.0), " 90.0 deg"),
-        ((-1.0, 1.0, 0.0), "135.0 deg"),
-        ((0.0, 0.0, -1.0), "up and down"),
-        ((0.0, 1.0, 1.0), " 90.0 deg, +45 up"),
-        ((0.0, -1.0, -1.0), " 90.0 deg, +45 up"),
-        ((0.0, 1.0, -1.0), " 90.0 deg, -45 up"),
-        ((1.0, 0.0, 0.1), "  0.0 deg"),
+        ((1.0, 0.0, 0.0), '  0.0 deg'),
+        ((-1.0, 0.0, 0.0), '  0.0 deg'),
+        ((0.0, -1.0, 0.0), ' 90.0 deg'),
+        ((-1.0, 1.0, 0.0), '135.0 deg'),
+        ((0.0, 0.0, -1.0), 'up and down'),
+        ((0.0, 1.0, 1.0), ' 90.0 deg, +45 up'),
+        ((0.0, -1.0, -1.0), ' 90.0 deg, +45 up'),
+        ((0.0, 1.0, -1.0), ' 90.0 deg, -45 up'),
+        ((1.0, 0.0, 0.1), '  0.0 deg'),
     ],
 )
 def test_the_sign_of_an_axis_means_nothing(axis: tuple[float, ...], text: str) -> None:
     unit = np.array(axis) / np.linalg.norm(axis)
-    assert ModeRow(1.0, 0.04, unit, "stem").direction == text
+    assert ModeRow(1.0, 0.04, unit, 'stem').direction == text

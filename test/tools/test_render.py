@@ -4,54 +4,56 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
+import shutil
 
 import numpy as np
 import pytest
 
-Image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
+Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
 from tree_sway_ros.tools.cli import main  # noqa: E402
 
-FILES = Path(__file__).parents[1] / "files" / "data"
-SEEDLING = str(FILES / "seedling.yaml")
+FILES = Path(__file__).parents[1] / 'files' / 'data'
+SEEDLING = str(FILES / 'seedling.yaml')
 
 
 def frame(path: Path, number: int = 0) -> np.ndarray:
     """A frame of a picture as (h, w, 3)."""
     image = Image.open(path)
     image.seek(number)
-    return np.asarray(image.convert("RGB")).astype(float)
+    return np.asarray(image.convert('RGB')).astype(float)
 
 
-def test_a_gif_of_a_recorded_wind_moves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "sway.gif"
-    given = ["render", SEEDLING, "--wind", str(FILES / "wind.csv"), "--seconds", "2"]
-    assert main([*given, "--rate", "10", "--pixels", "160", "-o", str(path)]) == 0
-    assert "20 pictures, 2 s of wind in" in capsys.readouterr().out
+def test_a_gif_of_a_recorded_wind_moves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / 'sway.gif'
+    given = ['render', SEEDLING, '--wind', str(FILES / 'wind.csv'), '--seconds', '2']
+    assert main([*given, '--rate', '10', '--pixels', '160', '-o', str(path)]) == 0
+    assert '20 pictures, 2 s of wind in' in capsys.readouterr().out
     image = Image.open(path)
-    assert (image.n_frames, image.info["duration"]) == (20, 100)
+    assert (image.n_frames, image.info['duration']) == (20, 100)
     assert np.abs(frame(path, 15) - frame(path, 5)).max() > 60
 
 
 def test_frames_go_to_a_folder_and_the_same_command_gives_the_same(tmp_path: Path) -> None:
     given = [
-        "render",
+        'render',
         SEEDLING,
-        "--seconds",
-        "0.5",
-        "--rate",
-        "8",
-        "--pixels",
-        "120",
-        "--speed",
-        "9",
+        '--seconds',
+        '0.5',
+        '--rate',
+        '8',
+        '--pixels',
+        '120',
+        '--speed',
+        '9',
     ]
-    for name in ("one", "two"):
-        assert main([*given, "-o", str(tmp_path / name)]) == 0
-    ones, twos = (sorted((tmp_path / name).iterdir()) for name in ("one", "two"))
-    assert [path.name for path in ones] == [f"{i:05d}.png" for i in range(4)]
+    for name in ('one', 'two'):
+        assert main([*given, '-o', str(tmp_path / name)]) == 0
+    ones, twos = (sorted((tmp_path / name).iterdir()) for name in ('one', 'two'))
+    assert [path.name for path in ones] == [f'{i:05d}.png' for i in range(4)]
     for one, two in zip(ones, twos, strict=True):
         np.testing.assert_array_equal(frame(one), frame(two))
 
@@ -59,28 +61,28 @@ def test_frames_go_to_a_folder_and_the_same_command_gives_the_same(tmp_path: Pat
 def test_a_film_is_written_where_ffmpeg_is(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = tmp_path / "sway.mp4"
-    code = main(["render", SEEDLING, "--seconds", "1", "--pixels", "96", "-o", str(path)])
-    if shutil.which("ffmpeg") is None:
+    path = tmp_path / 'sway.mp4'
+    code = main(['render', SEEDLING, '--seconds', '1', '--pixels', '96', '-o', str(path)])
+    if shutil.which('ffmpeg') is None:
         assert code == 2
-        assert "install ffmpeg" in capsys.readouterr().err
+        assert 'install ffmpeg' in capsys.readouterr().err
         assert not path.exists()
     else:
         assert code == 0
-        assert path.read_bytes()[4:8] == b"ftyp"
+        assert path.read_bytes()[4:8] == b'ftyp'
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ('arguments', 'told'),
     [
-        (["-o", "a.jpg"], "no moving picture"),
-        (["-o", "a.gif", "--rate", "0"], "--rate"),
-        (["-o", "a.gif", "--seconds", "1e9"], "--seconds"),
-        (["-o", "a.gif", "--speed", "-3"], "out of range"),
+        (['-o', 'a.jpg'], 'no moving picture'),
+        (['-o', 'a.gif', '--rate', '0'], '--rate'),
+        (['-o', 'a.gif', '--seconds', '1e9'], '--seconds'),
+        (['-o', 'a.gif', '--speed', '-3'], 'out of range'),
     ],
 )
 def test_what_cannot_be_rendered_is_refused(
     arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["render", SEEDLING, "--pixels", "64", *arguments]) == 2
+    assert main(['render', SEEDLING, '--pixels', '64', *arguments]) == 2
     assert told in capsys.readouterr().err

@@ -17,7 +17,7 @@ def polygon_area(corners: np.ndarray) -> float:
     return float(0.5 * np.linalg.norm(np.cross(spokes[:-1], spokes[1:]).sum(axis=0)))
 
 
-@pytest.mark.parametrize("species", ["oak", "spruce"])
+@pytest.mark.parametrize('species', ['oak', 'spruce'])
 def test_blades_show_the_area_of_their_cluster(species: str) -> None:
     corners, normal = leaf_blades(species, LEVEL, np.array([0.2]))
     shown = sum(polygon_area(blade) for blade in corners)
@@ -28,14 +28,14 @@ def test_blades_show_the_area_of_their_cluster(species: str) -> None:
 
 
 def test_blades_stay_by_their_cluster() -> None:
-    corners, _ = leaf_blades("oak", LEVEL, np.array([0.2]))
+    corners, _ = leaf_blades('oak', LEVEL, np.array([0.2]))
     assert np.linalg.norm(corners - LEVEL[0, :3], axis=2).max() < 0.25
 
 
 def test_a_leaf_that_faces_the_light_is_brighter_and_a_far_one_paler() -> None:
     sun = np.array([-0.35, -0.5, 0.8]) / np.linalg.norm([-0.35, -0.5, 0.8])
     normal = np.stack([sun, np.array([sun[2], 0.0, -sun[0]]), sun])
-    lit, dark, far = leaf_colors("oak", normal, np.array([0.0, 0.0, 1.0]), Camera())
+    lit, dark, far = leaf_colors('oak', normal, np.array([0.0, 0.0, 1.0]), Camera())
     assert lit.sum() > dark.sum()
     assert far.min() > lit.min()
     assert np.all((far >= 0.0) & (far <= 1.0))
@@ -44,7 +44,7 @@ def test_a_leaf_that_faces_the_light_is_brighter_and_a_far_one_paler() -> None:
 def test_goldcrest_is_golden() -> None:
     gold, green = (
         leaf_colors(species, np.array([[0.0, 0.0, 1.0]]), np.zeros(1), Camera())[0]
-        for species in ("goldcrest", "benjamina")
+        for species in ('goldcrest', 'benjamina')
     )
     assert gold[0] > 2.0 * gold[2]
     assert green[1] > 1.5 * green[0]

@@ -11,7 +11,7 @@ import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
@@ -19,8 +19,8 @@ from tree_sway_ros.view.animation import animate_poses
 from tree_sway_ros.view.pictures import picture_in_wind
 from tree_sway_ros.view.plots import plot_wind_and_tip
 
-pytest.importorskip("matplotlib")
-Image = pytest.importorskip("PIL.Image")
+pytest.importorskip('matplotlib')
+Image = pytest.importorskip('PIL.Image')
 
 
 def pole() -> Tree:
@@ -36,7 +36,7 @@ def leaning(tree: Tree, angle: float) -> np.ndarray:
 
 
 def pixels(path: Path) -> np.ndarray:
-    return np.asarray(Image.open(path).convert("RGB")).astype(float)
+    return np.asarray(Image.open(path).convert('RGB')).astype(float)
 
 
 def in_calm(tree: Tree, path: Path, **options: Any) -> Path:
@@ -56,7 +56,7 @@ def dark_columns(picture: np.ndarray) -> np.ndarray:
 
 
 def test_bark_is_as_thick_as_it_is(tmp_path: Path) -> None:
-    picture = at_rest(pole(), tmp_path / "pole.png")
+    picture = at_rest(pole(), tmp_path / 'pole.png')
     dark = picture.max(axis=2) < 180
     lower, upper = int(0.65 * len(picture)), int(0.25 * len(picture))
     # 0.2 m below, 0.1 m above; an edge of a pixel or two on top of each.
@@ -65,7 +65,7 @@ def test_bark_is_as_thick_as_it_is(tmp_path: Path) -> None:
 
 def test_wind_from_the_west_leans_the_right_hand_tree_to_the_right(tmp_path: Path) -> None:
     tree = pole()
-    path = tmp_path / "wind.png"
+    path = tmp_path / 'wind.png'
     assert picture_in_wind(tree, leaning(tree, 0.5), [8.0, 0.0, 0.0], path) == path
     picture = pixels(path)
     left, right = np.split(picture[:, : picture.shape[1] // 2 * 2], 2, axis=1)
@@ -78,12 +78,12 @@ def test_wind_from_the_west_leans_the_right_hand_tree_to_the_right(tmp_path: Pat
 
 
 def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
-    trees = [PlacedTree(f"pole{i}", pole(), x=3.0 * i).placed() for i in range(3)]
+    trees = [PlacedTree(f'pole{i}', pole(), x=3.0 * i).placed() for i in range(3)]
     joint = joined(trees)
     leaves = leaf_clusters(trees[1], np.random.default_rng(0), count=30)
     leaves = replace(leaves, segment=leaves.segment + trees[0].n_segments)
     poses = joint.rest_poses
-    path = picture_in_wind(trees, poses, [6.0, 0.0, 0.0], tmp_path / "row.png", leaves=leaves)
+    path = picture_in_wind(trees, poses, [6.0, 0.0, 0.0], tmp_path / 'row.png', leaves=leaves)
     picture = pixels(path)
     assert picture.shape[0] > 0.7 * picture.shape[1]  # at rest above, in wind below
     row = picture[int(0.36 * len(picture))]
@@ -94,35 +94,35 @@ def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
     assert 0.3 * picture.shape[1] < green.min() < green.max() < 0.7 * picture.shape[1]
 
 
-@pytest.mark.parametrize("name", ["benjamina", "broadleaf"])
+@pytest.mark.parametrize('name', ['benjamina', 'broadleaf'])
 def test_a_whole_tree_fits_its_picture(name: str, tmp_path: Path) -> None:
-    picture = pixels(in_calm(builtin_tree(name), tmp_path / "tree.png", title=""))
+    picture = pixels(in_calm(builtin_tree(name), tmp_path / 'tree.png', title=''))
     border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
     assert border.min() > 250.0
     assert (picture.max(axis=2) < 180).mean() > 0.01
 
 
-@pytest.mark.parametrize(("suffix", "kind"), [(".gif", "GIF"), (".png", "PNG")])
+@pytest.mark.parametrize(('suffix', 'kind'), [('.gif', 'GIF'), ('.png', 'PNG')])
 def test_a_moving_picture_has_its_frames_and_its_pace(
     tmp_path: Path, suffix: str, kind: str
 ) -> None:
     tree = pole()
     frames = [leaning(tree, angle) for angle in (0.0, 0.2, 0.4)]
-    path = tmp_path / f"sway{suffix}"
+    path = tmp_path / f'sway{suffix}'
     animate_poses(tree, frames, np.ones((3, 3)), path, rate=20.0, pixels=160)
     image = Image.open(path)
     assert (image.format, image.n_frames) == (kind, 3)
-    assert image.info["duration"] == pytest.approx(50.0)
-    first = np.asarray(image.convert("RGB")).astype(float)
+    assert image.info['duration'] == pytest.approx(50.0)
+    first = np.asarray(image.convert('RGB')).astype(float)
     image.seek(2)
-    assert np.abs(np.asarray(image.convert("RGB")) - first).max() > 100
+    assert np.abs(np.asarray(image.convert('RGB')) - first).max() > 100
 
 
 def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
-    tree = builtin_tree("benjamina")
+    tree = builtin_tree('benjamina')
     leaves = leaf_clusters(tree, np.random.default_rng(0), count=300)
-    bare = at_rest(tree, tmp_path / "bare.png")
-    green = at_rest(tree, tmp_path / "leafy.png", leaves=leaves)
+    bare = at_rest(tree, tmp_path / 'bare.png')
+    green = at_rest(tree, tmp_path / 'leafy.png', leaves=leaves)
 
     def is_green(picture: np.ndarray) -> np.ndarray:
         return picture[..., 1] > picture[..., [0, 2]].max(axis=2) + 20
@@ -130,7 +130,7 @@ def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
     assert is_green(bare).sum() == 0
     assert is_green(green).mean() > 0.05
     beside = pixels(
-        picture_in_wind(tree, leaning(tree, 0.3), [8, 0, 0], tmp_path / "w.png", leaves=leaves)
+        picture_in_wind(tree, leaning(tree, 0.3), [8, 0, 0], tmp_path / 'w.png', leaves=leaves)
     )
     left, right = np.split(is_green(beside)[:, : beside.shape[1] // 2 * 2], 2, axis=1)
     middle = [
@@ -142,46 +142,46 @@ def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
 def test_a_moving_picture_with_leaves(tmp_path: Path) -> None:
     tree = pole()
     leaves = leaf_clusters(tree, np.random.default_rng(0), count=30)
-    path = tmp_path / "leaves.gif"
+    path = tmp_path / 'leaves.gif'
     still = [leaning(tree, 0.0)] * 2
     animate_poses(tree, still, np.full((2, 3), 5.0), path, rate=7.3, leaves=leaves, pixels=160)
     image = Image.open(path)
-    first = np.asarray(image.convert("RGB")).astype(float)
+    first = np.asarray(image.convert('RGB')).astype(float)
     image.seek(1)
     # The tree stands still; its leaves do not.
-    assert np.abs(np.asarray(image.convert("RGB")) - first).max() > 30
+    assert np.abs(np.asarray(image.convert('RGB')) - first).max() > 30
 
 
 def test_what_is_no_moving_picture_is_refused(tmp_path: Path) -> None:
     tree = pole()
     with pytest.raises(FormatError, match=r"'\.jpg' is no moving picture; .*\.gif"):
-        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / "a.jpg")
-    with pytest.raises(ParameterError, match="0 frames"):
-        animate_poses(tree, [], np.ones((0, 3)), tmp_path / "a.gif")
-    with pytest.raises(FormatError, match="cannot be written"):
-        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / "no" / "a.gif")
+        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / 'a.jpg')
+    with pytest.raises(ParameterError, match='0 frames'):
+        animate_poses(tree, [], np.ones((0, 3)), tmp_path / 'a.gif')
+    with pytest.raises(FormatError, match='cannot be written'):
+        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / 'no' / 'a.gif')
 
 
 def test_plot_of_wind_and_tip(tmp_path: Path) -> None:
     time = np.linspace(0.0, 10.0, 200)
     wind = np.stack([5.0 + np.sin(time), np.zeros(200), np.zeros(200)], axis=1)
     tip = 0.02 * wind
-    path = plot_wind_and_tip(time, wind, tip, tmp_path / "plot.png", title="a pole")
+    path = plot_wind_and_tip(time, wind, tip, tmp_path / 'plot.png', title='a pole')
     assert Image.open(path).width > 800
-    with pytest.raises(ParameterError, match="do not go together"):
+    with pytest.raises(ParameterError, match='do not go together'):
         plot_wind_and_tip(time, wind[:-1], tip, path)
 
 
 def test_a_name_that_is_no_picture_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=r"'\.doc' is no picture format; .*\.png"):
-        in_calm(pole(), tmp_path / "tree.doc")
-    with pytest.raises(FormatError, match="cannot be written: No such file"):
-        in_calm(pole(), tmp_path / "nowhere" / "tree.png")
+        in_calm(pole(), tmp_path / 'tree.doc')
+    with pytest.raises(FormatError, match='cannot be written: No such file'):
+        in_calm(pole(), tmp_path / 'nowhere' / 'tree.png')
 
 
 def test_without_matplotlib_the_cure_is_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "matplotlib.figure", None)
-    with pytest.raises(MissingDependencyError, match=r"pip install matplotlib"):
-        in_calm(pole(), tmp_path / "tree.png")
+    monkeypatch.setitem(__import__('sys').modules, 'matplotlib.figure', None)
+    with pytest.raises(MissingDependencyError, match=r'pip install matplotlib'):
+        in_calm(pole(), tmp_path / 'tree.png')

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """From poses back to segments, and to the picture plane."""
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.tree.building import tree_from_segments
@@ -17,7 +17,7 @@ POINTS = arrays(np.float64, (5, 3), elements=st.floats(-10, 10))
 
 
 def test_rest_poses_give_the_tree_back() -> None:
-    tree = builtin_tree("goldcrest")
+    tree = builtin_tree('goldcrest')
     poses = tree.rest_poses
     np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=1e-12)
     start, end = ends_of_poses(poses, tree.length)
@@ -25,7 +25,7 @@ def test_rest_poses_give_the_tree_back() -> None:
     np.testing.assert_allclose(end, tree.end, atol=1e-12)
 
 
-@pytest.mark.parametrize("axis", [*np.eye(3), *-np.eye(3)])
+@pytest.mark.parametrize('axis', [*np.eye(3), *-np.eye(3)])
 def test_rest_poses_of_segments_along_every_axis(axis: np.ndarray) -> None:
     start = np.ones((1, 3))
     tree = tree_from_segments(start, start + 2.0 * axis, [0.1])

@@ -18,7 +18,7 @@ def within(
     value: SupportsFloat,
     low: float,
     high: float,
-    unit: str = "",
+    unit: str = '',
     *,
     above: bool = False,
 ) -> float:
@@ -32,9 +32,9 @@ def within(
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not (low <= number <= high) or (above and number == low):
-        lower = f"above {low:g}, up to" if above else f"{low:g} to"
-        cure = f"use {lower} {high:g} {unit}".rstrip()
-        raise ParameterError(f"{value!r} is out of range", where=name, cure=cure)
+        lower = f'above {low:g}, up to' if above else f'{low:g} to'
+        cure = f'use {lower} {high:g} {unit}'.rstrip()
+        raise ParameterError(f'{value!r} is out of range', where=name, cure=cure)
     return number
 
 
@@ -48,8 +48,8 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
         x, y, z = np.asarray(vector, dtype=np.float64).tolist()
         return float(x), float(y), float(z)  # lists, of a matrix, are no floats
     except (TypeError, ValueError, OverflowError):
-        text = " ".join(repr(vector).split())[:80]
-        raise ParameterError(f"{text} is not three numbers", where=name) from None
+        text = ' '.join(repr(vector).split())[:80]
+        raise ParameterError(f'{text} is not three numbers', where=name) from None
 
 
 def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
@@ -61,19 +61,19 @@ def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[n
     memory, row after row, and free to be written.
     """
     if not isinstance(array, np.ndarray):
-        wrong = f"a {type(array).__name__}"
+        wrong = f'a {type(array).__name__}'
     elif array.shape != shape:
-        wrong = f"an array of shape {array.shape}"
+        wrong = f'an array of shape {array.shape}'
     elif array.dtype != np.float64:
-        wrong = f"an array of {array.dtype}"
+        wrong = f'an array of {array.dtype}'
     elif not (array.flags.c_contiguous and array.flags.aligned):
-        wrong = "an array that is spread over memory"
+        wrong = 'an array that is spread over memory'
     elif not array.flags.writeable:
-        wrong = "an array that cannot be written"
+        wrong = 'an array that cannot be written'
     else:
         return array
     raise ParameterError(
-        f"{wrong} cannot be filled", where=name, cure=f"give np.empty({shape}) or nothing"
+        f'{wrong} cannot be filled', where=name, cure=f'give np.empty({shape}) or nothing'
     )
 
 
@@ -86,10 +86,10 @@ def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArr
     try:
         numbers = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise ParameterError("not all are numbers", where=name) from None
+        raise ParameterError('not all are numbers', where=name) from None
     if numbers.shape != shape:
         raise ParameterError(
-            f"an array of shape {numbers.shape}", where=name, cure=f"give one of shape {shape}"
+            f'an array of shape {numbers.shape}', where=name, cure=f'give one of shape {shape}'
         )
     return numbers
 
@@ -104,8 +104,8 @@ def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[
     bad = np.flatnonzero(~(np.isfinite(numbers) & (numbers >= 0.0)))
     if len(bad):
         raise ParameterError(
-            f"{numbers[bad[0]]} of {what} {bad[0]}",
+            f'{numbers[bad[0]]} of {what} {bad[0]}',
             where=name,
-            cure="give finite numbers, 0 or more",
+            cure='give finite numbers, 0 or more',
         )
     return numbers

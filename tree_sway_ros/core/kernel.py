@@ -10,19 +10,19 @@ Python, and `motion` takes the numpy form of what runs over a tree.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, cast, TypeVar
 
 import numpy as np
 
 from tree_sway_ros.errors import MissingDependencyError
 from tree_sway_ros.kernel_cache import KernelCache, why_no_compiler
 
-_F = TypeVar("_F", bound=Callable[..., Any])
+_F = TypeVar('_F', bound=Callable[..., Any])
 
 WHY_PLAIN = why_no_compiler()
 """Why nothing is compiled, in a few words; empty where kernels are."""
 
-_LOOSE = {"contract", "reassoc", "nsz"}
+_LOOSE = {'contract', 'reassoc', 'nsz'}
 
 
 def kernel(function: _F) -> _F:
@@ -52,7 +52,7 @@ def inlined(function: _F) -> _F:
 
     For short functions of numbers in the innermost loop; callers compile longer.
     """
-    return _compiled(function, fastmath=_LOOSE, inline="always")
+    return _compiled(function, fastmath=_LOOSE, inline='always')
 
 
 def _compiled(function: _F, **options: Any) -> _F:
@@ -61,8 +61,8 @@ def _compiled(function: _F, **options: Any) -> _F:
         return function
     from numba import njit
 
-    dispatcher = njit(error_model="numpy", nogil=True, **options)(function)
-    if hasattr(dispatcher, "_cache"):  # not where NUMBA_DISABLE_JIT leaves the plain function
+    dispatcher = njit(error_model='numpy', nogil=True, **options)(function)
+    if hasattr(dispatcher, '_cache'):  # not where NUMBA_DISABLE_JIT leaves the plain function
         dispatcher._cache = KernelCache(function, repr(sorted(options)))
     return cast(_F, dispatcher)
 
@@ -72,10 +72,10 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
     Return the machine code of a kernel for arguments such as these, to be called many times.
 
     A call of the kernel itself looks at the type of each argument first, which for a small tree
-    takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types and
-    layouts may be passed.
+    takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types
+    and layouts may be passed.
     """
-    find = getattr(function, "get_overload", None)
+    find = getattr(function, 'get_overload', None)
     if find is None:
         return function
     from numba import typeof
@@ -89,16 +89,15 @@ def need_compiler(what: str) -> None:
     """Refuse what has no form but the compiled one, with a `MissingDependencyError`."""
     if WHY_PLAIN:
         raise MissingDependencyError(
-            f"{what} needs compiled kernels, and {WHY_PLAIN}",
-            cure="install numba 0.59 or later, or take one of the models that run on numpy: "
-            "branch, subtree, modes, coupled",
+            f'{what} needs compiled kernels, and {WHY_PLAIN}',
+            cure='install numba 0.59 or later, or take one of the models that run on numpy: '
+            'branch, subtree, modes, coupled',
         )
 
 
 def like(value: float, model: Any) -> Any:
     """
-    Return a constant in the precision of a model number, so that a kernel serves float32 and
-    float64.
+    Return a constant in the precision of a model number, to serve float32 and float64 alike.
 
     Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
     """
@@ -109,7 +108,7 @@ if not WHY_PLAIN:
     from numba.core import types
     from numba.extending import overload
 
-    @overload(like, inline="always")
+    @overload(like, inline='always')
     def _like(value, model):  # type: ignore[no-untyped-def]
         if model == types.float32:
             return lambda value, model: np.float32(value)

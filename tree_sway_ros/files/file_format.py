@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+import re
 from typing import Any, TypeVar
 
 from tree_sway_ros.errors import FormatError, ParameterError
@@ -32,7 +32,7 @@ class FileFormat:
     @property
     def own_options(self) -> tuple[str, ...]:
         """Options of the reader itself."""
-        return tuple(name for name in self.read.__annotations__ if name not in ("path", "return"))
+        return tuple(name for name in self.read.__annotations__ if name not in ('path', 'return'))
 
     def refuse_others(self, options: Iterable[str], known: Sequence[str]) -> None:
         """Raise a `ParameterError` for the first option that is not among those known."""
@@ -40,11 +40,11 @@ class FileFormat:
             if option not in known:
                 raise ParameterError(
                     f"format {self.name} has no option '{option}'",
-                    cure=f"it has: {', '.join(known)}",
+                    cure=f'it has: {", ".join(known)}',
                 )
 
 
-Format = TypeVar("Format", bound=FileFormat)
+Format = TypeVar('Format', bound=FileFormat)
 
 
 def contains(pattern: str) -> Callable[[str], bool]:
@@ -58,8 +58,8 @@ def has_columns(*names: str) -> Callable[[str], bool]:
 
     def recognise(head: str) -> bool:
         for line in head.splitlines():
-            if line.strip() and not line.startswith("#"):
-                cells = {cell.strip(' "').lower() for cell in re.split("[,;\t]", line)}
+            if line.strip() and not line.startswith('#'):
+                cells = {cell.strip(' "').lower() for cell in re.split('[,;\t]', line)}
                 return all(name.lower() in cells for name in names)
         return False
 
@@ -67,7 +67,7 @@ def has_columns(*names: str) -> Callable[[str], bool]:
 
 
 def format_of(
-    path: Path, name: str | None, formats: Sequence[Format], kind: str, *, folder: str = ""
+    path: Path, name: str | None, formats: Sequence[Format], kind: str, *, folder: str = ''
 ) -> Format:
     """
     Return the format of a file: the one that is named; else its content decides, then its suffix.
@@ -83,27 +83,27 @@ def format_of(
         If no format has that name.
 
     """
-    names = ", ".join(each.name for each in formats)
+    names = ', '.join(each.name for each in formats)
     wanted = name or (folder if folder and path.is_dir() else None)
     if wanted is not None:
         for known in formats:
             if known.name == wanted:
                 return known
-        raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f"use {names}")
+        raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
     head = read_head(path)
-    with_points = re.sub(r"(?<=\d),(?=\d)", ".", head)
+    with_points = re.sub(r'(?<=\d),(?=\d)', '.', head)
     for known in formats:
         if known.recognise(head):
             return known
     if any(known.recognise(with_points) for known in formats):
         raise FormatError(
-            "numbers with a decimal comma", where=str(path), cure="export it with decimal points"
+            'numbers with a decimal comma', where=str(path), cure='export it with decimal points'
         )
     for known in formats:
         if path.suffix.lower() in known.suffixes:
             return known
     raise FormatError(
-        f"a file of no known {kind} format",
+        f'a file of no known {kind} format',
         where=str(path),
-        cure=f"give one of {names}, or say its format",
+        cure=f'give one of {names}, or say its format',
     )

@@ -15,23 +15,23 @@ def reader_options(words: Iterable[str]) -> dict[str, Option]:
     """
     Read options for `read_wind`, `read_trees` and `open_tree` from words ``NAME=VALUE``.
 
-    A number or a truth is read as such, words parted by commas as a tuple. A `ParameterError` tells
-    of a word that is none.
+    A number or a truth is read as such, words parted by commas as a tuple. A `ParameterError`
+    tells of a word that is none.
     """
     options: dict[str, Option] = {}
     for word in words:
-        name, _, value = (part.strip() for part in word.partition("="))
+        name, _, value = (part.strip() for part in word.partition('='))
         if not (name and value):
-            raise ParameterError(f"'{word}' is no option of a reader", cure="write NAME=VALUE")
-        options[name.replace("-", "_")] = _value(value)
+            raise ParameterError(f"'{word}' is no option of a reader", cure='write NAME=VALUE')
+        options[name.replace('-', '_')] = _value(value)
     return options
 
 
 def _value(text: str) -> Option:
-    if text in ("true", "false"):
-        return text == "true"
-    if "," in text:
-        return tuple(part.strip() for part in text.split(","))
+    if text in ('true', 'false'):
+        return text == 'true'
+    if ',' in text:
+        return tuple(part.strip() for part in text.split(','))
     try:
         return float(text)
     except ValueError:

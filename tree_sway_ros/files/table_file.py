@@ -10,11 +10,11 @@ a block at a time, as a day of wind has millions of rows.
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+import csv
 from dataclasses import dataclass
 from functools import cached_property, partial
+import re
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from tree_sway_ros.files.text_file import finite, why_no_number
 from tree_sway_ros.files.time_stamps import seconds_of_stamps
 
 _MAX_COLUMNS = 10_000
-_UNIT = re.compile(r"\[(.*)\]|\((.*)\)|")
+_UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,17 +55,20 @@ class TextTable:
 
     def where(self, row: int | None = None) -> str:
         """File and line of a row, or of the header."""
-        return f"{self.source}:{self.header_line if row is None else self.numbers[row]}"
+        return f'{self.source}:{self.header_line if row is None else self.numbers[row]}'
 
     def index_of(self, name: str) -> int:
-        """Position of a column, whatever the case of its name; a `FormatError` if there is none."""
+        """
+        Position of a column, whatever the case of its name; a `FormatError` if there is
+        none.
+        """
         for index, column in enumerate(self.columns):
             if column.lower() == name.lower():
                 return index
         raise FormatError(
             f"no column '{name}' among {', '.join(self.columns[:20])}",
             where=self.where(),
-            cure="export it with its header line, unchanged",
+            cure='export it with its header line, unchanged',
         )
 
     @cached_property
@@ -74,12 +77,12 @@ class TextTable:
         return [self._heading(index, name) for index, name in enumerate(self.columns)]
 
     def _heading(self, index: int, column: str) -> tuple[str, str]:
-        begin = min((i for c in "[(" if (i := column.find(c)) > 0), default=len(column))
+        begin = min((i for c in '[(' if (i := column.find(c)) > 0), default=len(column))
         inside = _UNIT.fullmatch(column[begin:].strip())
         if inside is None:
-            return column.strip().lower(), ""
-        unit = inside[1] or inside[2] or (self.units[index] if index < len(self.units) else "")
-        return column[:begin].strip().lower().replace(" ", "_"), unit.strip()
+            return column.strip().lower(), ''
+        unit = inside[1] or inside[2] or (self.units[index] if index < len(self.units) else '')
+        return column[:begin].strip().lower().replace(' ', '_'), unit.strip()
 
     def factor(self, unit: str, units: Mapping[str, float], default: float) -> float:
         """Factor of a unit by its name; a `FormatError` if it is none of these units."""
@@ -88,8 +91,8 @@ class TextTable:
         if unit.lower() not in units:
             raise FormatError(
                 f"unknown unit '{unit[:20]}'",
-                where=f"{self.source}:{self.unit_line}",
-                cure=f"use {', '.join(units)}",
+                where=f'{self.source}:{self.unit_line}',
+                cure=f'use {", ".join(units)}',
             )
         return units[unit.lower()]
 
@@ -99,7 +102,7 @@ class TextTable:
         """Return the first column of one of these names, with a unit behind it or not, or None."""
         for name in names:
             for index, (heading, unit) in enumerate(self.headings):
-                suffix = heading.removeprefix(f"{name}_")
+                suffix = heading.removeprefix(f'{name}_')
                 if heading == name:
                     return Column(index, self.factor(unit, units, default))
                 if suffix != heading and suffix in units:  # not another quantity, as u_std
@@ -129,7 +132,7 @@ class TextTable:
             raise FormatError(
                 self.why_none(row, [indices[column]]),
                 where=self.where(row),
-                cure="mend the cell or remove the row",
+                cure='mend the cell or remove the row',
             )
         return values
 
@@ -140,8 +143,8 @@ class TextTable:
             if index >= len(cells):
                 return f"{len(cells)} cells, none for '{self.columns[index]}'"
             if finite(cells[index]) is None:
-                return f"{self.columns[index]} is {why_no_number(cells[index])}"
-        return "not a row of numbers"
+                return f'{self.columns[index]} is {why_no_number(cells[index])}'
+        return 'not a row of numbers'
 
     def whole(self, values: Floats, name: str) -> Ints:
         """
@@ -150,14 +153,14 @@ class TextTable:
         """
         for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
             raise FormatError(
-                f"{name} is {values[row]:g}, not a whole number", where=self.where(row)
+                f'{name} is {values[row]:g}, not a whole number', where=self.where(row)
             )
         return values.astype(np.int64)
 
     def cells(self, index: int, rows: Iterable[int]) -> list[str]:
         """Texts of a column in some rows; empty where a row is short."""
         split = (self.split(self.texts[row]) for row in rows)
-        return [row[index] if index < len(row) else "" for row in split]
+        return [row[index] if index < len(row) else '' for row in split]
 
     def seconds(self, stamps: list[str], factor: float) -> tuple[Floats, float | None]:
         """Seconds of times, and what they count from if they are dates; NaN where one is none."""
@@ -171,19 +174,19 @@ class TextTable:
         self, number: str, parent: str, none: Sequence[int], what: str
     ) -> tuple[list[str], Ints]:
         """
-        Return what an error calls each row (``what`` and number), and the row of its parent, -1 for
-        none.
+        Return what an error calls each row (``what`` and number), and the row of its parent, -1
+        for none.
 
         ``none`` are the parent numbers that mean there is none. A number that stands twice is a
         `FormatError`, a parent that is not there a `TreeError`.
         """
         values = self.strict([number, parent])
         numbers = self.whole(values[:, 0], number).tolist()
-        labels = [f"{self.where(row)}: {what} {each}" for row, each in enumerate(numbers)]
+        labels = [f'{self.where(row)}: {what} {each}' for row, each in enumerate(numbers)]
         position: dict[int, int] = {}
         for row, each in enumerate(numbers):
             if each in position:
-                raise FormatError(f"number {each} stands twice", where=labels[row])
+                raise FormatError(f'number {each} stands twice', where=labels[row])
             position[each] = row
         parents = np.full(len(numbers), -1, dtype=np.int64)
         for row, each in enumerate(self.whole(values[:, 1], parent).tolist()):
@@ -191,9 +194,9 @@ class TextTable:
                 parents[row] = position[each]
             elif each not in none:
                 raise TreeError(
-                    f"orphan: its parent {each} is not in the file",
+                    f'orphan: its parent {each} is not in the file',
                     where=labels[row],
-                    cure=f"name one that is, or {none[0]} for the root",
+                    cure=f'name one that is, or {none[0]} for the root',
                 )
         return labels, parents
 
@@ -211,7 +214,7 @@ def split_row(line: str, separator: str) -> Sequence[str]:
         return []
 
 
-def filled_lines(lines: Sequence[str], comment: str = "#") -> tuple[list[int], list[str]]:
+def filled_lines(lines: Sequence[str], comment: str = '#') -> tuple[list[int], list[str]]:
     """Numbers and texts of the lines that are neither blank nor a comment."""
     kept = [
         number
@@ -229,19 +232,19 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     """
     numbers, texts = filled_lines(lines)
     if len(texts) < 2:
-        raise FormatError("no header and rows", where=source, cure="give a header and rows")
-    split = partial(split_row, separator=max(("\t", ";", ","), key=texts[0].count))
+        raise FormatError('no header and rows', where=source, cure='give a header and rows')
+    split = partial(split_row, separator=max(('\t', ';', ','), key=texts[0].count))
     columns = tuple(split(texts[0]))
     if len(columns) > _MAX_COLUMNS:
-        raise FormatError(f"a header of {len(columns)} columns", where=f"{source}:{numbers[0]}")
+        raise FormatError(f'a header of {len(columns)} columns', where=f'{source}:{numbers[0]}')
     table = TextTable(columns, numbers[1:], texts[1:], split, source)
     long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
     if 2 * len(long) > len(table.texts):
         raise FormatError(
-            f"more cells than the {len(columns)} columns of the header, as in most rows",
+            f'more cells than the {len(columns)} columns of the header, as in most rows',
             where=table.where(long[0]),
-            cure="if its numbers have decimal commas, export it with decimal points; "
-            "else name every column in the header",
+            cure='if its numbers have decimal commas, export it with decimal points; '
+            'else name every column in the header',
         )
     return table
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from pathlib import Path
+import re
 
 from tree_sway_ros.errors import FormatError
 
@@ -20,8 +20,8 @@ MAX_BYTES = 256 * 1024 * 1024
 """Larger files are refused, so that no input takes the memory of the machine [bytes]."""
 
 # Each digit can be matched in one way only, so that no text takes longer than its length.
-_NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?", re.ASCII)
-_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?", re.ASCII)
+_NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
+_DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
 
 
 def path_of(name: str | Path) -> Path:
@@ -38,11 +38,11 @@ def path_of(name: str | Path) -> Path:
         return path
     except RuntimeError:
         raise FormatError(
-            f"no user '{text.split('/')[0]}'", where=text[:80], cure="write the folder in full"
+            f"no user '{text.split('/')[0]}'", where=text[:80], cure='write the folder in full'
         ) from None
     except (OSError, ValueError) as error:  # such as a name that is too long, or holds a zero byte
         reason = error.strerror if isinstance(error, OSError) else error
-        raise FormatError(f"not a path: {reason}", where=ascii(text[:80])) from None
+        raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
     return path
 
 
@@ -57,40 +57,40 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
     except (OSError, ValueError):  # a name that is too long, or holds a zero byte
         is_there = False
     if not is_there:
-        raise FormatError("no such file", where=str(path), cure="check the path")
+        raise FormatError('no such file', where=str(path), cure='check the path')
     if not path.is_file():
-        raise FormatError("not a file", where=str(path), cure="name a file")
+        raise FormatError('not a file', where=str(path), cure='name a file')
     if at_most < 0 and path.stat().st_size > MAX_BYTES:
         raise FormatError(
-            f"larger than {MAX_BYTES >> 20} MiB", where=str(path), cure="cut it into smaller files"
+            f'larger than {MAX_BYTES >> 20} MiB', where=str(path), cure='cut it into smaller files'
         )
     try:
-        with path.open("rb") as stream:
+        with path.open('rb') as stream:
             return stream.read(at_most)
     except OSError as error:
-        raise FormatError(f"cannot be read: {error.strerror}", where=str(path)) from error
+        raise FormatError(f'cannot be read: {error.strerror}', where=str(path)) from error
 
 
 def read_head(path: Path) -> str:
     """Read the beginning of a file, enough to tell its format; what is no text is replaced."""
-    return read_bytes(path, at_most=4096).removeprefix(b"\xef\xbb\xbf").decode("utf-8", "replace")
+    return read_bytes(path, at_most=4096).removeprefix(b'\xef\xbb\xbf').decode('utf-8', 'replace')
 
 
 def read_text(path: Path) -> str:
     """Read a text file in UTF-8, with or without a byte order mark; else a `FormatError`."""
     try:
-        return read_bytes(path).decode("utf-8-sig")
+        return read_bytes(path).decode('utf-8-sig')
     except UnicodeDecodeError as error:
         raise FormatError(
-            f"not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}",
+            f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}',
             where=str(path),
-            cure="save it as UTF-8",
+            cure='save it as UTF-8',
         ) from None
 
 
 def read_lines(path: Path) -> list[str]:
     """Read a text file as lines, ended by LF, CRLF or CR, without their ends."""
-    return re.split(r"\r\n|\n|\r", read_text(path))
+    return re.split(r'\r\n|\n|\r', read_text(path))
 
 
 def finite(text: str) -> float | None:
@@ -104,7 +104,7 @@ def finite(text: str) -> float | None:
 
 def reason_of(error: Exception) -> str:
     """Kind and text of an error of a library, on one line of at most 200 characters."""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"[:200]
+    return f'{type(error).__name__}: {" ".join(str(error).split())}'[:200]
 
 
 def why_no_number(text: str) -> str:

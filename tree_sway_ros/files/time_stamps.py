@@ -4,15 +4,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
+import re
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
 
 _STAMP = re.compile(
-    r"(\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(Z|[+-]\d\d:?\d\d)?", re.ASCII
+    r'(\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(Z|[+-]\d\d:?\d\d)?', re.ASCII
 )
 
 _NONE = np.iinfo(np.int64).min
@@ -23,13 +23,14 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
     """
     Seconds of each stamp after the first good one, to the microsecond; NaN where it is none.
 
-    Stamps are such as ``2012-06-07 12:45:00.05`` or ``2012-06-07T12:45:00Z``; one without a zone is
-    taken as it is.
+    Stamps are such as ``2012-06-07 12:45:00.05`` or ``2012-06-07T12:45:00Z``; one without a zone
+    is taken as it is.
 
     Returns
     -------
     tuple
-        The seconds, (n,), and the first good stamp in seconds after 1970-01-01; 0 if there is none.
+        The seconds, (n,), and the first good stamp in seconds after 1970-01-01; 0 if there is
+        none.
 
     """
     blocks = [_microseconds(stamps[i : i + _BLOCK]) for i in range(0, len(stamps), _BLOCK)]
@@ -45,11 +46,11 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
 def _microseconds(stamps: Sequence[str]) -> Ints:
     """Microseconds after 1970-01-01, `_NONE` where a stamp is none."""
     matches = [_STAMP.fullmatch(stamp.strip()) for stamp in stamps]
-    texts = [match[1] if match else "NaT" for match in matches]
+    texts = [match[1] if match else 'NaT' for match in matches]
     try:
-        dates = np.array(texts, dtype="datetime64[us]")
+        dates = np.array(texts, dtype='datetime64[us]')
     except ValueError:
-        dates = np.array([_date(text) for text in texts], dtype="datetime64[us]")
+        dates = np.array([_date(text) for text in texts], dtype='datetime64[us]')
     offset = [_offset(match[2]) if match and match[2] else 0 for match in matches]
     microseconds = dates.astype(np.int64) - 1_000_000 * np.array(offset, dtype=np.int64)
     return np.where(np.isnat(dates), _NONE, microseconds)
@@ -57,14 +58,14 @@ def _microseconds(stamps: Sequence[str]) -> Ints:
 
 def _date(text: str) -> np.datetime64:
     try:
-        return np.datetime64(text, "us")
+        return np.datetime64(text, 'us')
     except ValueError:  # a month 13 or a February 30
-        return np.datetime64("NaT")
+        return np.datetime64('NaT')
 
 
 def _offset(zone: str) -> int:
     """Seconds that a zone is ahead of UTC."""
-    if zone == "Z":
+    if zone == 'Z':
         return 0
-    sign = -1 if zone[0] == "-" else 1
+    sign = -1 if zone[0] == '-' else 1
     return sign * (3600 * int(zone[1:3]) + 60 * int(zone[-2:]))

@@ -1,14 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Write a file whole or not at all: what stood there before stays until the new one is complete."""
+"""Write a file whole or not at all: what stood there before stays until the new one is
+complete.
+"""
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+import os
 from pathlib import Path
+import tempfile
 
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.text_file import path_of
@@ -17,22 +19,23 @@ from tree_sway_ros.files.text_file import path_of
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
     """
-    Give a path to write to, which takes the place of the file when the block ends without an error.
+    Give a path to write to, which takes the place of the file when the block ends without an
+    error.
 
-    It is a new, empty file of the same suffix in the same folder. A link is followed; a device or a
-    pipe is written to directly. A `FormatError` tells that the file cannot be written, or that an
-    `OSError` ended the block.
+    It is a new, empty file of the same suffix in the same folder. A link is followed; a device or
+    a pipe is written to directly. A `FormatError` tells that the file cannot be written, or that
+    an `OSError` ended the block.
     """
     target = path_of(path).resolve()
     partial: Path | None = None
     try:
         if target.exists() and not target.is_file():
             if target.is_dir():
-                raise FormatError("a folder", where=str(path), cure="name a file to write")
+                raise FormatError('a folder', where=str(path), cure='name a file to write')
             yield target
             return
         # The name of a temporary file is short, so that a long name of the target still fits.
-        number, name = tempfile.mkstemp(target.suffix[:16], ".part-", target.parent)
+        number, name = tempfile.mkstemp(target.suffix[:16], '.part-', target.parent)
         os.close(number)
         partial = Path(name)
         yield partial
@@ -41,9 +44,9 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         os.replace(partial, target)
     except OSError as error:
         raise FormatError(
-            f"cannot be written: {error.strerror or error}",
+            f'cannot be written: {error.strerror or error}',
             where=str(path),
-            cure="name a folder that exists and that you may write to, with room for the file",
+            cure='name a folder that exists and that you may write to, with room for the file',
         ) from error
     finally:
         if partial is not None:
@@ -53,7 +56,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 def write_text_whole(path: str | Path, text: str) -> None:
     """Write a text file in UTF-8 whole or not at all; see `whole_file`."""
     with whole_file(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+        partial.write_text(text, encoding='utf-8')
 
 
 def _umask() -> int:

@@ -21,16 +21,16 @@ class AnemometerNode(TreeSwayNode):
     """Publishes `wind` at a fixed rate."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("anemometer", **options)
+        super().__init__('anemometer', **options)
 
     def configure(self) -> None:
         """Make the wind."""
-        self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
+        self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
         self._model = self._make_model()
         self._faults = self._make_faults()
         self._ticks = self._faulty_since = 0
         self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
-        self.report_with("simulated anemometer", self._report)
+        self.report_with('simulated anemometer', self._report)
         self._pacer = self._make_pacer()
 
     def activate(self) -> None:
@@ -40,58 +40,58 @@ class AnemometerNode(TreeSwayNode):
         self._pacer.start()
 
     def _make_pacer(self) -> Pacer:
-        return Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
+        return Pacer(self.get_clock(), self.values['rate'], self._tick, self.fail, self.slip)
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse gusts and faults that overlap."""
-        duration, every = values["gust_duration"], values["gust_every"]
-        if values["gust"] != "none" and 0.0 < every < duration:
+        duration, every = values['gust_duration'], values['gust_every']
+        if values['gust'] != 'none' and 0.0 < every < duration:
             raise ParameterError(
-                f"gusts of {duration:g} s every {every:g} s overlap",
+                f'gusts of {duration:g} s every {every:g} s overlap',
                 where="parameters 'gust_duration' and 'gust_every'",
-                cure="give gust_every 0 or not less than gust_duration, both at once if need be",
+                cure='give gust_every 0 or not less than gust_duration, both at once if need be',
             )
-        if values["fault"] != "none" and values["fault_duration"] > values["fault_every"]:
+        if values['fault'] != 'none' and values['fault_duration'] > values['fault_every']:
             raise ParameterError(
-                f"faults of {values['fault_duration']:g} s every {values['fault_every']:g} s "
-                "overlap",
+                f'faults of {values["fault_duration"]:g} s every {values["fault_every"]:g} s '
+                'overlap',
                 where="parameters 'fault_duration' and 'fault_every'",
-                cure="give fault_every not less than fault_duration, both at once if need be",
+                cure='give fault_every not less than fault_duration, both at once if need be',
             )
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Blow otherwise from the next sample on; the gusts of a seed keep their pattern."""
         self._model = self._make_model()
-        if any(name.startswith("fault") for name in values):
+        if any(name.startswith('fault') for name in values):
             self._faults, self._faulty_since = self._make_faults(), self._ticks
 
     def _make_faults(self) -> SensorFaults:
         values = self.values
-        if values["fault"] == "none":
+        if values['fault'] == 'none':
             return SensorFaults()
-        return SensorFaults(values["fault"], values["fault_every"], values["fault_duration"])
+        return SensorFaults(values['fault'], values['fault_every'], values['fault_duration'])
 
     def _make_model(self) -> AnemometerModel:
-        names = ("mean_speed", "bearing_to", "turbulence", "height", "intensity", "rate", "seed")
+        names = ('mean_speed', 'bearing_to', 'turbulence', 'height', 'intensity', 'rate', 'seed')
         return AnemometerModel(events=self._events(), **self.values(*names))
 
     def _events(self) -> tuple[GustEvent, ...]:
         values = self.values
-        kind = values["gust"]
-        if kind == "none":
+        kind = values['gust']
+        if kind == 'none':
             return ()
-        is_angle = kind in ("direction_change", "turn")
-        amplitude = values["gust_angle" if is_angle else "gust_speed"]
-        every, duration = values["gust_every"], values["gust_duration"]
+        is_angle = kind in ('direction_change', 'turn')
+        amplitude = values['gust_angle' if is_angle else 'gust_speed']
+        every, duration = values['gust_every'], values['gust_duration']
         return (GustEvent(kind, amplitude, duration, start=every or 1.0, every=every),)
 
     def _tick(self, tick: Tick) -> None:
         self._ticks += tick.periods
-        since = (self._ticks - self._faulty_since) / self.values["rate"]
+        since = (self._ticks - self._faulty_since) / self.values['rate']
         for sample in self._faults.sent(since, tick.time, self._model.sample(self._ticks)):
             self._publisher.publish(self._writer.message(*sample))
 
     def _report(self) -> list[Status]:
         pace = self._pacer.pace()
-        values = {"fault": self.values["fault"], **pace._asdict()}
-        return [Status("output", OK, f"{pace.rate:.1f} Hz", values)]
+        values = {'fault': self.values['fault'], **pace._asdict()}
+        return [Status('output', OK, f'{pace.rate:.1f} Hz', values)]

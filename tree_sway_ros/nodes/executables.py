@@ -16,5 +16,5 @@ from tree_sway_ros.ros.process.spin import run
 
 anemometer, wind, solver, player, sensor, viewer = (
     partial(run, *NODE_CLASSES[name])
-    for name in ("anemometer", "wind", "solver", "player", "sensor", "viewer")
+    for name in ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
 )

@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
+import time
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.reader_options import reader_options
-from tree_sway_ros.files.recording.state_record import StateRecord, read_state_record, restamped
+from tree_sway_ros.files.recording.state_record import read_state_record, restamped, StateRecord
 from tree_sway_ros.files.wind.record import WindRecord
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.ros.process.node import TreeSwayNode
@@ -25,11 +25,11 @@ from tree_sway_ros.ros.process.topics import (
 )
 from tree_sway_ros.ros.reports.diagnostics import OK, Status
 from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
-from tree_sway_ros.ros.timing.playback import LONGEST_CLOCK_STEP, Playback, is_ros_time
+from tree_sway_ros.ros.timing.playback import is_ros_time, LONGEST_CLOCK_STEP, Playback
 from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
 from tree_sway_ros.ros.wire.cdr import stamp_of
 from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD
-from tree_sway_ros.ros.wire.wind_messages import WindWriter, clock_message
+from tree_sway_ros.ros.wire.wind_messages import clock_message, WindWriter
 
 _SLACK = 100_000_000
 """The clock may be so much ahead of the frames of an exact replay [ns]."""
@@ -45,36 +45,36 @@ class PlayerNode(TreeSwayNode):
     """Publishes `wind` or the state of a tree from a record, and `/clock` if asked to."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("player", **options)
+        super().__init__('player', **options)
 
     def configure(self) -> None:
         """Read the record."""
-        if not self.values["file"]:
-            raise ParameterError("no file to play", cure="give -p file:=wind.csv")
-        if self.values["play"] == "state":
+        if not self.values['file']:
+            raise ParameterError('no file to play', cure='give -p file:=wind.csv')
+        if self.values['play'] == 'state':
             self._open_state()
         else:
             self._open_wind()
         for note in self._record.notes:
             self.get_logger().info(note)
-        has_clock = self.values["publish_clock"]
+        has_clock = self.values['publish_clock']
         self._clock_publisher: Any = self.publisher(CLOCK) if has_clock else None
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):
             self.get_logger().warning(
-                f"{self._record.source} is dated outside 1970 .. 2038, which /clock cannot say: "
-                "it starts at 1 s"
+                f'{self._record.source} is dated outside 1970 .. 2038, which /clock cannot say: '
+                'it starts at 1 s'
             )
             epoch = None
-        wait_for = TREE_STATE.name if self.values["play"] == "state" else self.values["wait_for"]
-        wanted = required(wait_for) if self.values["wait_for_subscriber"] else {}
+        wait_for = TREE_STATE.name if self.values['play'] == 'state' else self.values['wait_for']
+        wanted = required(wait_for) if self.values['wait_for_subscriber'] else {}
         self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
         is_exact = has_clock and WIND_FILTERED.name in wanted
         self._playback = Playback(
             self._record.time,
             epoch=epoch,
-            **self.values("start", "loop"),
-            clock_period=self.values["speed"] / self.values["clock_rate"] if has_clock else 0.0,
+            **self.values('start', 'loop'),
+            clock_period=self.values['speed'] / self.values['clock_rate'] if has_clock else 0.0,
             ahead=is_exact,
         )
         self._answers: Answers | None = None
@@ -90,8 +90,8 @@ class PlayerNode(TreeSwayNode):
         self.report_with(self._record.source, self._report)
 
     def _open_wind(self) -> None:
-        record = read_wind(self.values["file"], **self._reader_options())
-        writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
+        record = read_wind(self.values['file'], **self._reader_options())
+        writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
         wind = self.publisher(WIND, writer.message_class, alone=True)
         self._record: WindRecord | StateRecord = record
         self._send: Callable[[int, int], None] = lambda row, stamp: wind.publish(
@@ -99,7 +99,7 @@ class PlayerNode(TreeSwayNode):
         )
 
     def _open_state(self) -> None:
-        record = read_state_record(Path(self.values["file"]), self.values["topic"] or "tree_state")
+        record = read_state_record(Path(self.values['file']), self.values['topic'] or 'tree_state')
         description = self.publisher(TREE_DESCRIPTION, alone=True)
         state = self.publisher(TREE_STATE, alone=True)
         description.publish(record.description)
@@ -117,7 +117,7 @@ class PlayerNode(TreeSwayNode):
     def _make_thread(self) -> PlaybackThread:
         return PlaybackThread(
             self._playback,
-            self.values["speed"],
+            self.values['speed'],
             publish=self._publish,
             may_start=self._may_start,
             on_end=self._end,
@@ -126,22 +126,22 @@ class PlayerNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a clock in steps so long that nodes would take them for a clock set forward."""
-        speed, rate = values["speed"], values["clock_rate"]
+        speed, rate = values['speed'], values['clock_rate']
         step, longest = speed / rate, LONGEST_CLOCK_STEP
-        if values["publish_clock"] and step > longest:
+        if values['publish_clock'] and step > longest:
             raise ParameterError(
-                f"/clock would go in steps of {step:g} s; nodes follow up to {longest:g} s",
+                f'/clock would go in steps of {step:g} s; nodes follow up to {longest:g} s',
                 where="parameters 'speed' and 'clock_rate'",
-                cure=f"give speed up to {longest * rate:g}, or clock_rate {speed / longest:g}",
+                cure=f'give speed up to {longest * rate:g}, or clock_rate {speed / longest:g}',
             )
 
     def _reader_options(self) -> dict[str, Any]:
-        options = reader_options(self.values["reader_options"].split())
-        for name in ("topic", "yaw"):
+        options = reader_options(self.values['reader_options'].split())
+        for name in ('topic', 'yaw'):
             if self.values[name]:
                 options[name] = self.values[name]
-        if self.values["input_convention"]:
-            options["direction_convention"] = self.values["input_convention"]
+        if self.values['input_convention']:
+            options['direction_convention'] = self.values['input_convention']
         return options
 
     def _publish(self, row: int, stamp: int) -> None:
@@ -174,7 +174,7 @@ class PlayerNode(TreeSwayNode):
             self._is_waiting = False
             return True
         if now > self._deadline:
-            self.get_logger().warning("no frames come back: this replay will not be exact")
+            self.get_logger().warning('no frames come back: this replay will not be exact')
             self._is_waiting = False
             return True
         if not self._has_begun:
@@ -187,11 +187,11 @@ class PlayerNode(TreeSwayNode):
     def _end(self) -> None:
         if self._answers is not None:  # what is under way is lost with whoever sent it
             self._answers.end(lambda time: self._clock_publisher.publish(clock_message(time)))
-        self.get_logger().info("the record has ended")
+        self.get_logger().info('the record has ended')
         self.is_done = True
 
     def _report(self) -> list[Status]:
-        values = {**self._thread.progress(), "refused in file": self._record.refused}
+        values = {**self._thread.progress(), 'refused in file': self._record.refused}
         if self._answers is not None:
-            values["waited for frames in vain"] = self._answers.missing
-        return [Status("playback", OK, self._record.source, values)]
+            values['waited for frames in vain'] = self._answers.missing
+        return [Status('playback', OK, self._record.source, values)]

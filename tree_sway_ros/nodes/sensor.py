@@ -13,7 +13,7 @@ from tree_sway_ros.ros.link.address import read_address
 from tree_sway_ros.ros.link.line_source import LineSource
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import WIND
-from tree_sway_ros.ros.reports.diagnostics import OK, WARN, Status
+from tree_sway_ros.ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.ros.wire.wind_messages import WindWriter
 
 
@@ -21,17 +21,17 @@ class SensorNode(TreeSwayNode):
     """Publishes `wind` as an instrument says it, stamped with the time of arrival."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("sensor", **options)
+        super().__init__('sensor', **options)
 
     def configure(self) -> None:
         """Prepare the link."""
-        self._writer = WindWriter(**self.values("output_type", "direction_convention", "frame_id"))
+        self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
         self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
-        self._kind = self.values["sentence"]
+        self._kind = self.values['sentence']
         self._accepted = self._other = 0
         self._refused: dict[str, int] = {}
         self._source = self._make_source()
-        self.report_with(self.values["address"], self._report)
+        self.report_with(self.values['address'], self._report)
 
     def activate(self) -> None:
         """Listen."""
@@ -41,14 +41,14 @@ class SensorNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse what is no address."""
-        read_address(values["address"])
+        read_address(values['address'])
 
     def _make_source(self) -> LineSource:
         return LineSource(
-            read_address(self.values["address"]),
+            read_address(self.values['address']),
             self.guard.wrapped(self._take),
             self.get_logger().info,
-            silence=self.values["silence"],
+            silence=self.values['silence'],
         )
 
     def _take(self, line: str) -> None:
@@ -56,9 +56,9 @@ class SensorNode(TreeSwayNode):
         if said is None:
             self._other += 1
             return
-        if self._kind == "auto" and said.velocity is not None:
+        if self._kind == 'auto' and said.velocity is not None:
             self._kind = said.kind  # the first good one; another reference would jump to and fro
-            self.get_logger().info(f"reading {said.kind}")
+            self.get_logger().info(f'reading {said.kind}')
         if said.kind != self._kind:
             self._other += 1
         elif said.velocity is None:
@@ -70,23 +70,23 @@ class SensorNode(TreeSwayNode):
             self._publisher.publish(self._writer.message(stamp, said.velocity))
 
     def _parsed(self, line: str) -> SensorLine | None:
-        need, heading = self.values["need_checksum"], self.values["heading"]
+        need, heading = self.values['need_checksum'], self.values['heading']
         return parse_nmea(
-            line, heading, self.values["declination"], need_checksum=need
+            line, heading, self.values['declination'], need_checksum=need
         ) or parse_sonic(line, heading, need_checksum=need)
 
     def _report(self) -> list[Status]:
         source = self._source
         values: dict[str, object] = {
-            "reading": self._kind,
-            "links made": source.links,
-            "lines": source.lines,
-            "accepted": self._accepted,
-            "other lines": self._other,
-            **{f"refused: {cause}": count for cause, count in sorted(self._refused.items())[:20]},
+            'reading': self._kind,
+            'links made': source.links,
+            'lines': source.lines,
+            'accepted': self._accepted,
+            'other lines': self._other,
+            **{f'refused: {cause}': count for cause, count in sorted(self._refused.items())[:20]},
         }
         if not source.is_up:
-            return [Status("link", WARN, f"no link: {source.failure or 'not yet'}", values)]
+            return [Status('link', WARN, f'no link: {source.failure or "not yet"}', values)]
         if not self._accepted:
-            return [Status("link", WARN, "no sentence of wind yet", values)]
-        return [Status("link", OK, f"{self._kind}", values)]
+            return [Status('link', WARN, 'no sentence of wind yet', values)]
+        return [Status('link', OK, f'{self._kind}', values)]

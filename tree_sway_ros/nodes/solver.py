@@ -28,7 +28,7 @@ from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.progress import Progress
 from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import WARN, Status
+from tree_sway_ros.ros.reports.diagnostics import Status, WARN
 from tree_sway_ros.ros.reports.sway_report import SwayReport
 from tree_sway_ros.ros.timing.handshake import Reach
 from tree_sway_ros.ros.timing.pacer import Pacer, Tick
@@ -47,7 +47,7 @@ class SolverNode(TreeSwayNode):
     """
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("solver", **options)
+        super().__init__('solver', **options)
 
     def configure(self) -> None:
         """Open the tree, reduce it and make its kernels ready."""
@@ -55,8 +55,8 @@ class SolverNode(TreeSwayNode):
             progress.stage(f"opening tree '{self.values['tree']}'")
             source = self._open()
             progress.stage(
-                f"reducing {source.tree.n_segments} segments and making the kernels ready "
-                "(where none are kept they are compiled, up to a minute)"
+                f'reducing {source.tree.n_segments} segments and making the kernels ready '
+                '(where none are kept they are compiled, up to a minute)'
             )
             self._make(source)
         for doubt in source.warnings:
@@ -64,8 +64,8 @@ class SolverNode(TreeSwayNode):
         for note in source.notes:
             self.get_logger().info(note)
         self.get_logger().info(
-            f"ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, "
-            f"{self.values['rate']:g} Hz"
+            f'ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, '
+            f'{self.values["rate"]:g} Hz'
         )
 
     def activate(self) -> None:
@@ -77,35 +77,35 @@ class SolverNode(TreeSwayNode):
         self.pacer.start()
 
     def _make_pacer(self) -> Pacer:
-        return Pacer(self.get_clock(), self.values["rate"], self._tick, self.fail, self.slip)
+        return Pacer(self.get_clock(), self.values['rate'], self._tick, self.fail, self.slip)
 
     def _open(self) -> Any:
-        source = open_scene(self.values["tree"])
-        if self.values["species"]:
-            source = source.of_species(open_species(self.values["species"])).checked()
-        placed = placed_scene(source, **self.values("x", "y", "z", "yaw"))
-        return dealt(placed, **self.values("shard", "shards"))
+        source = open_scene(self.values['tree'])
+        if self.values['species']:
+            source = source.of_species(open_species(self.values['species'])).checked()
+        placed = placed_scene(source, **self.values('x', 'y', 'z', 'yaw'))
+        return dealt(placed, **self.values('shard', 'shards'))
 
     def _make(self, source: Any) -> None:
         settings = Settings(
-            n_modes=self.values["modes"] or None,
-            **self.values("stiffness", "integrator", "gravity", "crown_coherence"),
-            **self.values("volume_stiffness", "volume_damping"),
-            model=self.values["fidelity"],
-            in_leaf=LEAVES[self.values["leaves"]],
-            damping_ratio=self.values["damping_ratio"] or None,
-            root_stiffness=self.values["root_stiffness"] or None,
+            n_modes=self.values['modes'] or None,
+            **self.values('stiffness', 'integrator', 'gravity', 'crown_coherence'),
+            **self.values('volume_stiffness', 'volume_damping'),
+            model=self.values['fidelity'],
+            in_leaf=LEAVES[self.values['leaves']],
+            damping_ratio=self.values['damping_ratio'] or None,
+            root_stiffness=self.values['root_stiffness'] or None,
             profile=WindProfile(
-                self.values["profile"],
-                self.values["anemometer_height"],
-                self.values["profile_exponent"],
-                self.values["roughness"],
-                ground=0.0 if isinstance(source, ForestFile) else self.values["z"],
+                self.values['profile'],
+                self.values['anemometer_height'],
+                self.values['profile_exponent'],
+                self.values['roughness'],
+                ground=0.0 if isinstance(source, ForestFile) else self.values['z'],
             ),
         )
-        self.simulator: Simulator = source.simulator(settings, **self.values("tolerance"))
-        if self.values["stiffness_factor"] != 1.0:
-            self.simulator.tune(**self.values("stiffness_factor"))
+        self.simulator: Simulator = source.simulator(settings, **self.values('tolerance'))
+        if self.values['stiffness_factor'] != 1.0:
+            self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = self._make_pacer()
@@ -116,17 +116,17 @@ class SolverNode(TreeSwayNode):
         self._intake = WindIntake.of_velocities()
         self._reach = Reach()
         self._sway_report = SwayReport()
-        leaves = source.leaves(settings.in_leaf, self.values["leaf_clusters"])
+        leaves = source.leaves(settings.in_leaf, self.values['leaf_clusters'])
         self.stream = PoseStream(self, source.tree, leaves)
-        self._state = StatePublisher(self, self.simulator, self.values["leaf_clusters"])
+        self._state = StatePublisher(self, self.simulator, self.values['leaf_clusters'])
         self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
-        self.create_service(Trigger, "~/reset", self._reset)
-        self.create_service(SetBool, "~/pause", self._pause)
+        self.create_service(Trigger, '~/reset', self._reset)
+        self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
 
     def _make_wind(self) -> WindAverage:
-        return WindAverage(**self.values("interpolation", "timeout", "decay"))
+        return WindAverage(**self.values('interpolation', 'timeout', 'decay'))
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
@@ -153,11 +153,11 @@ class SolverNode(TreeSwayNode):
         if not self.is_active:
             return
         changes = {k: values[k] for k in LIVE if k in values and values[k] != self.values[k]}
-        if changes.get("damping_ratio") == 0.0:
+        if changes.get('damping_ratio') == 0.0:
             raise ParameterError(
                 "the species' own damping while the tree sways",
-                where="damping_ratio",
-                cure="give the ratio itself; 0 is for the start",
+                where='damping_ratio',
+                cure='give the ratio itself; 0 is for the start',
             )
         if changes:
             self.simulator.check_tuning(**changes)
@@ -167,11 +167,11 @@ class SolverNode(TreeSwayNode):
         changes = {k: v for k, v in values.items() if k in LIVE}
         if changes and self.is_active:
             self._stepper.request(lambda: self.simulator.tune(**changes))
-        if self.values["fidelity"] == "auto":
+        if self.values['fidelity'] == 'auto':
             self._stepper.request(self._set_demand)
 
     def _set_demand(self) -> None:
-        wanted = self.values("tolerance", "tolerance_pixels", "focal_length", "budget")
+        wanted = self.values('tolerance', 'tolerance_pixels', 'focal_length', 'budget')
         set_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
 
     def slip(self, error: Exception) -> None:
@@ -187,8 +187,8 @@ class SolverNode(TreeSwayNode):
         if self.pacer.is_simulated:  # of a replay every frame comes, however late
             for later in range(tick.periods - 1, -1, -1):
                 time = tick.time - later * self.pacer.period
-                if self.values["exact_replay"]:
-                    felt = time - round(1e9 * self.values["wind_delay"])
+                if self.values['exact_replay']:
+                    felt = time - round(1e9 * self.values['wind_delay'])
                     self._reach.wait(felt, self._take, self._now)
                 else:
                     self._take()
@@ -206,19 +206,19 @@ class SolverNode(TreeSwayNode):
 
     def _frame(self, time: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish what is due then."""
-        self._stepper.advance(time, periods, self.values["wind_delay"], may_join=may_join)
+        self._stepper.advance(time, periods, self.values['wind_delay'], may_join=may_join)
         index = time // self.pacer.period
-        self.stream.publish(self.simulator, index, time, self.values["publish_every"])
+        self.stream.publish(self.simulator, index, time, self.values['publish_every'])
         self._state.publish(index, time)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._stepper.request(self.simulator.reset)
-        response.success, response.message = True, "at rest"
+        response.success, response.message = True, 'at rest'
         return response
 
     def _pause(self, request: Any, response: Any) -> Any:
         self._stepper.is_paused = bool(request.data)
-        response.success, response.message = True, "paused" if request.data else "running"
+        response.success, response.message = True, 'paused' if request.data else 'running'
         return response
 
     def _statuses(self) -> list[Status]:
@@ -227,7 +227,7 @@ class SolverNode(TreeSwayNode):
         )
         if self._refused_cameras:
             text = (
-                f"{self._refused_cameras} poses of the camera refused: not finite or too far away"
+                f'{self._refused_cameras} poses of the camera refused: not finite or too far away'
             )
-            statuses.append(Status("camera", WARN, text, {"refused": self._refused_cameras}))
+            statuses.append(Status('camera', WARN, text, {'refused': self._refused_cameras}))
         return statuses

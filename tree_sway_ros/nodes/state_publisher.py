@@ -20,14 +20,15 @@ class StatePublisher:
     """
     Publishes `tree_state`, and has `tree_description` tell how to read it.
 
-    The basis takes some seconds to find: it is found on a thread of its own, once somebody listens.
+    The basis takes some seconds to find: it is found on a thread of its own, once somebody
+    listens.
     """
 
     def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:
         self._node, self._simulator, self._n_leaves = node, simulator, n_leaves
         self._publisher = node.publisher(TREE_STATE, alone=True)
-        rate = node.values["state_rate"]
-        self._every = max(1, math.ceil(node.values["rate"] / rate)) if rate > 0.0 else 0
+        rate = node.values['state_rate']
+        self._every = max(1, math.ceil(node.values['rate'] / rate)) if rate > 0.0 else 0
         self._divider = Divider()
         self._template: Any = None
         self._scene: SceneState | None = None
@@ -42,7 +43,7 @@ class StatePublisher:
             return
         if self._scene is None:
             if self._finder is None:
-                self._finder = threading.Thread(target=self._find, name="basis", daemon=True)
+                self._finder = threading.Thread(target=self._find, name='basis', daemon=True)
                 self._finder.start()
             return
         block = self._template.blocks[0]
@@ -56,12 +57,12 @@ class StatePublisher:
 
     def _find(self) -> None:
         try:
-            frame_id = self._node.values["frame_id"]
+            frame_id = self._node.values['frame_id']
             scene = SceneState(self._simulator, self._n_leaves, frame_id)
             self._template = state_template(scene.coordinate_names, frame_id)
-            self._node.stream.tell_more({"state": state_entry(scene.description)})
+            self._node.stream.tell_more({'state': state_entry(scene.description)})
             self._scene = scene
         except TreeSwayError as error:
-            self._node.get_logger().warning(f"no {TREE_STATE.name}: {error}")
+            self._node.get_logger().warning(f'no {TREE_STATE.name}: {error}')
         except Exception as error:
             self._node.slip(error)

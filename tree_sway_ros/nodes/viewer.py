@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import json
 import threading
-from collections.abc import Callable
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -18,10 +18,10 @@ from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.page.controls import Control, ControlPanel
 from tree_sway_ros.page.protocol import (
     BEYOND_SCALE,
-    Description,
-    Frame,
     decode_description,
+    Description,
     encode_frame,
+    Frame,
     quantised,
 )
 from tree_sway_ros.page.server import PageServer, PageSettings
@@ -34,10 +34,10 @@ from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns
 
 _CHECK_PERIOD = 0.5
 _LIVE = {
-    "mean_speed": ("anemometer", "Wind"),
-    "intensity": ("anemometer", "Gustiness"),
-    "bearing_to": ("anemometer", "Blows to"),
-    "tolerance": ("solver", "Tolerance"),
+    'mean_speed': ('anemometer', 'Wind'),
+    'intensity': ('anemometer', 'Gustiness'),
+    'bearing_to': ('anemometer', 'Blows to'),
+    'tolerance': ('solver', 'Tolerance'),
 }
 
 
@@ -45,30 +45,30 @@ class ViewerNode(TreeSwayNode):
     """Serves the page; subscribes `tree_state` from when a page is first connected."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("viewer", **options)
+        super().__init__('viewer', **options)
         settings = PageSettings(
-            **self.values("address", "port", "token", "certificate", "private_key", "max_clients"),
-            origins=tuple(self.values["origins"].split()),
+            **self.values('address', 'port', 'token', 'certificate', 'private_key', 'max_clients'),
+            origins=tuple(self.values['origins'].split()),
         )
         self._description: Description | None = None
-        self._told = ""
+        self._told = ''
         self._sequence = 0
         self._subscription: Any = None
         self._lock = threading.Lock()
-        panel = ControlPanel(_controls(), self._apply) if self.values["control"] else None
+        panel = ControlPanel(_controls(), self._apply) if self.values['control'] else None
         self._setters = {
-            node: self.create_client(SetParameters, f"{node}/set_parameters")
-            for node in ("anemometer", "solver")
+            node: self.create_client(SetParameters, f'{node}/set_parameters')
+            for node in ('anemometer', 'solver')
         }
-        self._reset = self.create_client(Trigger, "solver/reset")
-        self._pause = self.create_client(SetBool, "solver/pause")
+        self._reset = self.create_client(Trigger, 'solver/reset')
+        self._pause = self.create_client(SetBool, 'solver/pause')
         self.server = PageServer(settings, panel, self._status)
         self.server.start()
         self.on_close(self.server.close)
         self.subscription(TREE_DESCRIPTION, self._describe)
         self.create_timer(_CHECK_PERIOD, self._look)
-        self.report_with("page", self._statuses)
-        self.get_logger().info(f"the page is at {self.server.url}")
+        self.report_with('page', self._statuses)
+        self.get_logger().info(f'the page is at {self.server.url}')
 
     def _look(self) -> None:
         """Ask for the state once somebody looks: until then it need not be computed."""
@@ -82,7 +82,7 @@ class ViewerNode(TreeSwayNode):
         try:
             data = read_state_entry(json.loads(message.data))
         except ValueError as error:
-            raise FormatError(f"not JSON ({error})", where="tree_description") from None
+            raise FormatError(f'not JSON ({error})', where='tree_description') from None
         if data is None:
             return
         self._description = decode_description(data)
@@ -96,7 +96,7 @@ class ViewerNode(TreeSwayNode):
         scale = description.scale
         if len(coordinates) != len(scale):
             raise FormatError(
-                f"{len(coordinates)} coordinates of a tree with {len(scale)}", where="tree_state"
+                f'{len(coordinates)} coordinates of a tree with {len(scale)}', where='tree_state'
             )
         steps, is_cut = quantised(coordinates, scale)
         flags = BEYOND_SCALE if is_cut else 0
@@ -106,18 +106,18 @@ class ViewerNode(TreeSwayNode):
         self.server.publish(encode_frame(frame))
 
     def _status(self) -> dict[str, Any]:
-        return {"source": "ROS 2"}
+        return {'source': 'ROS 2'}
 
     def _statuses(self) -> list[Status]:
-        values = {"pages": self.server.n_clients, "frames": self._sequence}
-        return [Status("page", OK, f"{self.server.n_clients} pages", values)]
+        values = {'pages': self.server.n_clients, 'frames': self._sequence}
+        return [Status('page', OK, f'{self.server.n_clients} pages', values)]
 
     def _apply(self, name: str, value: Any) -> None:
         """Pass a viewer's change on to the node it concerns; its refusal is told later."""
-        if name == "reset":
-            self._ask(self._reset, Trigger.Request(), lambda answer: "")
-        elif name == "pause":
-            self._ask(self._pause, SetBool.Request(data=bool(value)), lambda answer: "")
+        if name == 'reset':
+            self._ask(self._reset, Trigger.Request(), lambda answer: '')
+        elif name == 'pause':
+            self._ask(self._pause, SetBool.Request(data=bool(value)), lambda answer: '')
         else:
             number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
@@ -126,13 +126,13 @@ class ViewerNode(TreeSwayNode):
     def _ask(self, client: Any, request: Any, reason: Callable[[Any], str]) -> None:
         if not client.service_is_ready():
             raise ParameterError(
-                f"nothing offers {client.srv_name}", cure="start the node, or leave this as it is"
+                f'nothing offers {client.srv_name}', cure='start the node, or leave this as it is'
             )
 
         def answered(future: Any) -> None:
             why = reason(future.result())
             if why:
-                self.server.tell({"refused": {"name": "", "reason": why}})
+                self.server.tell({'refused': {'name': '', 'reason': why}})
 
         with self._lock:
             client.call_async(request).add_done_callback(answered)
@@ -140,7 +140,7 @@ class ViewerNode(TreeSwayNode):
 
 def _reason(answer: Any) -> str:
     """Why parameters were refused; empty if they were not."""
-    return next((str(each.reason) for each in answer.results if not each.successful), "")
+    return next((str(each.reason) for each in answer.results if not each.successful), '')
 
 
 def _controls() -> tuple[Control, ...]:
@@ -156,6 +156,6 @@ def _controls() -> tuple[Control, ...]:
         )  # fmt: skip
     return (
         *controls,
-        Control("pause", "Pause", False, "Time stands still."),
-        Control("reset", "Reset", None, "Back to rest.", is_action=True),
+        Control('pause', 'Pause', False, 'Time stands still.'),
+        Control('reset', 'Reset', None, 'Back to rest.', is_action=True),
     )

@@ -15,18 +15,18 @@ from tree_sway_ros.core.wind.gate import WindGate
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.ros.process.node import TreeSwayNode
 from tree_sway_ros.ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import OK, WARN, Status
+from tree_sway_ros.ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.ros.reports.wind_report import WindReport
 from tree_sway_ros.ros.wire.wind_messages import (
-    WindSample,
     plane_message,
     wind_class,
     wind_from_message,
     wind_to_message,
+    WindSample,
 )
 
-_CONVENTION = ("direction_convention", "speed_scale", "yaw_offset", "plane_normal")
-_GATE = ("max_speed", "max_rate", "longest_refusal", "frozen_after")
+_CONVENTION = ('direction_convention', 'speed_scale', 'yaw_offset', 'plane_normal')
+_GATE = ('max_speed', 'max_rate', 'longest_refusal', 'frozen_after')
 
 _BACK = 100_000_000
 """From so much on time is set back [ns]; less is jitter."""
@@ -36,7 +36,7 @@ class WindNode(TreeSwayNode):
     """Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("wind", **options)
+        super().__init__('wind', **options)
 
     def configure(self) -> None:
         """Subscribe and publish; what comes while inactive is dropped."""
@@ -47,9 +47,9 @@ class WindNode(TreeSwayNode):
         self._frames: Any = None
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
-        kind = wind_class(self.values["input_type"])
+        kind = wind_class(self.values['input_type'])
         self._topic = self.subscription(WIND, self._receive, kind, alone=True).topic_name
-        self.report_with("wind", self._statuses)
+        self.report_with('wind', self._statuses)
         self.get_logger().info(self._convention.describe())
 
     def activate(self) -> None:
@@ -71,8 +71,8 @@ class WindNode(TreeSwayNode):
         if not self.is_active:
             return
         sample = wind_from_message(message)
-        frame_id, turn = self.values["frame_id"], None
-        if sample.frame_id not in ("", frame_id):
+        frame_id, turn = self.values['frame_id'], None
+        if sample.frame_id not in ('', frame_id):
             self._frames = self._frames or self._listen_for_frames()
             turn = self._frames.rotation(sample.frame_id, sample.stamp)
             if self._frames.is_waiting:
@@ -86,7 +86,9 @@ class WindNode(TreeSwayNode):
         if good is None:
             return
         time, vector = good
-        self._filtered.publish(wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector)))
+        self._filtered.publish(
+            wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector))
+        )
         self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
         self._plane.publish(plane_message(time, frame_id, self._attitude))
 
@@ -94,18 +96,18 @@ class WindNode(TreeSwayNode):
         """Load what turns frames, which takes as long as all else here, where there are others."""
         from tree_sway_ros.ros.wire.frames import FrameListener
 
-        return FrameListener(self, self.values["frame_id"])
+        return FrameListener(self, self.values['frame_id'])
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()
-        statuses = [self._report.status(self.values["timeout"], gate, others)]
+        statuses = [self._report.status(self.values['timeout'], gate, others)]
         if self._frames is not None and self._frames.text:
             level = WARN if self._frames.is_lacking else OK
-            statuses.append(Status("frame", level, self._frames.text))
+            statuses.append(Status('frame', level, self._frames.text))
         return statuses
 
     def _types_not_read(self) -> list[str]:
         """Types other than `input_type` that somebody publishes on the topic."""
         offered = self.get_publishers_info_by_topic(self._topic)
-        names = {publisher.topic_type.replace("/msg/", "/") for publisher in offered}
-        return sorted(names - {self.values["input_type"]})
+        names = {publisher.topic_type.replace('/msg/', '/') for publisher in offered}
+        return sorted(names - {self.values['input_type']})

@@ -9,14 +9,14 @@ through the visitor's browser: its Origin, or its Host after a change of DNS, te
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 import hmac
 import ipaddress
-from collections.abc import Mapping, Sequence
 from urllib.parse import urlsplit
 
 from tree_sway_ros.errors import ParameterError
 
-_OWN_NAMES = ("localhost",)
+_OWN_NAMES = ('localhost',)
 
 
 def is_loopback(address: str) -> bool:
@@ -24,7 +24,7 @@ def is_loopback(address: str) -> bool:
     if address in _OWN_NAMES:
         return True
     try:
-        return ipaddress.ip_address(address.strip("[]")).is_loopback
+        return ipaddress.ip_address(address.strip('[]')).is_loopback
     except ValueError:
         return False
 
@@ -41,9 +41,9 @@ def require_token(address: str, token: str) -> None:
     """
     if not is_loopback(address) and len(token) < 8:
         raise ParameterError(
-            f"address {address} without a token of at least 8 characters",
-            where="page",
-            cure="give a token, or keep the address 127.0.0.1",
+            f'address {address} without a token of at least 8 characters',
+            where='page',
+            cure='give a token, or keep the address 127.0.0.1',
         )
 
 
@@ -70,19 +70,19 @@ def refusal(
         Other origins whose pages may follow the stream.
 
     """
-    host = headers.get("Host", "")
+    host = headers.get('Host', '')
     if is_loopback(address) and not is_loopback(_name_of(host)):
         return f"host '{host}' is not this machine"
-    origin = headers.get("Origin")
+    origin = headers.get('Origin')
     if origin is not None and origin not in origins and urlsplit(origin).netloc != host:
         return f"origin '{origin}' is not this server"
     if token and not hmac.compare_digest(given_token.encode(), token.encode()):
-        return "the token is missing or wrong"
+        return 'the token is missing or wrong'
     return None
 
 
 def _name_of(host: str) -> str:
     """A Host header without its port."""
-    if host.startswith("["):
-        return host.partition("]")[0].lstrip("[")
-    return host.rpartition(":")[0] or host
+    if host.startswith('['):
+        return host.partition(']')[0].lstrip('[')
+    return host.rpartition(':')[0] or host

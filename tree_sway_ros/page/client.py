@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Mapping
 import contextlib
 import json
 import random
 import threading
 import time
-from collections.abc import Callable, Mapping
 from typing import TypedDict
 from urllib.parse import urlsplit, urlunsplit
 
@@ -23,11 +23,11 @@ from tree_sway_ros.page.controls import Value
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.playout import DELAY, Moment, Playout
 from tree_sway_ros.page.protocol import (
-    MAGIC,
-    Description,
-    Frame,
     decode_description,
     decode_frame,
+    Description,
+    Frame,
+    MAGIC,
 )
 
 _MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
@@ -85,15 +85,15 @@ class StreamClient:
         on_frame: Callable[[Frame, float], None] | None = None,
     ) -> None:
         parts = urlsplit(url)
-        path = parts.path.rstrip("/") + "/stream"
-        scheme = {"https": "wss", "wss": "wss"}.get(parts.scheme, "ws")
-        self.url = urlunsplit((scheme, parts.netloc, path, parts.query, ""))
+        path = parts.path.rstrip('/') + '/stream'
+        scheme = {'https': 'wss', 'wss': 'wss'}.get(parts.scheme, 'ws')
+        self.url = urlunsplit((scheme, parts.netloc, path, parts.query, ''))
         self.playout = Playout(delay)
-        self.state = "connecting"
+        self.state = 'connecting'
         """One of connecting, open, lost."""
-        self.problem = ""
+        self.problem = ''
         """Why the line was lost, or why something could not be read; empty if nothing was."""
-        self.round_trip = float("nan")
+        self.round_trip = float('nan')
         """To the server and back [s]."""
         self.status: dict[str, object] = {}
         """What the server last told of itself."""
@@ -103,7 +103,7 @@ class StreamClient:
         self._loop = asyncio.new_event_loop()
         self._ending = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
-        self._thread = threading.Thread(target=self._run, name="stream", daemon=True)
+        self._thread = threading.Thread(target=self._run, name='stream', daemon=True)
         self._socket: aiohttp.ClientWebSocketResponse | None = None
         self._awaited, self._credit = 0, _MOST_CREDIT
 
@@ -138,14 +138,14 @@ class StreamClient:
         with self._more:
             if not self._more.wait_for(lambda: self.playout.received >= frames, seconds):
                 raise TransportError(
-                    f"{self.playout.received} frames within {seconds:g} s ({self.problem})",
+                    f'{self.playout.received} frames within {seconds:g} s ({self.problem})',
                     where=self.url,
-                    cure="start tree-sway show, or look at the address",
+                    cure='start tree-sway show, or look at the address',
                 )
 
     def set(self, name: str, value: Value) -> None:
         """Change a control of the server; a refusal comes as `problem`."""
-        self._loop.call_soon_threadsafe(self._say, {"set": {"name": name, "value": value}})
+        self._loop.call_soon_threadsafe(self._say, {'set': {'name': name, 'value': value}})
 
     @property
     def description(self) -> Description | None:
@@ -184,16 +184,16 @@ class StreamClient:
         wait = _SHORTEST_WAIT
         async with aiohttp.ClientSession() as session:
             while not self._ending.is_set():
-                self.state = "connecting"
+                self.state = 'connecting'
                 try:
                     async with session.ws_connect(self.url, max_msg_size=0) as socket:
                         self._socket, self._awaited = socket, 0
-                        wait, self.state = _SHORTEST_WAIT, "open"
+                        wait, self.state = _SHORTEST_WAIT, 'open'
                         await self._follow(socket)
-                        self.problem = f"the server closed the line ({socket.close_code})"
+                        self.problem = f'the server closed the line ({socket.close_code})'
                 except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
                     self.problem = str(error) or type(error).__name__
-                self._socket, self.state = None, "lost"
+                self._socket, self.state = None, 'lost'
                 # Many clients that lose one server do not come back in one instant.
                 with contextlib.suppress(asyncio.TimeoutError):
                     pause = wait * random.uniform(0.75, 1.25)
@@ -202,7 +202,7 @@ class StreamClient:
 
     async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
         """Take what comes until the line ends, or is silent for too long."""
-        self._say({"rate": self._rate, "ping": time.monotonic()})
+        self._say({'rate': self._rate, 'ping': time.monotonic()})
         pinged = time.monotonic()
         while True:
             message = await asyncio.wait_for(socket.receive(), _SILENCE)
@@ -214,14 +214,14 @@ class StreamClient:
                 return
             if time.monotonic() - pinged > _PING_EVERY:
                 pinged = time.monotonic()
-                self._say({"ping": pinged})
+                self._say({'ping': pinged})
 
     def _ask(self) -> None:
         """Ask for as many frames as may be on their way."""
         more = self._credit - self._awaited
         if more >= _GRANT_EVERY:
             self._awaited += more
-            self._say({"credit": more})
+            self._say({'credit': more})
 
     def _say(self, message: Mapping[str, object]) -> None:
         if self._socket is not None and not self._socket.closed:
@@ -229,11 +229,11 @@ class StreamClient:
             task.add_done_callback(lambda done: done.cancelled() or done.exception())
 
     def _hear(self, message: _Message) -> None:
-        if "pong" in message:
-            self.round_trip = time.monotonic() - message["pong"]
-        if "refused" in message:
-            self.problem = message["refused"]["reason"]
-        self.status = message.get("status", self.status)
+        if 'pong' in message:
+            self.round_trip = time.monotonic() - message['pong']
+        if 'refused' in message:
+            self.problem = message['refused']['reason']
+        self.status = message.get('status', self.status)
 
     def _take(self, data: bytes, arrival: float) -> None:
         try:

@@ -1,12 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer may change: each control with its range, and how a change is applied or refused."""
+"""What a viewer may change: each control with its range, and how a change is applied or
+refused.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+import math
 
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 
@@ -41,8 +43,8 @@ class Control:
     name: str
     label: str
     value: Value
-    description: str = ""
-    unit: str = ""
+    description: str = ''
+    unit: str = ''
     minimum: float | None = None
     maximum: float | None = None
     choices: tuple[str, ...] = ()
@@ -62,26 +64,26 @@ class Control:
             return None
         if isinstance(self.value, float):
             if isinstance(value, bool) or not isinstance(value, int | float):
-                raise self._error(f"{value!r} is not a number")
+                raise self._error(f'{value!r} is not a number')
             number = float(value)
             low = -math.inf if self.minimum is None else self.minimum
             high = math.inf if self.maximum is None else self.maximum
             if not (math.isfinite(number) and low <= number <= high):
-                raise self._error(f"{number:g} is out of range")
+                raise self._error(f'{number:g} is out of range')
             return number
         if not isinstance(value, bool | str) or type(value) is not type(self.value):
-            raise self._error(f"{value!r} is not {type(self.value).__name__}")
+            raise self._error(f'{value!r} is not {type(self.value).__name__}')
         if self.choices and value not in self.choices:
             raise self._error(f"'{value}' is not among its choices")
         return value
 
     def _error(self, what: str) -> ParameterError:
         if self.choices:
-            cure = f"use one of: {', '.join(self.choices)}"
+            cure = f'use one of: {", ".join(self.choices)}'
         elif self.minimum is not None and self.maximum is not None:
-            cure = f"give {self.minimum:g} .. {self.maximum:g} {self.unit}".rstrip()
+            cure = f'give {self.minimum:g} .. {self.maximum:g} {self.unit}'.rstrip()
         else:
-            cure = f"give a {type(self.value).__name__}"
+            cure = f'give a {type(self.value).__name__}'
         return ParameterError(what, where=self.name, cure=cure)
 
 

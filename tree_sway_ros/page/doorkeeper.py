@@ -75,4 +75,4 @@ class _Door(asyncio.Protocol):
         self._keeper, self._make = keeper, make
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self._keeper.receive(self._make, cast("asyncio.Transport", transport))
+        self._keeper.receive(self._make, cast('asyncio.Transport', transport))

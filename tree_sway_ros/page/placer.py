@@ -45,9 +45,9 @@ class Placer:
             self._lay_out(description)
         except (KeyError, IndexError, ValueError) as error:
             raise FormatError(
-                f"arrays that do not fit each other ({type(error).__name__}: {error})",
-                where="tree description",
-                cure="ask the sender for it again",
+                f'arrays that do not fit each other ({type(error).__name__}: {error})',
+                where='tree description',
+                cure='ask the sender for it again',
             ) from None
 
     @property
@@ -67,12 +67,12 @@ class Placer:
         """
         if frame.identity != self.description.short_identity:
             raise FormatError(
-                f"a frame of description {frame.identity:08x}",
-                where="tree state",
-                cure=f"this one has {self.description.short_identity:08x}: ask for the new one",
+                f'a frame of description {frame.identity:08x}',
+                where='tree state',
+                cure=f'this one has {self.description.short_identity:08x}: ask for the new one',
             )
         if len(frame.coordinates) != len(self.description.scale):
-            raise FormatError(f"{len(frame.coordinates)} coordinates", where="tree state")
+            raise FormatError(f'{len(frame.coordinates)} coordinates', where='tree state')
         return self._expanded(frame.coordinates * (self.description.scale / FULL_SCALE))
 
     def _expanded(self, values: Floats) -> Floats:
@@ -109,9 +109,9 @@ class Placer:
 
     def _lay_out(self, description: Description) -> None:
         header = description.header
-        kinds = [_kind(description.of_kind(number)) for number in range(len(header["kinds"]))]
-        places = description.arrays["tree_place"].astype(np.float64).tolist()
-        told = [kinds[tree["kind"]] for tree in header["trees"]]
+        kinds = [_kind(description.of_kind(number)) for number in range(len(header['kinds']))]
+        places = description.arrays['tree_place'].astype(np.float64).tolist()
+        told = [kinds[tree['kind']] for tree in header['trees']]
         self._trees = list(zip(places, told, strict=True))
         self._n = sum(kind.n_segments for kind in told)
         self._n_keys = sum(len(kind.matrix) for kind in told)
@@ -127,46 +127,46 @@ class _Kind(NamedTuple):
 
 
 def _kind(arrays: dict[str, Array]) -> _Kind:
-    first = arrays["branch_first"].astype(np.int64)
-    parent = arrays["branch_parent"].astype(np.int64)
-    matrix, keys = arrays["basis_matrix"].astype(np.float64), arrays["branch_keys"]
+    first = arrays['branch_first'].astype(np.int64)
+    parent = arrays['branch_parent'].astype(np.int64)
+    matrix, keys = arrays['basis_matrix'].astype(np.float64), arrays['branch_keys']
     shape = SimpleNamespace(
         branch_first=first, branch_parent=parent, subtree_end=_subtree_ends(parent)
     )
     branches = np.zeros(len(parent), dtype=BRANCH)
-    branches["block"], branches["lane"], n_records = lanes(shape, [])  # type: ignore[arg-type]
-    branches["parent"] = parent
-    branches["base_segment"] = arrays["branch_base_segment"]
-    branches["first"], branches["end"] = first[:-1], first[1:]
-    coordinate = arrays["branch_coordinate"]
-    branches["coordinate"] = np.where(coordinate < 0, len(matrix), coordinate)
-    branches["n_coordinates"] = np.maximum(keys, 2)
-    branches["frame"] = arrays["branch_frame"]
-    branches["skew"], branches["tip_skew"] = arrays["branch_skew"].T
-    branches["offset"] = arrays["branch_offset"]
+    branches['block'], branches['lane'], n_records = lanes(shape, [])  # type: ignore[arg-type]
+    branches['parent'] = parent
+    branches['base_segment'] = arrays['branch_base_segment']
+    branches['first'], branches['end'] = first[:-1], first[1:]
+    coordinate = arrays['branch_coordinate']
+    branches['coordinate'] = np.where(coordinate < 0, len(matrix), coordinate)
+    branches['n_coordinates'] = np.maximum(keys, 2)
+    branches['frame'] = arrays['branch_frame']
+    branches['skew'], branches['tip_skew'] = arrays['branch_skew'].T
+    branches['offset'] = arrays['branch_offset']
     segments = np.zeros(n_records, dtype=SEGMENT)
-    segments["rest"][:, 0] = 1.0
-    slopes, tips, turns = (arrays[name] for name in ("segment_slope", "segment_tip_slope", "turn"))
-    base_turn, own_turn = arrays["branch_base_turn"], arrays["branch_turn"]
+    segments['rest'][:, 0] = 1.0
+    slopes, tips, turns = (arrays[name] for name in ('segment_slope', 'segment_tip_slope', 'turn'))
+    base_turn, own_turn = arrays['branch_base_turn'], arrays['branch_turn']
     for branch, record in enumerate(branches):
         if base_turn[branch] >= 0:
-            k = int(keys[record["parent"]])
-            record["twist"][:k, 3:] = turns[base_turn[branch] :][:k]
-        here = slice(record["first"], record["end"])
-        at, lane = record["block"], record["lane"]
+            k = int(keys[record['parent']])
+            record['twist'][:k, 3:] = turns[base_turn[branch] :][:k]
+        here = slice(record['first'], record['end'])
+        at, lane = record['block'], record['lane']
         to = slice(at, at + here.stop - here.start)
-        segments["slope"][to, lane] = slopes[here]
-        segments["tip_slope"][to, lane] = tips[here]
-        segments["chord"][to, :, lane] = arrays["segment_chord"][here]
-        segments["rest"][to, :, lane] = arrays["segment_rest"][here]
-        segments["n_lanes"][to] = np.maximum(segments["n_lanes"][to], lane + 1)
-        count, k = here.stop - here.start, int(record["n_coordinates"])
-        drawn = np.multiply.outer(slopes[here], [record["frame"][2], -record["frame"][1]])
+        segments['slope'][to, lane] = slopes[here]
+        segments['tip_slope'][to, lane] = tips[here]
+        segments['chord'][to, :, lane] = arrays['segment_chord'][here]
+        segments['rest'][to, :, lane] = arrays['segment_rest'][here]
+        segments['n_lanes'][to] = np.maximum(segments['n_lanes'][to], lane + 1)
+        count, k = here.stop - here.start, int(record['n_coordinates'])
+        drawn = np.multiply.outer(slopes[here], [record['frame'][2], -record['frame'][1]])
         if own_turn[branch] >= 0:
             drawn = turns[own_turn[branch] :][: count * k].reshape(count, k, 3)
-        segments["turn"][to, :k, :, lane] = drawn
-        record["steepest"][:k] = np.square(drawn).sum(axis=2).max(axis=0)
-        record["steepest"][0] = max(record["steepest"][0], np.square(tips[here]).max())
+        segments['turn'][to, :k, :, lane] = drawn
+        record['steepest'][:k] = np.square(drawn).sum(axis=2).max(axis=0)
+        record['steepest'][0] = max(record['steepest'][0], np.square(tips[here]).max())
     heads = head_records(branches, segments)
     work = np.zeros(len(branches), dtype=WORK)
     return _Kind(matrix, int(first[-1]), (branches, segments, heads, work))

@@ -10,12 +10,12 @@ size.
 
 from __future__ import annotations
 
-import hashlib
-import json
-import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+import hashlib
+import json
+import struct
 from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
@@ -26,7 +26,7 @@ from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 
 VERSION, FRAME_VERSION = 2, 1
-MAGIC = b"TSWD"
+MAGIC = b'TSWD'
 FRAME_KIND = 0x46
 WIND_UNIT = 0.005
 """Wind of one unit of its int16 in [m/s]."""
@@ -34,10 +34,10 @@ WIND_UNIT = 0.005
 PAUSED, BEYOND_SCALE, RESTARTED = 1, 2, 4
 """Flags of a frame: time stands still, a number was cut to its scale, the motion jumped."""
 
-_TYPES = {"f32": "<f4", "i32": "<i4", "u8": "u1", "i16": "<i2"}
+_TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
 _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
-_PREFIX = struct.Struct("<4sII")
-_FRAME = struct.Struct("<BBBxIIq3hH")
+_PREFIX = struct.Struct('<4sII')
+_FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
 
 Array = NDArray[Any]
@@ -62,7 +62,10 @@ class ToldPlace(TypedDict):
 
 
 class ToldHeader(TypedDict):
-    """Names and numbers of a tree or a scene, as JSON has them; ``doc/streaming.md`` tells each."""
+    """
+    Names and numbers of a tree or a scene, as JSON has them; ``doc/streaming.md`` tells
+    each.
+    """
 
     format: str
     name: str
@@ -138,7 +141,7 @@ class Description:
 
     def of_kind(self, number: int) -> dict[str, Array]:
         """Arrays of a kind by name."""
-        begin = f"{number}/"
+        begin = f'{number}/'
         return {
             name.removeprefix(begin): array
             for name, array in self.arrays.items()
@@ -148,7 +151,7 @@ class Description:
     @cached_property
     def scale(self) -> Floats:
         """What full scale of each coordinate of all trees stands for, (m,)."""
-        scales = [self.arrays[f"{tree['kind']}/basis_scale"] for tree in self.header["trees"]]
+        scales = [self.arrays[f'{tree["kind"]}/basis_scale'] for tree in self.header['trees']]
         return np.concatenate(scales).astype(np.float64)
 
 
@@ -167,14 +170,14 @@ def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]
     body, table = bytearray(), {}
     for name, value in arrays.items():
         array = np.ascontiguousarray(value)
-        kind = _NAMES[array.dtype.newbyteorder("<")]
-        table[name] = {"type": kind, "shape": list(array.shape), "offset": len(body)}
+        kind = _NAMES[array.dtype.newbyteorder('<')]
+        table[name] = {'type': kind, 'shape': list(array.shape), 'offset': len(body)}
         body += array.astype(_TYPES[kind]).tobytes()
         body += bytes(-len(body) % _ALIGNMENT)
-    content = {**header, "version": VERSION, "arrays": table}
+    content = {**header, 'version': VERSION, 'arrays': table}
     digest = hashlib.sha256(_json(content) + body).hexdigest()
-    text = _json({**content, "identity": digest[:16]})
-    text += b" " * (-(_PREFIX.size + len(text)) % _ALIGNMENT)
+    text = _json({**content, 'identity': digest[:16]})
+    text += b' ' * (-(_PREFIX.size + len(text)) % _ALIGNMENT)
     return _PREFIX.pack(MAGIC, VERSION, len(text)) + text + bytes(body)
 
 
@@ -189,24 +192,24 @@ def decode_description(data: bytes) -> Description:
 
     """
     if len(data) < _PREFIX.size or data[:4] != MAGIC:
-        raise _broken("it does not begin with TSWD")
+        raise _broken('it does not begin with TSWD')
     _, version, size = _PREFIX.unpack_from(data)
     if version != VERSION:
         raise FormatError(
-            f"a description of version {version}",
-            where="tree description",
-            cure=f"this program reads version {VERSION}: update the older side",
+            f'a description of version {version}',
+            where='tree description',
+            cure=f'this program reads version {VERSION}: update the older side',
         )
     begin = _PREFIX.size + size
     try:
         header = json.loads(data[_PREFIX.size : begin])
-        identity, table = header.pop("identity"), header["arrays"]
+        identity, table = header.pop('identity'), header['arrays']
         arrays = {name: _array(data[begin:], entry) for name, entry in table.items()}
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise _broken(f"{type(error).__name__}: {error}") from None
+        raise _broken(f'{type(error).__name__}: {error}') from None
     if hashlib.sha256(_json(header) + data[begin:]).hexdigest()[:16] != identity:
-        raise _broken("its content does not match its identity")
-    del header["arrays"]
+        raise _broken('its content does not match its identity')
+    del header['arrays']
     return Description(header, arrays, identity)
 
 
@@ -216,7 +219,7 @@ def encode_frame(frame: Frame) -> bytes:
     cut = np.clip(wind, -FULL_SCALE, FULL_SCALE)
     flags = frame.flags | (BEYOND_SCALE if (cut != wind).any() else 0)
     x, y, z = cut.astype(int).tolist()
-    coordinates = np.asarray(frame.coordinates, dtype="<i2")
+    coordinates = np.asarray(frame.coordinates, dtype='<i2')
     return (
         _FRAME.pack(
             FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
@@ -237,15 +240,17 @@ def decode_frame(data: bytes) -> Frame:
 
     """
     if len(data) < _FRAME.size or data[0] != FRAME_KIND:
-        raise FormatError("not a frame", where="tree state", cure="send frames of doc/streaming.md")
+        raise FormatError(
+            'not a frame', where='tree state', cure='send frames of doc/streaming.md'
+        )
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
     if version != FRAME_VERSION or len(data) != _FRAME.size + 2 * count:
         raise FormatError(
-            f"a frame of version {version}, {count} coordinates and {len(data)} bytes",
-            where="tree state",
-            cure=f"send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate",
+            f'a frame of version {version}, {count} coordinates and {len(data)} bytes',
+            where='tree state',
+            cure=f'send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate',
         )
-    coordinates = np.frombuffer(data, dtype="<i2", offset=_FRAME.size)
+    coordinates = np.frombuffer(data, dtype='<i2', offset=_FRAME.size)
     return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
 
 
@@ -266,23 +271,23 @@ def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
     """
     exact = np.rint(np.asarray(values) * (FULL_SCALE / np.asarray(scale)))
     cut = np.clip(exact, -FULL_SCALE, FULL_SCALE)
-    return cut.astype("<i2"), bool((cut != exact).any())
+    return cut.astype('<i2'), bool((cut != exact).any())
 
 
 def _json(content: Mapping[str, object]) -> bytes:
-    return json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
+    return json.dumps(content, sort_keys=True, separators=(',', ':')).encode()
 
 
 def _array(body: bytes, entry: Mapping[str, Any]) -> Array:
-    shape = tuple(int(size) for size in entry["shape"])
+    shape = tuple(int(size) for size in entry['shape'])
     count = int(np.prod(shape, dtype=np.int64))
-    flat = np.frombuffer(body, dtype=_TYPES[entry["type"]], count=count, offset=entry["offset"])
+    flat = np.frombuffer(body, dtype=_TYPES[entry['type']], count=count, offset=entry['offset'])
     return flat.reshape(shape)
 
 
 def _broken(why: str) -> FormatError:
     return FormatError(
-        f"not a whole description: {why}",
-        where="tree description",
-        cure="ask the sender for it again",
+        f'not a whole description: {why}',
+        where='tree description',
+        cure='ask the sender for it again',
     )

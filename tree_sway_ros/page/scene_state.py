@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
+from tree_sway_ros.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.scene.stand import Stand
 from tree_sway_ros.core.simulator.protocol import Simulator
@@ -16,14 +16,14 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.page.description import describe_scene
 from tree_sway_ros.page.protocol import (
     BEYOND_SCALE,
-    PAUSED,
-    RESTARTED,
-    Frame,
     decode_description,
     encode_frame,
+    Frame,
+    PAUSED,
     quantised,
+    RESTARTED,
 )
-from tree_sway_ros.page.told_kind import ToldKind, told_kinds
+from tree_sway_ros.page.told_kind import told_kinds, ToldKind
 
 MOST_SEGMENTS = 300_000
 """Of all kinds that are described: some 20 MB, once."""
@@ -65,7 +65,7 @@ class SceneState:
         self,
         simulator: Simulator,
         n_leaves: int = 0,
-        frame_id: str = "map",
+        frame_id: str = 'map',
         *,
         is_running: bool = True,
     ) -> None:
@@ -93,14 +93,14 @@ class SceneState:
             sizes[kind.numbers] = len(kind.basis.scale)
         segments = sum(kind.simulator.tree.n_segments for kind in self.kinds)
         for told, most, what in (
-            (segments, MOST_SEGMENTS, "segments in trees of one shape each"),
-            (int(sizes.sum()), MOST_COORDINATES, "coordinates"),
+            (segments, MOST_SEGMENTS, 'segments in trees of one shape each'),
+            (int(sizes.sum()), MOST_COORDINATES, 'coordinates'),
         ):
             if told > most:
                 raise ParameterError(
-                    f"a state of {told} {what}",
+                    f'a state of {told} {what}',
                     where=name,
-                    cure=f"tell of up to {most}, and of more by their poses",
+                    cure=f'tell of up to {most}, and of more by their poses',
                 )
         first = np.cumsum([0, *sizes])
         self._scale = np.zeros(first[-1])
@@ -116,7 +116,7 @@ class SceneState:
         """A name per coordinate: ``tree/c0``, or ``c0`` of a tree alone."""
         is_alone = len(self.names) == 1
         return [
-            f"c{i}" if is_alone else f"{name}/c{i}"
+            f'c{i}' if is_alone else f'{name}/c{i}'
             for name, size in zip(self.names, self._sizes, strict=True)
             for i in range(size)
         ]

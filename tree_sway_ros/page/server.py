@@ -11,18 +11,18 @@ the newest one, so that a slow client sees fewer frames, not old ones.
 from __future__ import annotations
 
 import asyncio
+from collections import deque
+from collections.abc import Callable, Mapping
 import contextlib
+from dataclasses import dataclass
+from importlib import resources
 import json
+from pathlib import Path
 import ssl
 import threading
 import time
-from collections import deque
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from importlib import resources
-from pathlib import Path
 
-from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp import web, WSCloseCode, WSMsgType
 from aiohttp.typedefs import Handler
 
 from tree_sway_ros.errors import TransportError
@@ -43,10 +43,10 @@ STATUS_PERIOD = 0.5
 _START_TIMEOUT = 10.0
 _SEND_TIMEOUT = 5.0
 _HEADERS = {
-    "Content-Security-Policy": "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
-    "Cache-Control": "no-cache",
+    'Content-Security-Policy': "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
+    'X-Content-Type-Options': 'nosniff',
+    'Referrer-Policy': 'no-referrer',
+    'Cache-Control': 'no-cache',
 }
 
 
@@ -70,11 +70,11 @@ class PageSettings:
 
     """
 
-    address: str = "127.0.0.1"
+    address: str = '127.0.0.1'
     port: int = 8765
-    token: str = ""
-    certificate: str = ""
-    private_key: str = ""
+    token: str = ''
+    certificate: str = ''
+    private_key: str = ''
     max_clients: int = 64
     origins: tuple[str, ...] = ()
 
@@ -90,7 +90,7 @@ class _Client:
         self.sent = -1
         self.wake = asyncio.Event()
         self.texts: deque[str] = deque(maxlen=16)
-        self.description = b""
+        self.description = b''
         self.last_heard = time.monotonic()
 
 
@@ -125,17 +125,17 @@ class PageServer:
         self.settings = settings
         self._panel = panel or ControlPanel()
         self._status = status or dict
-        self._description = b""
-        self._frame: tuple[int, bytes] = (-1, b"")
+        self._description = b''
+        self._frame: tuple[int, bytes] = (-1, b'')
         self._clients: set[_Client] = set()
         self._loop = asyncio.new_event_loop()
         self._started = threading.Event()
         self._failure: Exception | None = None
         self._ending: asyncio.Event | None = None
         self._is_woken = False
-        self._counts = dict.fromkeys(("frames", "sent", "bytes", "refused", "closed_idle"), 0)
+        self._counts = dict.fromkeys(('frames', 'sent', 'bytes', 'refused', 'closed_idle'), 0)
         self._doors = Doorkeeper(4 * settings.max_clients)
-        self._thread = threading.Thread(target=self._run, name="page", daemon=True)
+        self._thread = threading.Thread(target=self._run, name='page', daemon=True)
         self.port = settings.port
 
     def start(self) -> None:
@@ -152,11 +152,11 @@ class PageServer:
         self._started.wait(_START_TIMEOUT)
         if self._failure is not None:
             self._thread.join()
-            where = f"{self.settings.address}:{self.settings.port}"
+            where = f'{self.settings.address}:{self.settings.port}'
             raise TransportError(
-                f"the page cannot be served ({self._failure})",
+                f'the page cannot be served ({self._failure})',
                 where=where,
-                cure="choose another port, or end what uses this one",
+                cure='choose another port, or end what uses this one',
             ) from self._failure
 
     def close(self) -> None:
@@ -175,11 +175,11 @@ class PageServer:
     @property
     def url(self) -> str:
         """Where to point a browser."""
-        scheme = "https" if self.settings.certificate else "http"
-        token = f"?token={self.settings.token}" if self.settings.token else ""
+        scheme = 'https' if self.settings.certificate else 'http'
+        token = f'?token={self.settings.token}' if self.settings.token else ''
         address = self.settings.address
-        host = f"[{address}]" if ":" in address else address
-        return f"{scheme}://{host}:{self.port}/{token}"
+        host = f'[{address}]' if ':' in address else address
+        return f'{scheme}://{host}:{self.port}/{token}'
 
     @property
     def n_clients(self) -> int:
@@ -214,7 +214,7 @@ class PageServer:
         """
         if values is not None:
             self._panel.update(values)
-            content = {**content, "values": self._panel.values()}
+            content = {**content, 'values': self._panel.values()}
         self._call(lambda: self._tell_all(content))
 
     def _call(self, action: Callable[[], None]) -> None:
@@ -245,11 +245,11 @@ class PageServer:
     async def _serve(self) -> None:
         self._ending = asyncio.Event()
         app = web.Application(middlewares=[self._guard])
-        app.router.add_get("/", self._index)
-        app.router.add_get("/stream", self._stream)
-        app.router.add_get("/healthz", self._health)
-        app.router.add_get("/metrics", self._metrics)
-        app.router.add_static("/static", _static_folder(), show_index=False)
+        app.router.add_get('/', self._index)
+        app.router.add_get('/stream', self._stream)
+        app.router.add_get('/healthz', self._health)
+        app.router.add_get('/metrics', self._metrics)
+        app.router.add_static('/static', _static_folder(), show_index=False)
         app.on_response_prepare.append(_add_headers)
         runner = web.AppRunner(
             app, access_log=None, keepalive_timeout=15.0, lingering_time=0.5, shutdown_timeout=1.0
@@ -269,19 +269,19 @@ class PageServer:
             teller.cancel()
             server.close()
             for client in tuple(self._clients):
-                await client.socket.close(code=WSCloseCode.GOING_AWAY, message=b"server ends")
+                await client.socket.close(code=WSCloseCode.GOING_AWAY, message=b'server ends')
             await runner.cleanup()
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         self._doors.let_in(request.protocol)
         if request.can_read_body:
-            self._counts["refused"] += 1
-            answer = web.Response(status=413, text="refused: nothing here takes a body\n")
+            self._counts['refused'] += 1
+            answer = web.Response(status=413, text='refused: nothing here takes a body\n')
             answer.force_close()
             return answer
-        if request.path not in ("/healthz",) and not request.path.startswith("/static/"):
-            given = request.query.get("token", "")
+        if request.path not in ('/healthz',) and not request.path.startswith('/static/'):
+            given = request.query.get('token', '')
             settings = self.settings
             why = refusal(
                 request.headers,
@@ -291,41 +291,41 @@ class PageServer:
                 origins=settings.origins,
             )
             if why is not None:
-                self._counts["refused"] += 1
-                return web.Response(status=403, text=f"refused: {why}\n")
+                self._counts['refused'] += 1
+                return web.Response(status=403, text=f'refused: {why}\n')
         response: web.StreamResponse = await handler(request)
         return response
 
     async def _index(self, _request: web.Request) -> web.StreamResponse:
-        return web.FileResponse(_static_folder() / "index.html")
+        return web.FileResponse(_static_folder() / 'index.html')
 
     async def _health(self, _request: web.Request) -> web.Response:
-        return web.json_response({"status": "ok", "described": bool(self._description)})
+        return web.json_response({'status': 'ok', 'described': bool(self._description)})
 
     async def _metrics(self, _request: web.Request) -> web.Response:
         counts = {
-            "tree_sway_page_clients": ("gauge", "Pages connected.", len(self._clients)),
-            "tree_sway_page_connections": ("gauge", "Sockets open.", self._doors.n_open()),
-            "tree_sway_page_frames_total": ("counter", "Frames published.", self._frame[0] + 1),
-            "tree_sway_page_sent_total": ("counter", "Frames sent.", self._counts["sent"]),
-            "tree_sway_page_sent_bytes_total": ("counter", "Bytes of them.", self._counts["bytes"]),
-            "tree_sway_page_refused_total": (
-                "counter", "Requests and messages refused.", self._counts["refused"],
+            'tree_sway_page_clients': ('gauge', 'Pages connected.', len(self._clients)),
+            'tree_sway_page_connections': ('gauge', 'Sockets open.', self._doors.n_open()),
+            'tree_sway_page_frames_total': ('counter', 'Frames published.', self._frame[0] + 1),
+            'tree_sway_page_sent_total': ('counter', 'Frames sent.', self._counts['sent']),
+            'tree_sway_page_sent_bytes_total': ('counter', 'Their bytes.', self._counts['bytes']),
+            'tree_sway_page_refused_total': (
+                'counter', 'Requests and messages refused.', self._counts['refused'],
             ),
-            "tree_sway_page_closed_total": (
-                "counter", "Connections closed as idle, slow or too many.",
-                self._counts["closed_idle"] + self._doors.n_closed,
+            'tree_sway_page_closed_total': (
+                'counter', 'Connections closed as idle, slow or too many.',
+                self._counts['closed_idle'] + self._doors.n_closed,
             ),
         }  # fmt: skip
         lines = []
         for name, (kind, text, value) in counts.items():
-            lines += [f"# HELP {name} {text}", f"# TYPE {name} {kind}", f"{name} {value}"]
-        return web.Response(text="\n".join(lines) + "\n")
+            lines += [f'# HELP {name} {text}', f'# TYPE {name} {kind}', f'{name} {value}']
+        return web.Response(text='\n'.join(lines) + '\n')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= self.settings.max_clients:
-            self._counts["refused"] += 1
-            return web.Response(status=503, text="refused: too many pages are connected\n")
+            self._counts['refused'] += 1
+            return web.Response(status=503, text='refused: too many pages are connected\n')
         socket = web.WebSocketResponse(
             compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=2.0
         )
@@ -339,8 +339,8 @@ class PageServer:
                 client.last_heard = time.monotonic()
                 if message.type is WSMsgType.TEXT and self._take(client, message.data):
                     continue
-                self._counts["refused"] += 1
-                await socket.close(code=WSCloseCode.POLICY_VIOLATION, message=b"not understood")
+                self._counts['refused'] += 1
+                await socket.close(code=WSCloseCode.POLICY_VIOLATION, message=b'not understood')
         finally:
             self._clients.discard(client)
             sender.cancel()
@@ -348,7 +348,7 @@ class PageServer:
 
     def _hello(self) -> str:
         return json.dumps(
-            {"hello": {"controls": self._panel.told(), "address": self.settings.address}}
+            {'hello': {'controls': self._panel.told(), 'address': self.settings.address}}
         )
 
     def _take(self, client: _Client, text: str) -> bool:
@@ -359,28 +359,28 @@ class PageServer:
             return False
         if not isinstance(message, dict):
             return False
-        credit, rate, ping = message.get("credit"), message.get("rate"), message.get("ping")
+        credit, rate, ping = message.get('credit'), message.get('rate'), message.get('ping')
         if isinstance(credit, int) and not isinstance(credit, bool):
             client.credit = max(0, min(client.credit + credit, MOST_CREDIT))
         if isinstance(rate, int | float) and not isinstance(rate, bool) and 0.0 < rate <= 1000.0:
             client.period = 1.0 / rate
         if isinstance(ping, int | float):
-            client.texts.append(json.dumps({"pong": ping, "time": time.time_ns() / 1e6}))
-        if "set" in message:
-            self._change(client, message["set"])
+            client.texts.append(json.dumps({'pong': ping, 'time': time.time_ns() / 1e6}))
+        if 'set' in message:
+            self._change(client, message['set'])
         client.wake.set()
         return True
 
     def _change(self, client: _Client, change: object) -> None:
         change = change if isinstance(change, dict) else {}
-        name = change.get("name")
-        why = self._panel.set(name, change.get("value"))
+        name = change.get('name')
+        why = self._panel.set(name, change.get('value'))
         if why is not None:
-            self._counts["refused"] += 1
-            told = {"name": str(name)[:80], "reason": why[:400]}
-            client.texts.append(json.dumps({"refused": told, "values": self._panel.values()}))
+            self._counts['refused'] += 1
+            told = {'name': str(name)[:80], 'reason': why[:400]}
+            client.texts.append(json.dumps({'refused': told, 'values': self._panel.values()}))
             return
-        self._tell_all({"values": self._panel.values()})
+        self._tell_all({'values': self._panel.values()})
 
     def _tell_all(self, content: Mapping[str, object]) -> None:
         text = json.dumps(content)
@@ -396,7 +396,7 @@ class PageServer:
             try:
                 await asyncio.wait_for(self._send_due(client), _SEND_TIMEOUT)
             except (ConnectionError, RuntimeError, asyncio.TimeoutError):
-                self._counts["closed_idle"] += 1
+                self._counts['closed_idle'] += 1
                 self._drop(client)
                 return
 
@@ -417,8 +417,8 @@ class PageServer:
         client.next_due = max(client.next_due + client.period, now)
         client.credit -= 1
         client.sent = number
-        self._counts["sent"] += 1
-        self._counts["bytes"] += len(frame)
+        self._counts['sent'] += 1
+        self._counts['bytes'] += len(frame)
         await client.socket.send_bytes(frame)
 
     async def _tell_status(self) -> None:
@@ -429,10 +429,10 @@ class PageServer:
             silent_since = time.monotonic() - IDLE_TIME
             for client in tuple(self._clients):
                 if client.last_heard < silent_since:
-                    self._counts["closed_idle"] += 1
+                    self._counts['closed_idle'] += 1
                     self._drop(client)
             if self._clients:
-                self._tell_all({"status": {**self._status(), "clients": len(self._clients)}})
+                self._tell_all({'status': {**self._status(), 'clients': len(self._clients)}})
 
     def _drop(self, client: _Client) -> None:
         """Close a client that does not read, without waiting for it."""
@@ -442,7 +442,7 @@ class PageServer:
 
 
 def _static_folder() -> Path:
-    return Path(str(resources.files("tree_sway_ros.page") / "static"))
+    return Path(str(resources.files('tree_sway_ros.page') / 'static'))
 
 
 async def _add_headers(_request: web.Request, response: web.StreamResponse) -> None:

@@ -9,10 +9,10 @@ while the first goes on, and taken over between two steps.
 
 from __future__ import annotations
 
-import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+import threading
+import time
 
 from tree_sway_ros.core.scene.demand import set_demand
 from tree_sway_ros.core.scene.make import simulators_of
@@ -49,7 +49,7 @@ class Choices:
     """
 
     tree: str
-    count: str = "1"
+    count: str = '1'
     fidelity: str = Settings().model
     damping_ratio: float = 0.0
 
@@ -106,7 +106,7 @@ class Session:
         self._last = time.perf_counter()
         self._builder: threading.Thread | None = None
         self._wanted: Choices | None = None
-        self._thread = threading.Thread(target=self._run, name="session", daemon=True)
+        self._thread = threading.Thread(target=self._run, name='session', daemon=True)
         self.failure: Exception | None = None
 
     def serve(self, server: PageServer) -> None:
@@ -136,38 +136,38 @@ class Session:
             A change that this session does not know, or cannot carry out now.
 
         """
-        if name == "pause":
+        if name == 'pause':
             self._is_paused = bool(value)
-        elif name == "reset":
+        elif name == 'reset':
             self._resets = True
-        elif name == "tolerance":
+        elif name == 'tolerance':
             self._tolerance = float(value or 0.0)
             set_demand(simulators_of(self._scene.simulator), tolerance=self._tolerance)
-        elif name in ("mean_speed", "intensity", "bearing_to"):
+        elif name in ('mean_speed', 'intensity', 'bearing_to'):
             if not isinstance(self.wind, SimulatedWind):
                 raise ParameterError(
-                    "the wind is a record", where=name, cure="start without --wind"
+                    'the wind is a record', where=name, cure='start without --wind'
                 )
             self.wind.set(name, float(value or 0.0))
         elif name in Choices.__dataclass_fields__:
             changed = {name: value}
             self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
         else:
-            raise ParameterError(f"'{name}' cannot be changed", where="page")
+            raise ParameterError(f"'{name}' cannot be changed", where='page')
 
     def status(self) -> dict[str, object]:
         """What the page shows beside the tree."""
         simulator = self._scene.simulator
         return {
-            "model": simulator.model,
-            "rate": round(1.0 / max(self._spacing, 1e-6), 1),
-            "work_us": round(1e6 * self._work, 1),
-            "late": self._late,
-            "branches": self._scene.n_branches,
-            "segments": self._scene.n_segments,
-            "solved": simulator.n_solved,
-            "building": self._wanted is not None,
-            "paused": self._is_paused,
+            'model': simulator.model,
+            'rate': round(1.0 / max(self._spacing, 1e-6), 1),
+            'work_us': round(1e6 * self._work, 1),
+            'late': self._late,
+            'branches': self._scene.n_branches,
+            'segments': self._scene.n_segments,
+            'solved': simulator.n_solved,
+            'building': self._wanted is not None,
+            'paused': self._is_paused,
         }
 
     def _made(self, choices: Choices) -> SceneState:
@@ -191,11 +191,11 @@ class Session:
                 self.choices = wanted
                 refused = None
             except TreeSwayError as error:
-                refused = {"name": "", "reason": str(error)}
+                refused = {'name': '', 'reason': str(error)}
             if self._wanted is wanted:
                 self._wanted = None
             if refused is not None and self._server is not None:
-                self._server.tell({"refused": refused}, vars(self.choices))
+                self._server.tell({'refused': refused}, vars(self.choices))
 
     def _run(self) -> None:
         try:

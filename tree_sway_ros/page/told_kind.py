@@ -114,7 +114,7 @@ def _coordinates(ways: list[tuple[Floats, TreeSimulator]]) -> Floats:
 
 def _shape(simulator: TreeSimulator) -> bytes:
     """What is the same of trees that are turned about the vertical, to a micrometre."""
-    tree, chord = simulator.tree, simulator.joints["frame"][:, 0, 2]
+    tree, chord = simulator.tree, simulator.joints['frame'][:, 0, 2]
     return np.round([*chord, *tree.length, *tree.base_diameter, *tree.tip_diameter], 6).tobytes()
 
 
@@ -123,19 +123,19 @@ def _turned(kind: ToldKind, simulator: TreeSimulator) -> tuple[float, Floats] | 
     How far a tree is turned from the first of a kind, and the way from its key rotations to the
     coordinates; None if it is not the same tree.
 
-    Each branch has axes e1, e2 and further key rotations of its own choice: what the solver says is
-    turned into those of the first tree.
+    Each branch has axes e1, e2 and further key rotations of its own choice: what the solver says
+    is turned into those of the first tree.
     """
     first, joints = kind.simulator, simulator.joints
-    frames = first.joints["frame"]
-    chord, other = frames[:, 0], joints["frame"][:, 0]
+    frames = first.joints['frame']
+    chord, other = frames[:, 0], joints['frame'][:, 0]
     sine = (chord[:, 0] * other[:, 1] - chord[:, 1] * other[:, 0]).sum()
     angle = float(np.arctan2(sine, (chord[:, :2] * other[:, :2]).sum()))
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     with_it = frames @ turn
     slopes = [
-        each.bank.segments[name] for name in ("slope", "tip_slope") for each in (first, simulator)
+        each.bank.segments[name] for name in ('slope', 'tip_slope') for each in (first, simulator)
     ]
     if not np.allclose(with_it[:, 0], other, atol=1e-6) or not all(
         a.shape == b.shape and np.allclose(a, b, atol=1e-6)
@@ -152,25 +152,28 @@ def _turned(kind: ToldKind, simulator: TreeSimulator) -> tuple[float, Floats] | 
         if told.shape != own.shape:
             return None
         rows = told.reshape(len(told) // 3, 3, told.shape[1])
-        told = np.einsum("sak,ab->sbk", rows, turn).reshape(own.shape)
+        told = np.einsum('sak,ab->sbk', rows, turn).reshape(own.shape)
         mix = np.eye(2 + own.shape[1])
         # Both say one rotation vector, x e2 - y e1.
-        axes, own_axes = (signs * each[branch][[2, 1]] for each in (with_it, joints["frame"]))
+        axes, own_axes = (signs * each[branch][[2, 1]] for each in (with_it, joints['frame']))
         mix[:2, :2] = axes @ own_axes.T
         if own.shape[1]:
             mix[2:, 2:], _, rank, _ = np.linalg.lstsq(told, own, rcond=1e-4)
             fits = np.allclose(told @ mix[2:, 2:], own, atol=1e-3 * np.abs(own).max())
             if rank < own.shape[1] or not fits:
                 return None
-        keys = slice(joint["coordinate"], joint["coordinate"] + len(mix))
+        keys = slice(joint['coordinate'], joint['coordinate'] + len(mix))
         projection[:, keys] = kind.basis.projection[:, keys] @ mix
     return angle, projection
 
 
 def _further_turns(joint: np.void, segments: NDArray[np.void]) -> Floats:
     """Vectors that tell what a unit of each further key rotation of a branch does, (3 m, k)."""
-    k = int(joint["n_coordinates"])
-    rows = [*turns_of_segments(joint, segments), *(joint[n][:k] for n in ("reach", "push", "turn"))]
+    k = int(joint['n_coordinates'])
+    rows = [
+        *turns_of_segments(joint, segments),
+        *(joint[n][:k] for n in ('reach', 'push', 'turn')),
+    ]
     return np.stack(rows)[:, 2:].transpose(0, 2, 1).reshape(3 * len(rows), -1)
 
 
@@ -179,9 +182,9 @@ def _runner(simulator: TreeSimulator, is_running: bool) -> SwaySimulator:
     Simulator to find the basis on: itself, unless it runs or another has the same key rotations at
     less cost.
     """
-    is_cheap = isinstance(simulator, SwaySimulator) and simulator.model != "coupled"
+    is_cheap = isinstance(simulator, SwaySimulator) and simulator.model != 'coupled'
     if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:
         return simulator
-    model = simulator.model if is_cheap else "modes"
+    model = simulator.model if is_cheap else 'modes'
     settings = replace(simulator.settings, model=model, n_modes=None)
     return SwaySimulator(simulator.tree, simulator.species, settings)

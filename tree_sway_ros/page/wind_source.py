@@ -46,7 +46,7 @@ class SimulatedWind:
         bearing_to: float = 0.5 * math.pi,
         seed: int = 0,
     ) -> None:
-        self.values = {"mean_speed": speed, "intensity": intensity, "bearing_to": bearing_to}
+        self.values = {'mean_speed': speed, 'intensity': intensity, 'bearing_to': bearing_to}
         self._seed = seed
         self._model = self._made()
 
@@ -65,9 +65,9 @@ class SimulatedWind:
     def _made(self) -> AnemometerModel:
         values = self.values
         return AnemometerModel(
-            values["mean_speed"],
-            bearing_to=values["bearing_to"],
-            intensity=values["intensity"],
+            values['mean_speed'],
+            bearing_to=values['bearing_to'],
+            intensity=values['intensity'],
             rate=_RATE,
             seed=self._seed,
         )

@@ -14,8 +14,8 @@ The line between sites: keys of Zenoh, whose payloads are messages of ROS, JSON,
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
+import json
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError
@@ -45,24 +45,24 @@ class Line:
             import zenoh
         except ImportError as error:
             raise MissingDependencyError(
-                "the relay needs eclipse-zenoh", cure="pip install eclipse-zenoh"
+                'the relay needs eclipse-zenoh', cure='pip install eclipse-zenoh'
             ) from error
-        self._prefix = prefix.strip("/")
+        self._prefix = prefix.strip('/')
         self._kept: list[Any] = []
         try:
             config = zenoh.Config()
             if listen or connect:
-                config.insert_json5("scouting/multicast/enabled", "false")
-            config.insert_json5("listen/endpoints", json.dumps(list(listen)))
-            config.insert_json5("connect/endpoints", json.dumps(list(connect)))
+                config.insert_json5('scouting/multicast/enabled', 'false')
+            config.insert_json5('listen/endpoints', json.dumps(list(listen)))
+            config.insert_json5('connect/endpoints', json.dumps(list(connect)))
             self._session: Any = zenoh.open(config)
-            self._key("x")
+            self._key('x')
         except zenoh.ZError as error:
-            where = ", ".join([*listen, *connect])
+            where = ', '.join([*listen, *connect])
             raise TransportError(
-                f"the line cannot be opened ({error})",
+                f'the line cannot be opened ({error})',
                 where=where,
-                cure="give endpoints as tcp/HOST:PORT, one side listening",
+                cure='give endpoints as tcp/HOST:PORT, one side listening',
             ) from error
 
     def put(self, key: str, data: bytes) -> None:
@@ -105,4 +105,4 @@ class Line:
         self.close()
 
     def _key(self, key: str) -> str:
-        return f"{self._prefix}/{key}"
+        return f'{self._prefix}/{key}'

@@ -10,10 +10,10 @@ come. One that joins later sets a snapshot of another, or waits until damping ha
 from __future__ import annotations
 
 import base64
-import json
-import threading
 from collections import deque
 from collections.abc import Callable
+import json
+import threading
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,19 +54,19 @@ class Site:
     def identity(self) -> str:
         """What sites must agree in, as JSON."""
         simulator = self.simulator
-        told = {"tree": simulator.tree.name, "digest": simulator.digest(), "rate": self.rate}
-        return json.dumps({**told, "model": simulator.model})
+        told = {'tree': simulator.tree.name, 'digest': simulator.digest(), 'rate': self.rate}
+        return json.dumps({**told, 'model': simulator.model})
 
     def check(self, identity: str) -> None:
         """Raise a `StateError` if another site has another tree, model, settings or rate."""
         theirs, own = json.loads(identity), json.loads(self.identity())
-        different = [f"{key} {theirs.get(key)}, not {own[key]}" for key in own
+        different = [f'{key} {theirs.get(key)}, not {own[key]}' for key in own
                      if theirs.get(key) != own[key]]  # fmt: skip
         if different:
             raise StateError(
-                f"the other site has {'; '.join(different)}",
+                f'the other site has {"; ".join(different)}',
                 where=self.simulator.tree.name,
-                cure="open the same tree with the same settings and release at both sites",
+                cure='open the same tree with the same settings and release at both sites',
             )
 
     def add_wind(self, stamp: int, vector: ArrayLike) -> None:
@@ -85,10 +85,10 @@ class Site:
         """State, and the wind from its time on, as JSON; empty before the first step."""
         with self._lock:
             if self._index is None:
-                return ""
+                return ''
             state = base64.b64encode(self.simulator.state().to_bytes()).decode()
             wind = [[stamp, *vector.tolist()] for stamp, vector in self._samples]
-            return json.dumps({"step": self._index, "wind": wind, "state": state})
+            return json.dumps({'step': self._index, 'wind': wind, 'state': state})
 
     def join(self, snapshot: str) -> None:
         """
@@ -97,10 +97,10 @@ class Site:
         """
         try:
             told = json.loads(snapshot)
-            state = TreeState.from_bytes(base64.b64decode(told["state"]))
-            index, wind = int(told["step"]), np.array(told["wind"], dtype=object).reshape(-1, 4)
+            state = TreeState.from_bytes(base64.b64decode(told['state']))
+            index, wind = int(told['step']), np.array(told['wind'], dtype=object).reshape(-1, 4)
         except (ValueError, KeyError, TypeError) as error:
-            raise StateError(f"a snapshot that cannot be read ({error})") from error
+            raise StateError(f'a snapshot that cannot be read ({error})') from error
         with self._lock:
             self.simulator.set_state(state)
             own = [each for each in self._samples if not len(wind) or each[0] > wind[-1][0]]

@@ -1,7 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A sample of wind as the CDR bytes of ``geometry_msgs/Vector3Stamped``, written and read without ROS.
+A sample of wind as the CDR bytes of ``geometry_msgs/Vector3Stamped``, written and read without
+ROS.
 
 The bytes are those that a Zenoh bridge of ROS 2 carries, so that it may stand at either end.
 """
@@ -13,15 +14,15 @@ import struct
 
 from tree_sway_ros.errors import FormatError
 
-_HEAD = b"\0\1\0\0"  # CDR, little endian
-_STAMP = struct.Struct("<iII")
-_VECTOR = struct.Struct("<3d")
+_HEAD = b'\0\1\0\0'  # CDR, little endian
+_STAMP = struct.Struct('<iII')
+_VECTOR = struct.Struct('<3d')
 _SECOND = 1_000_000_000
 
 
-def encode_wind(stamp: int, vector: tuple[float, float, float], frame_id: str = "map") -> bytes:
+def encode_wind(stamp: int, vector: tuple[float, float, float], frame_id: str = 'map') -> bytes:
     """Write a sample of a time [ns] in [m/s]."""
-    name = frame_id.encode() + b"\0"
+    name = frame_id.encode() + b'\0'
     body = _STAMP.pack(*divmod(stamp, _SECOND), len(name)) + name
     return _HEAD + body + bytes(-len(body) % 8) + _VECTOR.pack(*vector)
 
@@ -35,7 +36,7 @@ def decode_wind(data: bytes) -> tuple[int, tuple[float, float, float]]:
         begin = _STAMP.size + length
         x, y, z = _VECTOR.unpack_from(data, len(_HEAD) + begin + -begin % 8)
     except struct.error as error:
-        raise FormatError(f"{len(data)} bytes that hold no wind ({error})") from error
+        raise FormatError(f'{len(data)} bytes that hold no wind ({error})') from error
     if data[:2] != _HEAD[:2] or not all(map(math.isfinite, (x, y, z))):
-        raise FormatError("a wind that is not finite, or not little endian")
+        raise FormatError('a wind that is not finite, or not little endian')
     return second * _SECOND + nanosecond, (x, y, z)

@@ -3,9 +3,9 @@
 """
 Trees to measure on: three of 40 branches, one of 121, and plain stems, made of numbers alone.
 
-How a tree sways is decided by how children compare with their parent. A child of length ratio l and
-diameter ratio d has d / l^2 times its parent's frequency: near 1 they swing together, and coupling
-is strongest.
+How a tree sways is decided by how children compare with their parent. A child of length ratio l
+and diameter ratio d has d / l^2 times its parent's frequency: near 1 they swing together, and
+coupling is strongest.
 
 """
 
@@ -59,7 +59,7 @@ def forked_tree(
         _Order(6.0 * length_ratio**k, 0.12 * diameter_ratio**k, 0.048 * diameter_ratio**k, thirds)
         for k in range(generations)
     ]
-    return _grown(orders, segments, 50.0, f"forked {length_ratio:g} {diameter_ratio:g}")
+    return _grown(orders, segments, 50.0, f'forked {length_ratio:g} {diameter_ratio:g}')
 
 
 def broom_tree(*, segments: int = 6) -> Tree:
@@ -79,7 +79,7 @@ def broom_tree(*, segments: int = 6) -> Tree:
         _Order(0.9, 0.022, 0.013, (1 / 2, 5 / 6)),
         _Order(0.4, 0.013, 0.008, ()),
     ]
-    return _grown(orders, segments, 56.0, "broom")
+    return _grown(orders, segments, 56.0, 'broom')
 
 
 def tapered_stem(
@@ -105,7 +105,7 @@ def tapered_stem(
     nodes = np.linspace(0.0, length, len(widths))[:, None] * np.asarray(direction)
     pair = np.stack([widths[:-1], widths[1:]], axis=1)
     parent = np.arange(-1, len(widths) - 2)
-    return tree_from_segments(nodes[:-1], nodes[1:], pair, parent=parent, name="stem")
+    return tree_from_segments(nodes[:-1], nodes[1:], pair, parent=parent, name='stem')
 
 
 class _Order(NamedTuple):

@@ -48,8 +48,8 @@ def resegment(
     Raises
     ------
     ParameterError
-        If not just one of the two is given, or it asks for less than 1 or more than `MOST_SEGMENTS`
-        a branch.
+        If not just one of the two is given, or it asks for less than 1 or more than
+        `MOST_SEGMENTS` a branch.
 
     """
     counts = _wished(tree, segments_per_branch, max_segment_length)
@@ -60,7 +60,7 @@ def resegment(
     parent[0] = -1
     for branch in range(1, tree.n_branches):
         carrier = int(tree.branch_parent[branch])
-        carrying = np.searchsorted(cuts[carrier], _place(tree, branch), side="left") - 1
+        carrying = np.searchsorted(cuts[carrier], _place(tree, branch), side='left') - 1
         parent[first[branch]] = first[carrier] + np.clip(carrying, 0, counts[carrier] - 1)
     return tree_from_segments(
         *(np.concatenate(column) for column in zip(*pieces, strict=True)),
@@ -76,9 +76,9 @@ def _wished(tree: Tree, number: int | None, longest: float | None) -> Ints:
     """Segments of each branch, (b,)."""
     if (number is None) == (longest is None):
         raise ParameterError(
-            "a tree is cut by number or by length",
-            where="resegment",
-            cure="give either segments_per_branch or max_segment_length",
+            'a tree is cut by number or by length',
+            where='resegment',
+            cure='give either segments_per_branch or max_segment_length',
         )
     if longest is None:
         wished = np.full(tree.n_branches, float(number or 0))
@@ -90,14 +90,14 @@ def _wished(tree: Tree, number: int | None, longest: float | None) -> Ints:
         wished = np.where(wished < np.diff(tree.branch_first), wished, keeping)
     else:
         raise ParameterError(
-            f"segments of {longest} m", where="max_segment_length", cure="give a length above 0"
+            f'segments of {longest} m', where='max_segment_length', cure='give a length above 0'
         )
     most = float(wished.max())
     if not (1.0 <= float(wished.min()) and most <= MOST_SEGMENTS):
         raise ParameterError(
-            f"{most:g} segments in a branch",
-            where="resegment",
-            cure=f"ask for 1 to {MOST_SEGMENTS}",
+            f'{most:g} segments in a branch',
+            where='resegment',
+            cure=f'ask for 1 to {MOST_SEGMENTS}',
         )
     return wished.astype(np.int64)
 

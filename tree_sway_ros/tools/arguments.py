@@ -1,6 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments that commands share: TREE and its wood, its leaves, the wind, the model, the output."""
+"""Arguments that commands share: TREE and its wood, its leaves, the wind, the model, the
+output.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,8 @@ from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind, WindSour
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.tools.progress import waiting
 
-OUTPUT_HELP = "file to write; its suffix names the format: .yaml, .obj, .glb, .gltf"
-_TREE = "benjamina, goldcrest, broadleaf, or a file"
+OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .obj, .glb, .gltf'
+_TREE = 'benjamina, goldcrest, broadleaf, or a file'
 _DRAWN = 1500
 
 
@@ -41,24 +43,25 @@ def add_tree_arguments(
     out.
     """
     add = parser.add_argument
-    kind = f"{_TREE}{' of a tree or a forest' * forests}"
+    kind = f'{_TREE}{" of a tree or a forest" * forests}'
     if default is None:
-        add("tree", metavar="TREE", help=kind)
+        add('tree', metavar='TREE', help=kind)
     else:
-        add("tree", metavar="TREE", nargs="?", default=default, help=f"{kind} (%(default)s)")
-    add("--seed", type=int, default=0, help="seed of a built-in tree (%(default)s)")
+        add('tree', metavar='TREE', nargs='?', default=default, help=f'{kind} (%(default)s)')
+    add('--seed', type=int, default=0, help='seed of a built-in tree (%(default)s)')
     add(
-        "--species", help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}"
+        '--species',
+        help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}",
     )
-    add("--modulus", type=float, metavar="PA", help="Young's modulus of green wood [Pa]")
-    add("--density", type=float, metavar="RHO", help="green density [kg/m^3]")
+    add('--modulus', type=float, metavar='PA', help="Young's modulus of green wood [Pa]")
+    add('--density', type=float, metavar='RHO', help='green density [kg/m^3]')
     add(
-        "--option",
-        action="append",
+        '--option',
+        action='append',
         default=[],
-        metavar="NAME=VALUE",
-        help="how to read its file, for example twig_diameter=0.004; may be repeated "
-        "(doc/trees.md)",
+        metavar='NAME=VALUE',
+        help='how to read its file, for example twig_diameter=0.004; may be repeated '
+        '(doc/trees.md)',
     )
 
 
@@ -69,7 +72,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
     density that is not positive.
     """
-    with waiting(f"opening {arguments.tree}"):
+    with waiting(f'opening {arguments.tree}'):
         opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
     return _of_wood(opened, arguments)
 
@@ -80,15 +83,15 @@ def opened_scene(arguments: argparse.Namespace) -> TreeFile | ForestFile:
 
     Raises as `opened_tree`, and for values of one tree where there are several.
     """
-    with waiting(f"opening {arguments.tree}"):
+    with waiting(f'opening {arguments.tree}'):
         scene = open_scene(arguments.tree, arguments.seed, **_options(arguments))
     if isinstance(scene, TreeFile):
         return _of_wood(scene, arguments)
     if _wood(arguments):
         raise ParameterError(
-            "modulus or density for a whole forest",
+            'modulus or density for a whole forest',
             where=scene.source,
-            cure="say --species, or give trees files with wood of their own",
+            cure='say --species, or give trees files with wood of their own',
         )
     if not arguments.species:
         return scene
@@ -102,12 +105,12 @@ def _of_wood(tree_file: TreeFile, arguments: argparse.Namespace) -> TreeFile:
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
     """Values in place of those of the species."""
-    given = {name: getattr(arguments, name) for name in ("modulus", "density")}
+    given = {name: getattr(arguments, name) for name in ('modulus', 'density')}
     changed = {name: value for name, value in given.items() if value is not None}
     for name, value in changed.items():
-        if not 0.0 < value < float("inf"):
+        if not 0.0 < value < float('inf'):
             raise ParameterError(
-                f"{value:g} is not positive", where=f"--{name}", cure="give an SI value"
+                f'{value:g} is not positive', where=f'--{name}', cure='give an SI value'
             )
     return changed
 
@@ -116,19 +119,19 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
     try:
         return reader_options(arguments.option)
     except ParameterError as error:
-        raise error.at("--option") from None
+        raise error.at('--option') from None
 
 
 def add_leaves_argument(parser: argparse.ArgumentParser) -> None:
     """Add the choice of leaves; ``--leaves`` alone is on."""
     parser.add_argument(
-        "--leaves",
-        nargs="?",
+        '--leaves',
+        nargs='?',
         choices=tuple(LEAVES),
-        const="on",
-        default="auto",
-        help="in leaf; auto is in leaf where the species is evergreen; of a forest, those trees of "
-        "which its file does not say (%(default)s)",
+        const='on',
+        default='auto',
+        help='in leaf; auto is in leaf where the species is evergreen; of a forest, those trees '
+        'of which its file does not say (%(default)s)',
     )
 
 
@@ -144,18 +147,18 @@ def drawn_leaves(
     return scene.leaves(told_leaves(arguments), _DRAWN)
 
 
-def add_wind_arguments(parser: argparse.ArgumentParser, record: str = "") -> None:
+def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
     """Add the record of a wind, and the speed of a simulated one; `record` is the first's help."""
-    told = record or "a wind record; simulated if left out"
-    parser.add_argument("--wind", metavar="FILE", help=told)
+    told = record or 'a wind record; simulated if left out'
+    parser.add_argument('--wind', metavar='FILE', help=told)
     told = (
-        "how to read it, such as topic=/mast/wind, yaw=1.57, direction_convention=from or rate=20"
+        'how to read it, such as topic=/mast/wind, yaw=1.57, direction_convention=from or rate=20'
     )
     parser.add_argument(
-        "--wind-option", action="append", default=[], metavar="NAME=VALUE", help=told
+        '--wind-option', action='append', default=[], metavar='NAME=VALUE', help=told
     )
-    told = "mean of the simulated wind [m/s] (%(default)s)"
-    parser.add_argument("--speed", type=float, default=6.0, metavar="U", help=told)
+    told = 'mean of the simulated wind [m/s] (%(default)s)'
+    parser.add_argument('--speed', type=float, default=6.0, metavar='U', help=told)
 
 
 def opened_record(arguments: argparse.Namespace) -> WindRecord:
@@ -171,13 +174,13 @@ def opened_wind(arguments: argparse.Namespace) -> WindSource:
     if arguments.wind is not None:
         record = opened_record(arguments)
         return RecordedWind(record.time, record.velocity)
-    speed = next(p for p in NODE_PARAMETERS["anemometer"] if p.name == "mean_speed")
+    speed = next(p for p in NODE_PARAMETERS['anemometer'] if p.name == 'mean_speed')
     return SimulatedWind(speed.checked(arguments.speed))
 
 
-def add_sway_arguments(parser: argparse.ArgumentParser, record: str = "") -> None:
+def add_sway_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
     """Add a scene, a wind, a model and leaves: all that a command needs to let a tree sway."""
-    add_tree_arguments(parser, forests=True, default="benjamina")
+    add_tree_arguments(parser, forests=True, default='benjamina')
     add_wind_arguments(parser, record)
     add_model_argument(parser)
     add_leaves_argument(parser)
@@ -186,12 +189,12 @@ def add_sway_arguments(parser: argparse.ArgumentParser, record: str = "") -> Non
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """Add the model of the sway, of all that there are."""
     parser.add_argument(
-        "--model",
-        "--fidelity",
-        dest="model",
+        '--model',
+        '--fidelity',
+        dest='model',
         choices=FIDELITIES,
         default=Settings().model,
-        help="model of the sway (%(default)s)",
+        help='model of the sway (%(default)s)',
     )
 
 
@@ -199,11 +202,11 @@ def add_output_arguments(
     parser: argparse.ArgumentParser, what: str, *, required: bool = True
 ) -> None:
     """Add ``--output`` and ``--force``; `what` is the help of the first."""
-    parser.add_argument("-o", "--output", required=required, metavar="FILE", help=what)
-    parser.add_argument("--force", action="store_true", help="write over a file that is there")
+    parser.add_argument('-o', '--output', required=required, metavar='FILE', help=what)
+    parser.add_argument('--force', action='store_true', help='write over a file that is there')
 
 
-def output_path(arguments: argparse.Namespace, default: str = "") -> str:
+def output_path(arguments: argparse.Namespace, default: str = '') -> str:
     """
     File to write: the one asked for, or the first of the default's names that is free.
 
@@ -211,10 +214,10 @@ def output_path(arguments: argparse.Namespace, default: str = "") -> str:
     """
     if arguments.output is not None:
         if not arguments.force:
-            refuse_overwriting(arguments.output, "--output")
+            refuse_overwriting(arguments.output, '--output')
         return str(arguments.output)
     path = Path(default)
-    names = (path.with_stem(f"{path.stem}_{n}") for n in itertools.count(2))
+    names = (path.with_stem(f'{path.stem}_{n}') for n in itertools.count(2))
     return str(next(name for name in itertools.chain([path], names) if not name.exists()))
 
 
@@ -224,7 +227,7 @@ def refuse_overwriting(path: str | Path, option: str) -> None:
         raise ParameterError(
             f"'{path}' is there already",
             where=option,
-            cure="name another file, or write over it with --force",
+            cure='name another file, or write over it with --force',
         )
 
 
@@ -236,5 +239,5 @@ def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
 
 def what_was_written(path: str, tree: Tree) -> str:
     """Return a line about a tree in a file."""
-    size = f"{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
-    return f"{path}: {tree.name}, {size}"
+    size = f'{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
+    return f'{path}: {tree.name}, {size}'

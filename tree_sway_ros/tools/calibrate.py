@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
+import sys
 
 from tree_sway_ros.core.checks import within
-from tree_sway_ros.core.identification.calibration import Calibration, calibrate
-from tree_sway_ros.core.identification.measured_sway import KINDS, estimate_sway
+from tree_sway_ros.core.identification.calibration import calibrate, Calibration
+from tree_sway_ros.core.identification.measured_sway import estimate_sway, KINDS
 from tree_sway_ros.core.identification.sway_estimate import SwayEstimate
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings
@@ -30,7 +30,7 @@ from tree_sway_ros.tools.arguments import (
 )
 from tree_sway_ros.tools.progress import waiting
 
-_YAML = (".yaml", ".yml")
+_YAML = ('.yaml', '.yml')
 _FAR = 2.0
 
 
@@ -39,27 +39,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser)
     add_leaves_argument(parser)
-    add("--frequency", type=float, metavar="HZ", help="measured slowest sway [Hz]")
+    add('--frequency', type=float, metavar='HZ', help='measured slowest sway [Hz]')
     add(
-        "--damping",
+        '--damping',
         type=float,
-        metavar="Z",
+        metavar='Z',
         help="measured damping ratio [-]; wins over the record's",
     )
     add(
-        "--record",
-        metavar="FILE",
-        help="CSV of the sway instead: time and x, y or tilt_x or ax ...",
+        '--record',
+        metavar='FILE',
+        help='CSV of the sway instead: time and x, y or tilt_x or ax ...',
     )
-    add("--kind", choices=KINDS, help="of the record; found from it if left out")
+    add('--kind', choices=KINDS, help='of the record; found from it if left out')
     add(
-        "--band",
+        '--band',
         type=float,
         nargs=2,
-        metavar=("LOW", "HIGH"),
+        metavar=('LOW', 'HIGH'),
         help="where in the record's spectrum to look for the sway [Hz]",
     )
-    add_output_arguments(parser, "tree with the fitted wood to write: .yaml")
+    add_output_arguments(parser, 'tree with the fitted wood to write: .yaml')
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -72,13 +72,13 @@ def run(arguments: argparse.Namespace) -> int:
         found = _measured(arguments)
         frequency, error = found.frequency, found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
-    settings = Settings(model="modes", in_leaf=told_leaves(arguments))
-    with waiting("calibrating"):
+    settings = Settings(model='modes', in_leaf=told_leaves(arguments))
+    with waiting('calibrating'):
         fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings)
     in_leaf = is_in_leaf(tree_file.species, settings.in_leaf)
     doubt = doubt_of_sway(tree_file.tree, fitted.frequency)
     for each in (*tree_file.of_species(fitted.species).warnings, *([doubt] if doubt else [])):
-        print(f"warning: {each}", file=sys.stderr)
+        print(f'warning: {each}', file=sys.stderr)
     for line in _summary(tree_file.species, fitted, error, in_leaf=in_leaf):
         print(line)
     write_tree_file(output, tree_file.tree, fitted.species)
@@ -88,18 +88,18 @@ def run(arguments: argparse.Namespace) -> int:
 def _check(arguments: argparse.Namespace) -> None:
     """Refuse what cannot work before anything slow is done."""
     if (arguments.frequency is None) == (arguments.record is None):
-        given = "both" if arguments.record is not None else "neither"
-        raise ParameterError(f"{given} of --frequency and --record", cure="give one of the two")
-    for name in ("kind", "band"):
+        given = 'both' if arguments.record is not None else 'neither'
+        raise ParameterError(f'{given} of --frequency and --record', cure='give one of the two')
+    for name in ('kind', 'band'):
         if arguments.record is None and getattr(arguments, name) is not None:
-            raise ParameterError("no record", where=f"--{name}", cure="give --record too")
+            raise ParameterError('no record', where=f'--{name}', cure='give --record too')
     if arguments.frequency is not None:
-        within("--frequency", arguments.frequency, 0.0, 1e3, "Hz", above=True)
+        within('--frequency', arguments.frequency, 0.0, 1e3, 'Hz', above=True)
     if arguments.damping is not None:
-        within("--damping", arguments.damping, 0.0, 1.0)
+        within('--damping', arguments.damping, 0.0, 1.0)
     if Path(arguments.output).suffix.lower() not in _YAML:
         raise ParameterError(
-            f"'{arguments.output}' cannot carry wood", where="--output", cure="write a .yaml file"
+            f"'{arguments.output}' cannot carry wood", where='--output', cure='write a .yaml file'
         )
 
 
@@ -112,12 +112,12 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     except FormatError as error:
         raise error.inside(record.source) from None
     print(
-        f"{record.source}: {record.quantity} in {', '.join(record.columns)}, "
-        f"{found.kind} ({found.cycles:.0f} cycles)"
+        f'{record.source}: {record.quantity} in {", ".join(record.columns)}, '
+        f'{found.kind} ({found.cycles:.0f} cycles)'
     )
     print(
-        f"  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, "
-        f"damping {found.damping_ratio:.3g} +- {found.damping_error:.2g}"
+        f'  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, '
+        f'damping {found.damping_ratio:.3g} +- {found.damping_error:.2g}'
     )
     return found
 
@@ -127,33 +127,33 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
     after, table = fitted.species, species_named(before.key)
     moduli = [species_named(key).modulus / 1e9 for key in species_keys()]
     was = (
-        "could not stand"
+        'could not stand'
         if fitted.frequency_before is None
-        else f"{fitted.frequency_before:.4g} Hz"
+        else f'{fitted.frequency_before:.4g} Hz'
     )
-    spread = f" +- {100.0 * fitted.sensitivity * error:.1f} %" if error else ""
+    spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''
     lines = [
         f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",
-        f"  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, "
+        f'  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, '
         f"{after.modulus / table.modulus:.3g} times the table's for {table.title}"
-        f"{' (an estimate)' if table.is_estimate else ''}; all species there: "
-        f"{min(moduli):.3g} to {max(moduli):.3g} GPa",
+        f'{" (an estimate)" if table.is_estimate else ""}; all species there: '
+        f'{min(moduli):.3g} to {max(moduli):.3g} GPa',
     ]
     if not min(moduli) / _FAR < after.modulus / 1e9 < max(moduli) * _FAR:
         lines.append(
-            "  note       no green wood has such a modulus: check density, diameters and leaves, "
-            "and "
-            "whether this was the slowest sway"
+            '  note       no green wood has such a modulus: check density, diameters and leaves, '
+            'and '
+            'whether this was the slowest sway'
         )
-    season = "damping_in_leaf" if in_leaf else "damping_bare"
+    season = 'damping_in_leaf' if in_leaf else 'damping_bare'
     old, new = getattr(before, season), getattr(after, season)
     if new == old:
-        lines.append(f"  damping    {old:.3g} {'in leaf' if in_leaf else 'bare'}, as it was")
+        lines.append(f'  damping    {old:.3g} {"in leaf" if in_leaf else "bare"}, as it was')
     else:
         lines += [
-            f"  damping    {old:.3g} -> {new:.3g} {'in leaf' if in_leaf else 'bare'}",
+            f'  damping    {old:.3g} -> {new:.3g} {"in leaf" if in_leaf else "bare"}',
             "  note       a measured damping holds that of the air; the solver adds the air's "
-            "drag to it, "
-            "so it damps a little more than the tree in strong wind",
+            'drag to it, '
+            'so it damps a little more than the tree in strong wind',
         ]
     return lines

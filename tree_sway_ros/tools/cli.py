@@ -4,24 +4,24 @@
 """
 The command line ``tree-sway``: one module per command, imported when it is asked for.
 
-A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the user
-can mend ends as one line on standard error and exit code 2.
+A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the
+user can mend ends as one line on standard error and exit code 2.
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 import contextlib
 import importlib
 import io
 import os
 import re
 import sys
-import warnings
-from collections.abc import Sequence
 from typing import Any, NamedTuple, NoReturn
+import warnings
 
-from tree_sway_ros.errors import TreeSwayError, nearest
+from tree_sway_ros.errors import nearest, TreeSwayError
 
 
 class Command(NamedTuple):
@@ -32,75 +32,78 @@ class Command(NamedTuple):
 
 
 COMMANDS: dict[str, Command] = {
-    "show": Command(
-        "a tree in wind on a page of the browser, without ROS", "show goldcrest --seconds 10"
+    'show': Command(
+        'a tree in wind on a page of the browser, without ROS', 'show goldcrest --seconds 10'
     ),
-    "demo": Command(
-        "a tree sways in wind, all nodes in one process over real DDS",
-        "demo goldcrest --speed 8 --seconds 10",
+    'demo': Command(
+        'a tree sways in wind, all nodes in one process over real DDS',
+        'demo goldcrest --speed 8 --seconds 10',
     ),
-    "soak": Command(
-        "run the chain through every fault of a sensor, and tell what it costs",
-        "soak --hours 0.002 --every 1",
+    'soak': Command(
+        'run the chain through every fault of a sensor, and tell what it costs',
+        'soak --hours 0.002 --every 1',
     ),
-    "listen": Command(
-        "count the poses that a solver in another process streams", "listen --seconds 10"
+    'listen': Command(
+        'count the poses that a solver in another process streams', 'listen --seconds 10'
     ),
-    "record": Command(
-        "wind, state and description of a running tree as a bag", "record -o bag --seconds 10"
+    'record': Command(
+        'wind, state and description of a running tree as a bag', 'record -o bag --seconds 10'
     ),
-    "relay": Command(
-        "one tree at several sites: send the wind, and receive it",
-        "relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1",
+    'relay': Command(
+        'one tree at several sites: send the wind, and receive it',
+        'relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1',
     ),
-    "info": Command("what a tree is: size, masses, natural frequencies", "info benjamina"),
-    "plot": Command(
-        "pictures of a tree, and of the wind and the motion of its tip",
-        "plot benjamina --seconds 20 -o sway.png",
+    'info': Command('what a tree is: size, masses, natural frequencies', 'info benjamina'),
+    'plot': Command(
+        'pictures of a tree, and of the wind and the motion of its tip',
+        'plot benjamina --seconds 20 -o sway.png',
     ),
-    "render": Command(
-        "a tree in wind as a moving picture: GIF, MP4 or frames",
-        "render goldcrest --speed 9 --seconds 2 -o sway.gif",
+    'render': Command(
+        'a tree in wind as a moving picture: GIF, MP4 or frames',
+        'render goldcrest --speed 9 --seconds 2 -o sway.gif',
     ),
-    "grow": Command(
-        "make a tree of a species and a height", "grow --species oak --height 12 -o oak.yaml"
+    'grow': Command(
+        'make a tree of a species and a height', 'grow --species oak --height 12 -o oak.yaml'
     ),
-    "convert": Command("write a tree in another format", "convert goldcrest -o goldcrest.obj"),
-    "calibrate": Command(
-        "fit modulus and damping to one measured sway",
-        "calibrate goldcrest --frequency 3 -o measured.yaml",
+    'convert': Command('write a tree in another format', 'convert goldcrest -o goldcrest.obj'),
+    'calibrate': Command(
+        'fit modulus and damping to one measured sway',
+        'calibrate goldcrest --frequency 3 -o measured.yaml',
     ),
-    "bench": Command("time the solver", "bench step --rounds 2"),
-    "battery": Command(
-        "the cases where methods of integration fail, and what ours does there", "battery T04"
+    'bench': Command('time the solver', 'bench step --rounds 2'),
+    'battery': Command(
+        'the cases where methods of integration fail, and what ours does there', 'battery T04'
     ),
-    "chart": Command(
-        "speed against accuracy: of methods, of models, against size", "chart methods -o charts"
+    'chart': Command(
+        'speed against accuracy: of methods, of models, against size', 'chart methods -o charts'
     ),
-    "compare": Command("our simulator against MuJoCo, in one run", "compare goldcrest --seconds 1"),
-    "paper": Command(
-        "the experiment of Kanda & Ohya as it is written, and what ours does instead", "paper"
+    'compare': Command(
+        'our simulator against MuJoCo, in one run', 'compare goldcrest --seconds 1'
     ),
-    "study": Command(
-        "many trees in many winds with many settings, over all cores",
-        "study study.yaml -o study.csv",
+    'paper': Command(
+        'the experiment of Kanda & Ohya as it is written, and what ours does instead', 'paper'
     ),
-    "docs": Command("write the tables of topics and parameters into the pages", "docs --check"),
+    'study': Command(
+        'many trees in many winds with many settings, over all cores',
+        'study study.yaml -o study.csv',
+    ),
+    'docs': Command('write the tables of topics and parameters into the pages', 'docs --check'),
 }
 
-#: Commands of the study, which nothing that runs imports; each is a module ``command`` of its room.
+#: Commands of the study, which nothing that runs imports; each is a module ``command`` of
+#: its room.
 _STUDIES = {
-    **{name: name for name in ("bench", "battery", "chart", "compare", "paper")},
-    "study": "campaign",
-    "docs": "pages",
+    **{name: name for name in ('bench', 'battery', 'chart', 'compare', 'paper')},
+    'study': 'campaign',
+    'docs': 'pages',
 }
 
 #: Commands that watch a stream.
-_STREAMS = ("listen", "record", "soak")
+_STREAMS = ('listen', 'record', 'soak')
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
-_UNRECOGNIZED = re.compile(r"unrecognized arguments: (?:\S+ )*?(--[\w-]+)")
+_UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -110,14 +113,14 @@ class _OneLineParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and where to read more, and exit."""
-        guess = ""
+        guess = ''
         if wrong := _CHOICE.search(message):
-            guess = nearest(wrong[1], re.findall(r"[\w.-]+", wrong[2]))
+            guess = nearest(wrong[1], re.findall(r'[\w.-]+', wrong[2]))
         elif wrong := _UNRECOGNIZED.search(message):
             guess = nearest(wrong[1], (self.chosen or self)._option_string_actions)
         where = (self.chosen or self).prog
-        told = "; ".join(filter(None, (message, guess, f"see {where} --help")))
-        print(f"{where}: {told}", file=sys.stderr)
+        told = '; '.join(filter(None, (message, guess, f'see {where} --help')))
+        print(f'{where}: {told}', file=sys.stderr)
         raise SystemExit(_FAILURE)
 
 
@@ -133,7 +136,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _main(given: list[str]) -> int:
-    command = given[0] if given else ""
+    command = given[0] if given else ''
     _write_any_name()
     try:
         parser = _parser(_completed() or command)
@@ -147,16 +150,16 @@ def _main(given: list[str]) -> int:
     except TreeSwayError as error:
         return _fail(command, str(error))
     except ModuleNotFoundError as error:
-        if str(error.name).startswith("tree_sway_ros"):
+        if str(error.name).startswith('tree_sway_ros'):
             raise
-        return _fail(command, f"{error}; install it: pip install {error.name}")
+        return _fail(command, f'{error}; install it: pip install {error.name}')
     except BrokenPipeError:
         # Whoever read our output has gone; keep Python from complaining when it flushes.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
         name = _shortened(str(error.filename))
-        return _fail(command, f"{name}: {error.strerror}" if error.filename else str(error))
+        return _fail(command, f'{name}: {error.strerror}' if error.filename else str(error))
     except KeyboardInterrupt:
         return _INTERRUPTED
 
@@ -164,14 +167,16 @@ def _main(given: list[str]) -> int:
 def _show_warning(message: Warning | str, *_where: Any) -> None:
     """Say what a library warns of on one line, without the line of code it stands in."""
     if sys.stderr is not None:
-        print(f"note: {' '.join(str(message).split())}", file=sys.stderr)
+        print(f'note: {" ".join(str(message).split())}', file=sys.stderr)
 
 
 def _write_any_name() -> None:
-    """Let names that a terminal has no letters for be printed with escapes, not end the program."""
+    """Let names that a terminal has no letters for be printed with escapes, not end the
+    program.
+    """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
+            stream.reconfigure(errors='backslashreplace')
 
 
 def _silence() -> Any:
@@ -180,39 +185,39 @@ def _silence() -> Any:
 
 
 def _fail(command: str, text: str) -> int:
-    print(f"tree-sway {command}: {' '.join(text.split())}", file=sys.stderr)
+    print(f'tree-sway {command}: {" ".join(text.split())}', file=sys.stderr)
     return _FAILURE
 
 
 def _shortened(name: str) -> str:
-    return name if len(name) <= 80 else f"{name[:60]}...{name[-17:]}"
+    return name if len(name) <= 80 else f'{name[:60]}...{name[-17:]}'
 
 
 def _module(command: str) -> Any:
     room = _STUDIES.get(command)
-    where = f"study.{room}.command" if room else f"tools.{command}"
+    where = f'study.{room}.command' if room else f'tools.{command}'
     if command in _STREAMS:
-        where = f"tools.stream.{command}"
-    return importlib.import_module(f"tree_sway_ros.{where}")
+        where = f'tools.stream.{command}'
+    return importlib.import_module(f'tree_sway_ros.{where}')
 
 
 def _parser(chosen: str) -> _OneLineParser:
     """
     Parser of all commands; only the chosen one's arguments, as the others' modules may be slow.
     """
-    parser = _OneLineParser(prog="tree-sway", description="Trees that sway in measured wind.")
-    version = importlib.import_module("tree_sway_ros").__version__
-    parser.add_argument("--version", action="version", version=version)
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    parser = _OneLineParser(prog='tree-sway', description='Trees that sway in measured wind.')
+    version = importlib.import_module('tree_sway_ros').__version__
+    parser.add_argument('--version', action='version', version=version)
+    commands = parser.add_subparsers(dest='command', metavar='COMMAND', required=True)
     for name, (summary, example) in COMMANDS.items():
         sub = commands.add_parser(
             name,
             help=summary,
-            description=f"{summary[0].upper()}{summary[1:]}.",
-            epilog=f"example: tree-sway {example}",
+            description=f'{summary[0].upper()}{summary[1:]}.',
+            epilog=f'example: tree-sway {example}',
         )
         sub.add_argument(
-            "-q", "--quiet", action="store_true", help="no notes and no progress, errors alone"
+            '-q', '--quiet', action='store_true', help='no notes and no progress, errors alone'
         )
         if name == chosen:
             _module(name).add_arguments(sub)
@@ -222,16 +227,16 @@ def _parser(chosen: str) -> _OneLineParser:
 
 def _completed() -> str:
     """Command whose arguments the shell wants completed; empty when it wants none."""
-    words = os.environ.get("COMP_LINE", "").split() if "_ARGCOMPLETE" in os.environ else []
-    return words[1] if len(words) > 1 and words[1] in COMMANDS else ""
+    words = os.environ.get('COMP_LINE', '').split() if '_ARGCOMPLETE' in os.environ else []
+    return words[1] if len(words) > 1 and words[1] in COMMANDS else ''
 
 
 def _offer_completion(parser: argparse.ArgumentParser) -> None:
     """Answer the shell that asks for completions, where argcomplete is installed."""
-    if "_ARGCOMPLETE" in os.environ:
+    if '_ARGCOMPLETE' in os.environ:
         with contextlib.suppress(ImportError):
-            importlib.import_module("argcomplete").autocomplete(parser)
+            importlib.import_module('argcomplete').autocomplete(parser)
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     sys.exit(main())

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
+import sys
 
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
@@ -16,12 +16,12 @@ from tree_sway_ros.files.export.tree_export import GLTF_SUFFIXES, write_gltf, wr
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.tools.arguments import (
-    OUTPUT_HELP,
     add_leaves_argument,
     add_output_arguments,
     add_tree_arguments,
     drawn_leaves,
     opened_scene,
+    OUTPUT_HELP,
     output_path,
     told_leaves,
     what_was_written,
@@ -35,11 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_leaves_argument(parser)
     add_output_arguments(parser, OUTPUT_HELP)
     parser.add_argument(
-        "--sway",
-        nargs="?",
-        choices=("skin", "morph"),
-        const="skin",
-        help="how a .glb or .gltf is to sway: by a joint per segment, set from segment_poses, or "
+        '--sway',
+        nargs='?',
+        choices=('skin', 'morph'),
+        const='skin',
+        help='how a .glb or .gltf is to sway: by a joint per segment, set from segment_poses, or '
         "by some 20 weights, set from the tree's state (skin)",
     )
 
@@ -50,14 +50,14 @@ def run(arguments: argparse.Namespace) -> int:
     is_gltf = Path(output).suffix.lower() in GLTF_SUFFIXES
     if arguments.sway is not None and not is_gltf:
         raise ParameterError(
-            f"'{output}' cannot sway", where="--sway", cure="write a .glb or .gltf file"
+            f"'{output}' cannot sway", where='--sway', cure='write a .glb or .gltf file'
         )
     scene = opened_scene(arguments)
     for note in scene.notes:
-        print(f"note: {note}", file=sys.stderr)
+        print(f'note: {note}', file=sys.stderr)
     for doubt in scene.warnings:
-        print(f"warning: {doubt}", file=sys.stderr)
-    if arguments.sway == "morph":
+        print(f'warning: {doubt}', file=sys.stderr)
+    if arguments.sway == 'morph':
         _write_morphing(scene, arguments)
     else:
         species = scene.species if isinstance(scene, TreeFile) else None
@@ -71,15 +71,15 @@ def _write_morphing(scene: TreeFile | ForestFile, arguments: argparse.Namespace)
     """Write a tree with morph targets and say what their linear form leaves out."""
     if not isinstance(scene, TreeFile):
         raise ParameterError(
-            "a forest by morph targets", where="--sway", cure="convert its trees one by one"
+            'a forest by morph targets', where='--sway', cure='convert its trees one by one'
         )
-    settings = Settings(model="modes", in_leaf=told_leaves(arguments))
-    with waiting("finding what sways"):
+    settings = Settings(model='modes', in_leaf=told_leaves(arguments))
+    with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
         document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
     write_gltf(arguments.output, document)
     print(
-        f"  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} mm "
-        f"(rms; at most {1e3 * form.motion_greatest:.3g}), the linear form is off by "
-        f"{1e3 * form.rms:.2g} mm (at most {1e3 * form.greatest:.2g})"
+        f'  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} '
+        f'mm (rms; at most {1e3 * form.motion_greatest:.3g}), the linear form is off by '
+        f'{1e3 * form.rms:.2g} mm (at most {1e3 * form.greatest:.2g})'
     )

@@ -9,10 +9,10 @@ What it prints is what a subscriber receives, not what the solver believes to ha
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 import sys
 import tempfile
 import webbrowser
-from pathlib import Path
 
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -21,7 +21,7 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 from tree_sway_ros.ros.parameters.parameter import Value
 from tree_sway_ros.ros.process.composition import Composition
-from tree_sway_ros.ros.process.ending import LONGEST, Ending
+from tree_sway_ros.ros.process.ending import Ending, LONGEST
 from tree_sway_ros.tools.arguments import add_sway_arguments, opened_scene
 from tree_sway_ros.tools.page_arguments import add_page_arguments, page_settings
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
@@ -34,17 +34,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add("--start", type=float, default=0.0, metavar="T", help="skip so much of the record [s]")
+    add('--start', type=float, default=0.0, metavar='T', help='skip so much of the record [s]')
     add(
-        "--sensor",
-        metavar="ADDRESS",
-        help="of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, "
-        "udp://:port",
+        '--sensor',
+        metavar='ADDRESS',
+        help='of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, '
+        'udp://:port',
     )
-    add("--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C")
-    add("--rate", type=float, default=60.0, help="poses per second [Hz] (%(default)s)")
-    add("--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)")
-    add("--no-page", action="store_true", help="serve no page")
+    add('--seconds', type=float, metavar='N', help='end after so long; else by Ctrl-C')
+    add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
+    add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
+    add('--no-page', action='store_true', help='serve no page')
     add_page_arguments(parser)
 
 
@@ -58,10 +58,10 @@ def run(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
     scene = opened_scene(arguments)
     for doubt in scene.warnings:
-        print(f"warning: {doubt}", file=sys.stderr)
+        print(f'warning: {doubt}', file=sys.stderr)
     tree = scene.tree
     print(
-        f"{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)",
+        f'{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)',
         flush=True,
     )
     with (
@@ -88,10 +88,10 @@ def _run(arguments: argparse.Namespace, seconds: float, folder: Path) -> int:
 
 def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
     """Add the viewer, tell where its page is, and open it if asked to."""
-    told = {**vars(page_settings(arguments)), "control": True}
-    told["origins"] = " ".join(arguments.origin)
-    url = nodes.add("viewer", told).server.url
-    print(f"page: {url}", flush=True)
+    told = {**vars(page_settings(arguments)), 'control': True}
+    told['origins'] = ' '.join(arguments.origin)
+    url = nodes.add('viewer', told).server.url
+    print(f'page: {url}', flush=True)
     if arguments.open:
         webbrowser.open(url)
 
@@ -99,8 +99,8 @@ def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
 def size_of(tree: Tree) -> str:
     """Number of branches and segments, of trees if there are more, and height, for people."""
     n_trees = int((tree.branch_parent < 0).sum())
-    trees = f"{n_trees} trees, " if n_trees > 1 else ""
-    return f"{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m"
+    trees = f'{n_trees} trees, ' if n_trees > 1 else ''
+    return f'{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
 
 
 def _tree_of(scene: TreeFile | ForestFile, arguments: argparse.Namespace, folder: Path) -> str:
@@ -108,30 +108,30 @@ def _tree_of(scene: TreeFile | ForestFile, arguments: argparse.Namespace, folder
     told = (arguments.seed, arguments.option, arguments.modulus, arguments.density)
     if not any(told) or not isinstance(scene, TreeFile):
         return str(arguments.tree)
-    path = folder / "tree.yaml"
+    path = folder / 'tree.yaml'
     write_tree(path, scene.tree, scene.species)
     return str(path)
 
 
 def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Value]]:
     solver: dict[str, Value] = {
-        "tree": tree,
-        "species": "" if tree != arguments.tree else arguments.species or "",
-        "rate": arguments.rate,
-        "fidelity": arguments.model,
+        'tree': tree,
+        'species': '' if tree != arguments.tree else arguments.species or '',
+        'rate': arguments.rate,
+        'fidelity': arguments.model,
     }
-    solver["leaves"] = arguments.leaves
-    if arguments.gravity == "off":
-        solver["gravity"] = 0.0
+    solver['leaves'] = arguments.leaves
+    if arguments.gravity == 'off':
+        solver['gravity'] = 0.0
     if arguments.sensor is not None:
         if arguments.wind is not None:
-            raise ParameterError("both --sensor and --wind", cure="give one of the two")
-        return {"sensor": {"address": arguments.sensor}, "wind": {}, "solver": solver}
+            raise ParameterError('both --sensor and --wind', cure='give one of the two')
+        return {'sensor': {'address': arguments.sensor}, 'wind': {}, 'solver': solver}
     if arguments.wind is None:
-        return {"anemometer": {"mean_speed": arguments.speed}, "wind": {}, "solver": solver}
+        return {'anemometer': {'mean_speed': arguments.speed}, 'wind': {}, 'solver': solver}
     player = {
-        "file": arguments.wind,
-        "reader_options": " ".join(arguments.wind_option),
-        "start": arguments.start,
+        'file': arguments.wind,
+        'reader_options': ' '.join(arguments.wind_option),
+        'start': arguments.start,
     }
-    return {"player": player, "wind": {}, "solver": solver}
+    return {'player': player, 'wind': {}, 'solver': solver}

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 import argparse
-import json
-import math
 from dataclasses import replace
 from functools import partial
+import json
+import math
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,7 @@ from tree_sway_ros.tools.arguments import (
     told_leaves,
 )
 from tree_sway_ros.tools.info_forest import forest_facts, forest_text
-from tree_sway_ros.tools.mode_table import ModeRow, mode_table
+from tree_sway_ros.tools.mode_table import mode_table, ModeRow
 from tree_sway_ros.tools.progress import waiting
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
@@ -40,31 +40,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    add("--model", choices=MODELS, default="modes", help="model (%(default)s)")
-    add("--gravity", choices=("on", "off"), default="on", help="its own weight (%(default)s)")
+    add('--model', choices=MODELS, default='modes', help='model (%(default)s)')
+    add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
     add(
-        "--root-stiffness",
+        '--root-stiffness',
         type=float,
-        metavar="K",
-        help="of its roots against tilting [N m/rad], inf for rigid ones; its own if left out",
+        metavar='K',
+        help='of its roots against tilting [N m/rad], inf for rigid ones; its own if left out',
     )
-    add("--count", type=int, default=10, metavar="N", help="how many frequencies (%(default)s)")
-    add("--json", action="store_true", help="for programs, SI units")
+    add('--count', type=int, default=10, metavar='N', help='how many frequencies (%(default)s)')
+    add('--json', action='store_true', help='for programs, SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print what a tree is."""
     if arguments.count < 1:
         raise ParameterError(
-            f"{arguments.count} frequencies", where="--count", cure="ask for 1 or more"
+            f'{arguments.count} frequencies', where='--count', cure='ask for 1 or more'
         )
     scene = opened_scene(arguments)
     if isinstance(scene, ForestFile):
-        with waiting("setting up every tree"):
+        with waiting('setting up every tree'):
             facts = forest_facts(scene, partial(_facts, arguments), told_leaves(arguments))
         print(json.dumps(facts, indent=2) if arguments.json else forest_text(facts))
         return 0
-    with waiting("working out the modes"):
+    with waiting('working out the modes'):
         facts = _facts(arguments, scene, told_leaves(arguments))
     print(json.dumps(facts, indent=2) if arguments.json else _text(facts, scene))
     return 0
@@ -75,11 +75,11 @@ def _facts(
 ) -> dict[str, Any]:
     settings = Settings(
         model=arguments.model,
-        gravity=_GRAVITY if arguments.gravity == "on" else 0.0,
+        gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
         root_stiffness=arguments.root_stiffness,
         # A branch has two coordinates at least; a small tree may have fewer modes than asked for.
         n_modes=min(arguments.count, 2 * tree_file.tree.n_branches),
-        mode_choice="slowest",
+        mode_choice='slowest',
         in_leaf=in_leaf,
     )
     return _tree_facts(tree_file, settings, arguments.count)
@@ -97,7 +97,7 @@ def _tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str
             raise
         # A scan full of noise may not stand; its size is asked for all the same.
         settings = replace(settings, gravity=0.0)
-        notes.append(f"modes without its own weight, as it cannot stand: {error}")
+        notes.append(f'modes without its own weight, as it cannot stand: {error}')
         bank = build_bank(tree, species, settings)
     rows = mode_table(tree, bank, count)
     warnings = list(tree_file.warnings)
@@ -105,33 +105,33 @@ def _tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str
         warnings.append(doubt)
     breast = _diameter_at(tree_file, _BREAST_HEIGHT)
     return {
-        "name": tree.name,
-        "source": tree_file.source,
-        "notes": notes,
-        "warnings": warnings,
-        "branches": tree.n_branches,
-        "segments": tree.n_segments,
-        "height": tree.height,
-        "length": float(tree.length.sum()),
-        "volume": float(tree.volume.sum()),
-        "base_diameter": float(tree.base_diameter[0]),
-        "breast_height_diameter": breast,
-        "form_factor": _form_factor(tree, breast),
-        "measured_conifers": _measured_conifers(tree, species, breast),
-        "species": species.key,
-        "species_is_estimate": species.is_estimate,
-        "modulus": species.modulus,
-        "density": species.density,
-        "mass": bank.mass,
-        "root_stiffness": _roots(species, settings),
-        "stem_mass": float(species.density * tree.volume[tree.segments_of(0)].sum()),
-        "gravity": settings.gravity,
-        "model": settings.model,
-        "in_leaf": settings.in_leaf,
-        "solved": bank.n_solved,
-        "copied": tree.n_branches - bank.n_solved,
-        "frequencies": [row.frequency for row in rows],
-        "modes": [_mode(row) for row in rows],
+        'name': tree.name,
+        'source': tree_file.source,
+        'notes': notes,
+        'warnings': warnings,
+        'branches': tree.n_branches,
+        'segments': tree.n_segments,
+        'height': tree.height,
+        'length': float(tree.length.sum()),
+        'volume': float(tree.volume.sum()),
+        'base_diameter': float(tree.base_diameter[0]),
+        'breast_height_diameter': breast,
+        'form_factor': _form_factor(tree, breast),
+        'measured_conifers': _measured_conifers(tree, species, breast),
+        'species': species.key,
+        'species_is_estimate': species.is_estimate,
+        'modulus': species.modulus,
+        'density': species.density,
+        'mass': bank.mass,
+        'root_stiffness': _roots(species, settings),
+        'stem_mass': float(species.density * tree.volume[tree.segments_of(0)].sum()),
+        'gravity': settings.gravity,
+        'model': settings.model,
+        'in_leaf': settings.in_leaf,
+        'solved': bank.n_solved,
+        'copied': tree.n_branches - bank.n_solved,
+        'frequencies': [row.frequency for row in rows],
+        'modes': [_mode(row) for row in rows],
     }
 
 
@@ -144,7 +144,7 @@ def _form_factor(tree: Tree, breast: float | None) -> float | None:
 
 def _measured_conifers(tree: Tree, species: Species, breast: float | None) -> float | None:
     """Sway of measured conifers of that size in needles in [Hz] (Moore & Maguire 2004)."""
-    if breast is None or species.habit != "conifer":
+    if breast is None or species.habit != 'conifer':
         return None
     return float(0.0766 + 312.19 * breast / tree.height**2)
 
@@ -158,11 +158,11 @@ def _roots(species: Species, settings: Settings) -> float | None:
 
 def _mode(row: ModeRow) -> dict[str, Any]:
     return {
-        "frequency": row.frequency,
-        "damping_ratio": row.damping_ratio,
-        "axis": [round(float(component), 6) for component in row.axis],
-        "direction": row.direction,
-        "branch": row.branch,
+        'frequency': row.frequency,
+        'damping_ratio': row.damping_ratio,
+        'axis': [round(float(component), 6) for component in row.axis],
+        'direction': row.direction,
+        'branch': row.branch,
     }
 
 
@@ -180,40 +180,40 @@ def _diameter_at(tree_file: TreeFile, height: float) -> float | None:
 
 
 def _text(facts: dict[str, Any], tree_file: TreeFile) -> str:
-    breast = facts["breast_height_diameter"]
-    estimate = " (an estimate)" if facts["species_is_estimate"] else ""
-    weight = "with its own weight" if facts["gravity"] else "without its own weight"
+    breast = facts['breast_height_diameter']
+    estimate = ' (an estimate)' if facts['species_is_estimate'] else ''
+    weight = 'with its own weight' if facts['gravity'] else 'without its own weight'
     lines = [
-        f"{facts['name']}, from {facts['source']}",
-        f"  size       {facts['branches']} branches, {facts['segments']} segments, "
-        f"{facts['height']:.2f} m high, {facts['volume'] * 1e3:.4g} l of wood",
-        f"  diameter   {facts['base_diameter'] * 1e3:.1f} mm at the ground"
-        + (f", {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m" if breast is not None else ""),
-        f"  wood       {tree_file.species.title}{estimate}: {facts['modulus'] / 1e9:.3g} GPa, "
-        f"{facts['density']:.4g} kg/m^3",
-        f"  mass       {facts['mass']:.4g} kg "
-        f"{'in leaf' if facts['in_leaf'] else 'without leaves'}, "
-        f"{facts['stem_mass']:.4g} kg of it in the stem",
-        f"  model      {facts['model']}: {facts['solved']} branches solved, {facts['copied']} "
-        f"copied",
+        f'{facts["name"]}, from {facts["source"]}',
+        f'  size       {facts["branches"]} branches, {facts["segments"]} segments, '
+        f'{facts["height"]:.2f} m high, {facts["volume"] * 1e3:.4g} l of wood',
+        f'  diameter   {facts["base_diameter"] * 1e3:.1f} mm at the ground'
+        + (f', {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m' if breast is not None else ''),
+        f'  wood       {tree_file.species.title}{estimate}: {facts["modulus"] / 1e9:.3g} GPa, '
+        f'{facts["density"]:.4g} kg/m^3',
+        f'  mass       {facts["mass"]:.4g} kg '
+        f'{"in leaf" if facts["in_leaf"] else "without leaves"}, '
+        f'{facts["stem_mass"]:.4g} kg of it in the stem',
+        f'  model      {facts["model"]}: {facts["solved"]} branches solved, {facts["copied"]} '
+        f'copied',
     ]
-    roots, form = facts["root_stiffness"], facts["form_factor"]
-    lines.append(f"  roots      {'rigid' if roots is None else f'{roots:.3g} N m/rad'}")
+    roots, form = facts['root_stiffness'], facts['form_factor']
+    lines.append(f'  roots      {"rigid" if roots is None else f"{roots:.3g} N m/rad"}')
     if form is not None:
-        lines.append(f"  form       the stem fills {form:.2f} of its cylinder at breast height")
-    if facts["measured_conifers"] is not None:
+        lines.append(f'  form       the stem fills {form:.2f} of its cylinder at breast height')
+    if facts['measured_conifers'] is not None:
         lines.append(
-            f"  compare    measured conifers of this size, in needles, sway at "
-            f"{facts['measured_conifers']:.3f} Hz"
+            f'  compare    measured conifers of this size, in needles, sway at '
+            f'{facts["measured_conifers"]:.3f} Hz'
         )
-    lines += [f"  note       {note}" for note in facts["notes"]]
-    lines += [f"  warning    {doubt}" for doubt in facts["warnings"]]
-    if facts["modes"]:
-        lines.append(f"  natural modes, {weight}:")
-        lines.append("       Hz   damping   sways along (east = 0, north = 90)   most in branch")
-    for mode in facts["modes"]:
+    lines += [f'  note       {note}' for note in facts['notes']]
+    lines += [f'  warning    {doubt}' for doubt in facts['warnings']]
+    if facts['modes']:
+        lines.append(f'  natural modes, {weight}:')
+        lines.append('       Hz   damping   sways along (east = 0, north = 90)   most in branch')
+    for mode in facts['modes']:
         lines.append(
-            f"  {mode['frequency']:7.3f}   {mode['damping_ratio']:7.3f}   "
-            f"{mode['direction']:35}  {mode['branch']}"
+            f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   '
+            f'{mode["direction"]:35}  {mode["branch"]}'
         )
-    return "\n".join(lines)
+    return '\n'.join(lines)

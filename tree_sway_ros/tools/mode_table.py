@@ -42,10 +42,10 @@ class ModeRow:
         level = float(np.hypot(x, y))
         up = float(np.degrees(np.arctan2(z, level)))
         if abs(up) > 80.0:
-            return "up and down"
+            return 'up and down'
         azimuth = float(np.degrees(np.arctan2(y, x))) % 180.0
         side = up if y > 0.0 or (y == 0.0 and x > 0.0) else -up
-        return f"{azimuth:5.1f} deg" + (f", {side:+.0f} up" if abs(side) >= 10.0 else "")
+        return f'{azimuth:5.1f} deg' + (f', {side:+.0f} up' if abs(side) >= 10.0 else '')
 
 
 def mode_table(tree: Tree, bank: Bank, count: int) -> list[ModeRow]:
@@ -55,7 +55,7 @@ def mode_table(tree: Tree, bank: Bank, count: int) -> list[ModeRow]:
     Where branches swing on their own, each has a mode per branch and axis.
     """
     frequencies, ratios, shapes = _modes(bank, count)
-    owner = np.repeat(np.arange(tree.n_branches), bank.branches["n_coordinates"])
+    owner = np.repeat(np.arange(tree.n_branches), bank.branches['n_coordinates'])
     rows = []
     for frequency, ratio, shape in zip(frequencies, ratios, shapes.T, strict=True):
         branch = int(owner[np.argmax(np.abs(shape))])
@@ -75,7 +75,7 @@ def _modes(bank: Bank, count: int) -> tuple[Floats, Floats, Floats]:
         return np.zeros(0), np.zeros(0), np.zeros((0, 0))
     circular = np.repeat(np.sqrt(oscillators.stiffness / oscillators.inertia), 2)
     ratios = np.repeat(oscillators.damping / oscillators.inertia, 2) / (2.0 * circular)
-    slowest = np.argsort(circular, kind="stable")[:count]
+    slowest = np.argsort(circular, kind='stable')[:count]
     shapes = np.zeros((len(circular), len(slowest)))
     shapes[slowest, np.arange(len(slowest))] = 1.0
     return circular[slowest] / (2.0 * np.pi), ratios[slowest], shapes
@@ -88,6 +88,6 @@ def _axis(tree: Tree, bank: Bank, shape: Floats) -> Floats:
     bank.place(small, tree.start[0], poses)
     start, end = ends_of_poses(poses, tree.length)
     moved = (start + end - tree.start - tree.end) / (2.0 * _SMALL_ANGLE)
-    _, axes = np.linalg.eigh(np.einsum("n,ni,nj->ij", tree.volume, moved, moved))
+    _, axes = np.linalg.eigh(np.einsum('n,ni,nj->ij', tree.volume, moved, moved))
     axis: Floats = axes[:, -1]
     return axis

@@ -16,23 +16,23 @@ _PORT = 8765
 def add_page_arguments(parser: argparse.ArgumentParser) -> None:
     """Add where and to whom a page is served."""
     add = parser.add_argument
-    add("--open", action="store_true", help="open the page in the browser")
-    add("--port", type=int, help=f"of the page ({_PORT}, or a free one if that is taken)")
+    add('--open', action='store_true', help='open the page in the browser')
+    add('--port', type=int, help=f'of the page ({_PORT}, or a free one if that is taken)')
     add(
-        "--address",
-        default="127.0.0.1",
+        '--address',
+        default='127.0.0.1',
         help="to bind to; any other than this machine's own needs a token (%(default)s)",
     )
-    add("--token", default="", help="what viewers must know")
-    add("--certificate", default="", metavar="PEM", help="for https")
+    add('--token', default='', help='what viewers must know')
+    add('--certificate', default='', metavar='PEM', help='for https')
     add(
-        "--origin",
-        action="append",
+        '--origin',
+        action='append',
         default=[],
-        metavar="URL",
-        help="of other pages that may follow the stream, as http://127.0.0.1:8000",
+        metavar='URL',
+        help='of other pages that may follow the stream, as http://127.0.0.1:8000',
     )
-    add("--private-key", default="", metavar="PEM", help="of the certificate")
+    add('--private-key', default='', metavar='PEM', help='of the certificate')
 
 
 def page_settings(arguments: argparse.Namespace) -> PageSettings:
@@ -43,7 +43,7 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
     if port is None:
         port = _PORT if _is_free(arguments.address, _PORT) else 0
     elif not 0 <= port <= 65535:
-        raise ParameterError(f"port {port}", where="--port", cure="give 0 .. 65535")
+        raise ParameterError(f'port {port}', where='--port', cure='give 0 .. 65535')
     return PageSettings(
         arguments.address,
         port,
@@ -55,7 +55,7 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
 
 
 def _is_free(address: str, port: int) -> bool:
-    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    family = socket.AF_INET6 if ':' in address else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as trial:
         trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from pathlib import Path
+import sys
 from typing import Any
 
 import numpy as np
@@ -45,32 +45,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_sway_arguments(parser)
     parser.add_argument(
-        "--portrait",
-        action="store_true",
-        help="draw the tree at rest and, beside it, in a steady wind",
+        '--portrait',
+        action='store_true',
+        help='draw the tree at rest and, beside it, in a steady wind',
     )
     parser.set_defaults(speed=None)
     parser.add_argument(
-        "--from",
-        dest="bearing",
+        '--from',
+        dest='bearing',
         type=float,
-        metavar="DEGREES",
-        help="where the steady or simulated wind comes from, clockwise from north: 90 is from the "
-        "east, at the right of a picture (270, a westerly)",
+        metavar='DEGREES',
+        help='where the steady or simulated wind comes from, clockwise from north: 90 is from the '
+        'east, at the right of a picture (270, a westerly)',
     )
     parser.add_argument(
-        "--seconds", type=float, default=60.0, metavar="N", help="how long (%(default)s)"
+        '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
     )
-    picture = "picture (sway.png, or the next name that is free)"
+    picture = 'picture (sway.png, or the next name that is free)'
     add_output_arguments(parser, picture, required=False)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
     if not 0.0 < arguments.seconds <= 3600.0:
-        raise ParameterError(f"{arguments.seconds:g} s", where="--seconds", cure="give 0 to 3600")
+        raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0 to 3600')
     _refuse_bearing(arguments)
-    output = output_path(arguments, "sway.png")
+    output = output_path(arguments, 'sway.png')
     scene = opened_scene(arguments)
     draw = _portrait if arguments.portrait else _motion
     draw(scene, arguments, output)
@@ -83,15 +83,15 @@ def _refuse_bearing(arguments: argparse.Namespace) -> None:
     if arguments.bearing is None:
         arguments.bearing = 270.0
     elif arguments.wind is not None and not arguments.portrait:
-        raise ParameterError("a direction for a record, which has its own", where="--from")
-    within("--from", arguments.bearing, -360.0, 360.0, "degrees")
+        raise ParameterError('a direction for a record, which has its own', where='--from')
+    within('--from', arguments.bearing, -360.0, 360.0, 'degrees')
 
 
 def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output: str) -> None:
     speed = 10.0 if arguments.speed is None else arguments.speed
     simulator = _simulator(scene, arguments)
     wind = np.array(velocity_of_bearing(speed, math.radians(arguments.bearing)))
-    for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), "settling in the wind"):
+    for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
         [each.tree for each in simulators_of(simulator)],
@@ -104,25 +104,25 @@ def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace, outpu
 
 def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> Simulator:
     """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
-    model: dict[str, Any] = {"model": arguments.model, "in_leaf": told_leaves(arguments)}
+    model: dict[str, Any] = {'model': arguments.model, 'in_leaf': told_leaves(arguments)}
     try:
-        with waiting("setting up the tree"):
+        with waiting('setting up the tree'):
             return scene.simulator(**model)
     except TreeError as error:
         light = scene.simulator(**model, gravity=0.0)
-        print(f"note: without its own weight, as it cannot stand: {error}", file=sys.stderr)
+        print(f'note: without its own weight, as it cannot stand: {error}', file=sys.stderr)
         return light
 
 
 def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output: str) -> None:
     speed = 6.0 if arguments.speed is None else arguments.speed
-    source = f"simulated wind, mean {speed:g} m/s"
+    source = f'simulated wind, mean {speed:g} m/s'
     if arguments.wind is None:
         model = AnemometerModel(speed, bearing_to=math.radians(arguments.bearing + 180.0))
         ticks = range(math.ceil(arguments.seconds * model.rate) + 1)
         time, velocity = np.array(ticks) / model.rate, np.array([*map(model.sample, ticks)])
         if arguments.bearing != 270.0:
-            source += f" from {arguments.bearing:g} degrees"
+            source += f' from {arguments.bearing:g} degrees'
     else:
         record = opened_record(arguments)
         time, velocity, source = record.time, record.velocity, Path(record.source).name
@@ -130,11 +130,11 @@ def _motion(scene: TreeFile | ForestFile, arguments: argparse.Namespace, output:
     if len(time) > 1:
         wind = frame_means(time, velocity, _STEP)[: round(arguments.seconds / _STEP)]
     if len(wind) < 2:
-        raise ParameterError("too short a wind to draw", where=source, cure="give a longer one")
+        raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
     simulator, tip = _simulator(scene, arguments), []
-    for mean in bar(wind, "swaying"):
+    for mean in bar(wind, 'swaying'):
         simulator.step(mean, _STEP)
         tip.append(simulator.tip_displacement)
-    title = f"{scene.tree.name}, {arguments.model}, {source}"
+    title = f'{scene.tree.name}, {arguments.model}, {source}'
     end = _STEP * np.arange(1, len(wind) + 1)
     plot_wind_and_tip(end, wind, np.array(tip), output, title=title)

@@ -9,14 +9,14 @@ where there is no terminal, a line says now and then how far the work is.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 import sys
 import threading
 import time
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
 from typing import TypeVar
 
-T = TypeVar("T")
+T = TypeVar('T')
 
 PATIENCE = 2.0
 """A wait as long as this is told [s]."""
@@ -38,14 +38,14 @@ def bar(items: Collection[T], what: str) -> Iterator[T]:
     for done, item in enumerate(items):
         if time.monotonic() >= told + _LINES_EVERY:
             told = time.monotonic()
-            _tell(f"{what}: {done} of {len(items)}")
+            _tell(f'{what}: {done} of {len(items)}')
         yield item
 
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
     """Say what is done, if the work inside takes longer than people wait without a word."""
-    timer = threading.Timer(PATIENCE, _tell, [f"{what} ..."])
+    timer = threading.Timer(PATIENCE, _tell, [f'{what} ...'])
     timer.daemon = True
     timer.start()
     try:

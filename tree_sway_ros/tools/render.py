@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Iterator
+import time
 from typing import Any
 
 import numpy as np
@@ -35,24 +35,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add("--seconds", type=float, default=8.0, metavar="N", help="of the film (%(default)s)")
-    add("--start", type=float, default=0.0, help="of the wind [s] (%(default)s)")
-    add("--rate", type=float, default=20.0, help="pictures per second [Hz] (%(default)s)")
-    add("--pixels", type=int, default=480, help="height of the picture (%(default)s)")
-    add_output_arguments(parser, "file to write: .gif, .png, .mp4, or a folder for its frames")
+    add('--seconds', type=float, default=8.0, metavar='N', help='of the film (%(default)s)')
+    add('--start', type=float, default=0.0, help='of the wind [s] (%(default)s)')
+    add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
+    add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
+    add_output_arguments(parser, 'file to write: .gif, .png, .mp4, or a folder for its frames')
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Sway the tree, paint it, and say how long that took."""
-    for name, low, high in (("seconds", 0.1, 3600.0), ("rate", 1.0, 120.0), ("pixels", 64, 4320)):
-        within(f"--{name}", getattr(arguments, name), low, high)
+    for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
+        within(f'--{name}', getattr(arguments, name), low, high)
     from tree_sway_ros.view.animation import animate_poses
     from tree_sway_ros.view.leaf_drawing import blades_per_cluster
 
     target = output_path(arguments)
     scene = opened_scene(arguments)
     wind = opened_wind(arguments)
-    with waiting("setting up the tree"):
+    with waiting('setting up the tree'):
         simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
     clusters = _BLADES // blades_per_cluster(scene.tree.species)
     began = time.monotonic()
@@ -69,8 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
     )
     spent = time.monotonic() - began
     print(
-        f"{target}: {scene.tree.name}, {len(frames)} pictures, {arguments.seconds:g} s of wind "
-        f"in {spent:.1f} s"
+        f'{target}: {scene.tree.name}, {len(frames)} pictures, {arguments.seconds:g} s of wind '
+        f'in {spent:.1f} s'
     )
     return 0
 
@@ -86,7 +86,7 @@ def _swayed(
         simulator.step(wind.mean(now, now + dt), dt)
         now += dt
     frames, winds = [], []
-    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), "swaying"):
+    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), 'swaying'):
         for _ in range(steps):
             blowing = wind.mean(now, now + dt)
             simulator.step(blowing, dt)
@@ -97,5 +97,5 @@ def _swayed(
 
 
 def _watched(images: Iterator[Any], count: int) -> Iterator[Any]:
-    for _ in bar(range(count), "painting"):
+    for _ in bar(range(count), 'painting'):
         yield next(images)

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+import shutil
+import subprocess
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from tree_sway_ros.view.projection import Camera
 from tree_sway_ros.view.raster import Raster
 from tree_sway_ros.view.tree_drawing import Frame, frame_around
 
-_KINDS = {".gif": "GIF", ".png": "PNG", ".apng": "PNG", ".mp4": "MP4"}
+_KINDS = {'.gif': 'GIF', '.png': 'PNG', '.apng': 'PNG', '.mp4': 'MP4'}
 _GIF_COLORS = 64
 
 
@@ -45,6 +45,8 @@ def animate_poses(
 
     Parameters
     ----------
+    tree, leaves
+        The tree, and its leaves; none are drawn if None.
     frames
         Pose block of each frame, (n, 7).
     winds
@@ -77,13 +79,13 @@ def animate_poses(
         raise FormatError(
             f"'{target.suffix}' is no moving picture",
             where=str(target),
-            cure=f"end the name with one of: {', '.join(_KINDS)}; a folder has no ending",
+            cure=f'end the name with one of: {", ".join(_KINDS)}; a folder has no ending',
         )
     blowing = np.asarray(winds, dtype=np.float64)
     if len(frames) == 0 or blowing.shape != (len(frames), 3):
         raise ParameterError(
-            f"{len(frames)} frames and winds {blowing.shape} do not go together",
-            cure="give one wind (3,) a frame, and at least one frame",
+            f'{len(frames)} frames and winds {blowing.shape} do not go together',
+            cure='give one wind (3,) a frame, and at least one frame',
         )
     camera = camera or Camera()
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
@@ -100,7 +102,7 @@ def animate_poses(
     told = images() if watched is None else watched(images(), len(blocks))
     if kind is None:
         _write_frames(target, told)
-    elif kind == "MP4":
+    elif kind == 'MP4':
         _write_film(target, told, raster.size, rate)
     else:
         _write_picture(target, told, kind, rate)
@@ -109,8 +111,8 @@ def animate_poses(
 
 def _write_picture(target: Path, images: Iterator[Any], kind: str, rate: float) -> None:
     first = next(images)
-    others: Any = list(images) if kind == "PNG" else images  # Pillow goes through them twice
-    if kind == "GIF":
+    others: Any = list(images) if kind == 'PNG' else images  # Pillow goes through them twice
+    if kind == 'GIF':
         palette = first.quantize(_GIF_COLORS)
         # No dither: dots that dance are no motion.
         others = (image.quantize(palette=palette, dither=0) for image in images)
@@ -125,27 +127,27 @@ def _write_frames(target: Path, images: Iterator[Any]) -> None:
     try:
         target.mkdir(parents=True, exist_ok=True)
         for number, image in enumerate(images):
-            image.save(target / f"{number:05d}.png")
+            image.save(target / f'{number:05d}.png')
     except OSError as error:
         raise FormatError(
-            f"frames cannot be written ({error})", where=str(target), cure="name another folder"
+            f'frames cannot be written ({error})', where=str(target), cure='name another folder'
         ) from None
 
 
 def _write_film(target: Path, images: Iterator[Any], size: tuple[int, int], rate: float) -> None:
     """Have ffmpeg write what is painted, frame after frame."""
-    program = shutil.which("ffmpeg")
+    program = shutil.which('ffmpeg')
     if program is None:
         raise MissingDependencyError(
-            "films need ffmpeg, which is not installed",
+            'films need ffmpeg, which is not installed',
             where=str(target),
-            cure="install ffmpeg, or name a .gif or a folder",
+            cure='install ffmpeg, or name a .gif or a folder',
         )
     wide, high = size
-    given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{wide}x{high}", "-r", f"{rate:g}"]
+    given = ['-f', 'rawvideo', '-pix_fmt', 'rgb24', '-s', f'{wide}x{high}', '-r', f'{rate:g}']
     with whole_file(target) as partial:
-        command = [program, "-v", "error", "-y", *given, "-i", "-", "-pix_fmt", "yuv420p"]
-        command += ["-movflags", "+faststart", "-f", "mp4", str(partial)]
+        command = [program, '-v', 'error', '-y', *given, '-i', '-', '-pix_fmt', 'yuv420p']
+        command += ['-movflags', '+faststart', '-f', 'mp4', str(partial)]
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
         assert process.stdin is not None
         try:
@@ -155,11 +157,11 @@ def _write_film(target: Path, images: Iterator[Any], size: tuple[int, int], rate
             pass  # it says why below
         _, told = process.communicate()
         if process.returncode:
-            reason = told.decode(errors="replace").strip().splitlines()
+            reason = told.decode(errors='replace').strip().splitlines()
             raise FormatError(
-                f"ffmpeg: {reason[-1] if reason else 'failed'}",
+                f'ffmpeg: {reason[-1] if reason else "failed"}',
                 where=str(target),
-                cure="name a .gif or a folder",
+                cure='name a .gif or a folder',
             )
 
 

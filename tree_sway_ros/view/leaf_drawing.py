@@ -74,12 +74,12 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
     m, k = len(poses), len(spray.places)
     cluster = Rotation.from_quat(np.repeat(poses[:, 3:], k, axis=0))
     turn = np.column_stack([np.tile(spray.fans, m), np.tile(spray.tilts, m)])
-    own = cluster * Rotation.from_euler("ZX", turn)
+    own = cluster * Rotation.from_euler('ZX', turn)
     blade = np.column_stack([_BLADE[:, 0], spray.width * _BLADE[:, 1], np.zeros(len(_BLADE))])
     length = spray.length * np.repeat(size, k)
     base = np.repeat(poses[:, :3], k, axis=0)
     base = base + (np.tile(spray.places, m) * length)[:, None] * cluster.apply([1.0, 0.0, 0.0])
-    corners = np.einsum("mij,kj->mki", own.as_matrix(), blade)
+    corners = np.einsum('mij,kj->mki', own.as_matrix(), blade)
     return base[:, None] + length[:, None, None] * corners, own.apply([0.0, 0.0, 1.0])
 
 

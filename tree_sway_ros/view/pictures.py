@@ -20,11 +20,11 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.view.plotting import new_figure, save_figure
 from tree_sway_ros.view.projection import Camera
 from tree_sway_ros.view.tree_drawing import (
-    Frame,
     draw_ghost,
     draw_scale,
     draw_tree,
     draw_wind,
+    Frame,
     frame_around,
 )
 
@@ -53,6 +53,8 @@ def picture_in_wind(
 
     Parameters
     ----------
+    tree
+        The tree or trees.
     poses
         Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
     wind
@@ -81,9 +83,9 @@ def picture_in_wind(
     _draw(windy, trees, block, camera, frame, leaves, angle)
     draw_scale(rest, frame)
     draw_wind(windy, frame, camera, blowing)
-    rest.text(0.03, 0.97, "at rest", transform=rest.transAxes, va="top", color="#555555")
+    rest.text(0.03, 0.97, 'at rest', transform=rest.transAxes, va='top', color='#555555')
     windy.text(
-        0.97, 0.97, "in wind", transform=windy.transAxes, ha="right", va="top", color="#555555"
+        0.97, 0.97, 'in wind', transform=windy.transAxes, ha='right', va='top', color='#555555'
     )
     figure.suptitle(title if title is not None else _caption(trees), y=0.985)
     return save_figure(figure, path)
@@ -93,7 +95,10 @@ def _two_axes(frame: Frame) -> tuple[Figure, Axes, Axes]:
     """Beside each other, or what is wide one above the other."""
     if frame.aspect <= _WIDE:
         figure = new_figure(max(2.0 * _INCHES_HIGH * frame.aspect, 6.0), _INCHES_HIGH + 0.4)
-        left, right = figure.add_axes((0.0, 0.0, 0.5, 0.93)), figure.add_axes((0.5, 0.0, 0.5, 0.93))
+        left, right = (
+            figure.add_axes((0.0, 0.0, 0.5, 0.93)),
+            figure.add_axes((0.5, 0.0, 0.5, 0.93)),
+        )
         return figure, left, right
     figure = new_figure(_INCHES_WIDE, 2.0 * _INCHES_WIDE / frame.aspect + 0.4)
     upper, lower = figure.add_axes((0.0, 0.47, 1.0, 0.47)), figure.add_axes((0.0, 0.0, 1.0, 0.47))
@@ -135,5 +140,5 @@ def _nodes(trees: tuple[Tree, ...]) -> tuple[Floats, Floats]:
 def _caption(trees: tuple[Tree, ...]) -> str:
     segments = sum(each.n_segments for each in trees)
     if len(trees) > 1:
-        return f"{len(trees)} trees: {segments} segments"
-    return f"{trees[0].name}: {segments} segments, {trees[0].height:.2f} m"
+        return f'{len(trees)} trees: {segments} segments'
+    return f'{trees[0].name}: {segments} segments, {trees[0].height:.2f} m'

@@ -17,16 +17,17 @@ if TYPE_CHECKING:
 
 def new_figure(width: float, height: float) -> Figure:
     """
-    Make an empty figure of a size in [inch]; a `MissingDependencyError` if matplotlib is not there.
+    Make an empty figure of a size in [inch]; a `MissingDependencyError` if matplotlib is not
+    there.
     """
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingDependencyError(
-            "pictures need matplotlib", cure="pip install matplotlib"
+            'pictures need matplotlib', cure='pip install matplotlib'
         ) from None
-    figure = Figure(figsize=(width, height), facecolor="white")
+    figure = Figure(figsize=(width, height), facecolor='white')
     FigureCanvasAgg(figure)
     return figure
 
@@ -47,14 +48,14 @@ def save_figure(
         raise FormatError(
             f"'{target.suffix}' is no picture format",
             where=str(target),
-            cure=f"end the name with one of: {', '.join('.' + k for k in sorted(known))}",
+            cure=f'end the name with one of: {", ".join("." + k for k in sorted(known))}',
         )
     with whole_file(target) as partial:
         figure.savefig(
             partial,
             dpi=dots_per_inch,
             format=target.suffix[1:].lower(),
-            metadata={"Description": digest_of(figures)} if figures else None,
+            metadata={'Description': digest_of(figures)} if figures else None,
         )
     return target
 

@@ -16,8 +16,8 @@ from tree_sway_ros.view.tree_drawing import Frame, ground_shapes, painted_shapes
 
 _FINER = 2
 _WIDE_EDGE = 0.2
-_WIND = "#1f6fb4"
-_SHADOW = "#e2e2e0"
+_WIND = '#1f6fb4'
+_SHADOW = '#e2e2e0'
 
 
 class Raster:
@@ -31,14 +31,14 @@ class Raster:
             from PIL import Image, ImageDraw, ImageFont
         except ImportError:
             raise MissingDependencyError(
-                "moving pictures need pillow", cure="pip install pillow"
+                'moving pictures need pillow', cure='pip install pillow'
             ) from None
         self._tree, self._camera, self._frame = tree, camera, frame
         self._draw_on = ImageDraw.Draw
         # Films want even numbers of points.
         self.size = 2 * round(0.5 * pixels * frame.aspect), 2 * round(0.5 * pixels)
         self._scale = _FINER * self.size[1] / (frame.top - frame.bottom)
-        self._back = Image.new("RGB", (_FINER * self.size[0], _FINER * self.size[1]), "white")
+        self._back = Image.new('RGB', (_FINER * self.size[0], _FINER * self.size[1]), 'white')
         self._font = ImageFont.load_default(size=_FINER * max(10.0, 0.032 * pixels))
         draw = self._draw_on(self._back)
         pot, (middle, width, height) = ground_shapes(tree, camera)
@@ -99,7 +99,7 @@ class Raster:
         draw.polygon(self._points(head), fill=_WIND)
         above = np.array([0.0, 0.045 * size])
         at = self._points((middle + above)[None])
-        draw.text(at, f"{speed:.1f} m/s", fill=_WIND, font=self._font, anchor="mm")
+        draw.text(at, f'{speed:.1f} m/s', fill=_WIND, font=self._font, anchor='mm')
 
     def _to_pixels(self, points: Floats) -> Floats:
         """Points of the picture plane in [m], (k, 2), as pixels from the upper left corner."""

@@ -25,10 +25,10 @@ _THICK = 0.004
 """Diameter over the height of the picture from which joints are closed by discs."""
 _FLARE, _FLARE_HIGH = 0.45, 1.6
 """How much wider a stem is at the ground, and how high that goes, in diameters."""
-_POT = "#b5694a"
-_POT_RIM = "#c67f60"
-_GROUND = "#8d8d86"
-_GHOST = "#dedad6"
+_POT = '#b5694a'
+_POT_RIM = '#c67f60'
+_GROUND = '#8d8d86'
+_GHOST = '#dedad6'
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,8 @@ def frame_around(
     points: Floats, camera: Camera, margin: float = 0.06, headroom: float = 0.0
 ) -> Frame:
     """
-    Frame all points [m], (..., 3), that must be in it, with a margin round them and headroom above.
+    Frame all points [m], (..., 3), that must be in it, with a margin round them and headroom
+    above.
 
     Both are over its height, or over what is much wider than high.
     """
@@ -77,8 +78,10 @@ def draw_tree(
 
     Parameters
     ----------
-    start, end
-        Nodes of its segments as they are now in [m], (n, 3) each.
+    axes, camera, frame
+        Where to draw, from where it is seen, and what is shown of it.
+    tree, start, end
+        The tree, and the nodes of its segments as they are now in [m], (n, 3) each.
     leaves
         Pose block of the leaf clusters, (m, 7), and their diameters in [m], (m,).
 
@@ -86,8 +89,8 @@ def draw_tree(
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Ellipse, Polygon
 
-    axes.set(xlim=(frame.left, frame.right), ylim=(frame.bottom, frame.top), aspect="equal")
-    axes.axis("off")
+    axes.set(xlim=(frame.left, frame.right), ylim=(frame.bottom, frame.top), aspect='equal')
+    axes.axis('off')
     pot, (middle, width, height) = ground_shapes(tree, camera)
     for corners, color in pot:
         axes.add_patch(Polygon(corners, color=color, lw=0, zorder=0))
@@ -95,7 +98,7 @@ def draw_tree(
         axes.add_patch(Ellipse(middle, width, height, color=_GROUND, alpha=0.25, lw=0, zorder=0))
     polygons, colors, edges = painted_shapes(tree, start, end, camera, frame, leaves)
     drawn = PolyCollection(polygons, facecolors=colors, edgecolors=colors, linewidths=edges)
-    drawn.set_joinstyle("round")
+    drawn.set_joinstyle('round')
     axes.add_collection(drawn)
 
 
@@ -113,7 +116,8 @@ def painted_shapes(
     Returns
     -------
     tuple
-        Corners of each shape in [m], (k, 2); colours (s, 3), 0 to 1; widths of edges in [pt], (s,).
+        Corners of each shape in [m], (k, 2); colours (s, 3), 0 to 1; widths of edges in [pt],
+        (s,).
 
     """
     base, tip = camera.project(start), camera.project(end)
@@ -164,8 +168,8 @@ def draw_scale(axes: Axes, frame: Frame) -> None:
         v for v in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 0.02) if v <= max(0.2 * size, 0.02)
     )
     right, low = frame.right - 0.03 * size, frame.bottom + 0.045 * size
-    axes.plot([right - length, right], [low, low], color="black", lw=1.6, solid_capstyle="butt")
-    axes.text(right - 0.5 * length, low + 0.012 * size, f"{length:g} m", ha="center", va="bottom")
+    axes.plot([right - length, right], [low, low], color='black', lw=1.6, solid_capstyle='butt')
+    axes.text(right - 0.5 * length, low + 0.012 * size, f'{length:g} m', ha='center', va='bottom')
 
 
 def draw_wind(axes: Axes, frame: Frame, camera: Camera, wind: Floats) -> None:
@@ -177,9 +181,11 @@ def draw_wind(axes: Axes, frame: Frame, camera: Camera, wind: Floats) -> None:
     length = 0.16 * size
     middle = np.array([frame.left + 0.14 * size, frame.top - 0.09 * size])
     base, tip = middle - 0.5 * length * along, middle + 0.5 * length * along
-    arrow = {"arrowstyle": "-|>,head_width=.35,head_length=.7", "lw": 2.2, "color": "#1f6fb4"}
-    axes.annotate("", xy=tuple(tip), xytext=tuple(base), arrowprops=arrow)
-    axes.text(middle[0], middle[1] + 0.025 * size, f"{speed:.1f} m/s", ha="center", color="#1f6fb4")
+    arrow = {'arrowstyle': '-|>,head_width=.35,head_length=.7', 'lw': 2.2, 'color': '#1f6fb4'}
+    axes.annotate('', xy=tuple(tip), xytext=tuple(base), arrowprops=arrow)
+    axes.text(
+        middle[0], middle[1] + 0.025 * size, f'{speed:.1f} m/s', ha='center', color='#1f6fb4'
+    )
 
 
 def _tapered(base: Floats, tip: Floats, base_diameter: Floats, tip_diameter: Floats) -> Floats:
@@ -209,7 +215,7 @@ def _flare(foot: Floats, diameter: float) -> Floats:
 
 
 def _is_potted(tree: Tree) -> bool:
-    return tree.species in species_keys() and species_named(tree.species).habit == "pot"
+    return tree.species in species_keys() and species_named(tree.species).habit == 'pot'
 
 
 def _depth(camera: Camera, points: Floats, frame: Frame) -> Floats:

@@ -85,7 +85,7 @@ def test_stiffness_of_a_uniform_branch(stem):
     assert stiff == pytest.approx(3.2 * 9e9 * np.pi / 64 * 0.02**4 / 2.0)
 
 
-@pytest.mark.parametrize("taper", np.linspace(0.0, 0.9, 10))
+@pytest.mark.parametrize('taper', np.linspace(0.0, 0.9, 10))
 def test_tip_and_frequency_are_those_of_the_euler_bernoulli_beam(stem, taper):
     length, base, modulus, density = 2.0, 0.02, 9e9, 900.0
     tree = stem(length, base, base * (1 - taper), cuts=6)
@@ -112,7 +112,7 @@ def test_the_share_of_inertia_is_what_is_known_of_it(stem):
     assert 1.0 <= shares[1] < 1.1
 
 
-@pytest.mark.parametrize("cuts", [6, 12, 24])
+@pytest.mark.parametrize('cuts', [6, 12, 24])
 def test_results_do_not_depend_on_how_a_branch_is_cut(stem, cuts):
     def figures(n):
         one = branch(stem(length=2.0, tip=0.008, cuts=n))
@@ -186,7 +186,7 @@ def test_a_branch_that_turns_back_to_its_base_still_has_a_scale(sketch):
     assert one.integral(shape.slope) == pytest.approx(2.0)
 
 
-@pytest.mark.parametrize("fraction", [0.02, 0.1, 0.5, 0.83, 1.0])
+@pytest.mark.parametrize('fraction', [0.02, 0.1, 0.5, 0.83, 1.0])
 def test_a_child_within_a_segment_bends_the_rest_as_if_it_were_cut_there(stem, fraction):
     one = branch(stem(length=3.0, cuts=3), Attachments(np.array([1]), np.array([fraction])))
     place = 1.0 + fraction
@@ -209,23 +209,23 @@ def test_the_ritz_solution_is_that_of_the_books():
     assert root**2 == pytest.approx(UNIFORM, rel=1e-9)
 
 
-@pytest.mark.parametrize("model", ["branch", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'coupled'])
 def test_a_simulated_uniform_stem_has_the_beams_frequency(stem, model):
     sim = SwaySimulator(
-        stem(length=2.0, base=0.02, cuts=3), model=model, gravity=0.0, enrich="stem"
+        stem(length=2.0, base=0.02, cuts=3), model=model, gravity=0.0, enrich='stem'
     )
-    wood = species_named("broadleaf")
+    wood = species_named('broadleaf')
     # E I / (rho A L^4) with I / A = d^2 / 16.
     w = 3.5160 * np.sqrt(wood.modulus * 0.02**2 / 16.0 / wood.density / 2.0**4)
     assert sim.frequencies(1)[0] == pytest.approx(w / (2 * np.pi), rel=2e-3)
-    if model == "coupled":
+    if model == 'coupled':
         assert sim.frequencies(3)[2] == pytest.approx(22.034 / 3.516 * w / (2 * np.pi), rel=0.02)
 
 
-@pytest.mark.parametrize("ratio", [0.02, 0.05, 0.12, 0.24])
+@pytest.mark.parametrize('ratio', [0.02, 0.05, 0.12, 0.24])
 def test_free_decay_has_the_damping_and_the_frequency_asked_for(stem, ratio):
     tree = stem(length=1.5, base=0.02, tip=0.01)
-    sim = SwaySimulator(tree, model="branch", damping_ratio=ratio, gravity=0.0)
+    sim = SwaySimulator(tree, model='branch', damping_ratio=ratio, gravity=0.0)
     dt = 1.0 / 240.0
     for _ in range(10):
         sim.step([0.3, 0.0, 0.0], dt)

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.branch.model import TreeBeams, branch_models, enriched_branches
+from tree_sway_ros.core.branch.model import branch_models, enriched_branches, TreeBeams
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.study.example_trees import forked_tree
 
@@ -18,7 +18,9 @@ def test_models_stand_in_the_order_of_branches(fork):
     assert [len(m.beam.length) for m in models] == np.diff(tree.branch_first).tolist()
     assert [m.children.tolist() for m in models] == [[1, 3], [2], [], []]
     for b, model in enumerate(models):
-        assert model.beam.point[0, 0] == pytest.approx(tree.start[tree.segments_of(b)][0], abs=0.05)
+        assert model.beam.point[0, 0] == pytest.approx(
+            tree.start[tree.segments_of(b)][0], abs=0.05
+        )
 
 
 def test_a_child_sits_at_the_foot_of_its_perpendicular():
@@ -79,11 +81,11 @@ def test_the_model_does_not_care_where_the_tree_stands(fork):
 def test_what_is_enriched():
     tree = forked_tree(0.5, 0.6)
     carriers = {0, *tree.branch_parent[1:].tolist()}
-    limbs = enriched_branches(tree, "limbs")
-    assert enriched_branches(tree, "none") == set()
-    assert enriched_branches(tree, "stem") == {0} < limbs
-    assert limbs < enriched_branches(tree, "carriers") == carriers
-    assert enriched_branches(tree, "all") == set(range(tree.n_branches))
+    limbs = enriched_branches(tree, 'limbs')
+    assert enriched_branches(tree, 'none') == set()
+    assert enriched_branches(tree, 'stem') == {0} < limbs
+    assert limbs < enriched_branches(tree, 'carriers') == carriers
+    assert enriched_branches(tree, 'all') == set(range(tree.n_branches))
     for branch in carriers:
         carried = np.flatnonzero(tree.branch_parent == branch)
         assert (branch in limbs) == (branch == 0 or bool(carriers & set(carried.tolist())))

@@ -7,14 +7,14 @@ the truth the more there are.
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
-from tree_sway_ros.core.branch.beam import RotationField, energies
+from tree_sway_ros.core.branch.beam import energies, RotationField
 from tree_sway_ros.core.branch.model import branch_models
-from tree_sway_ros.core.branch.shapes import FEWER_TURNS, N_PAIRS, N_TURNS, across
+from tree_sway_ros.core.branch.shapes import across, FEWER_TURNS, N_PAIRS, N_TURNS
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.core.reduction.modes import natural_modes
 

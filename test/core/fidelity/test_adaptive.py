@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.fidelity.adaptive import (
+    AdaptiveSimulator,
     CROSS_FADE,
     HAND_OVER,
     REVIEW,
     RUN_IN,
-    AdaptiveSimulator,
 )
 from tree_sway_ros.core.fidelity.ladder import LADDER
 from tree_sway_ros.core.simulator.settings import Settings
@@ -22,10 +22,10 @@ from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.study.example_trees import forked_tree
 
 DT = 1.0 / 60.0
-WOOD = Species("example", "example", 8e9, 900.0, damping_bare=0.08)
+WOOD = Species('example', 'example', 8e9, 900.0, damping_bare=0.08)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def made():
     return AdaptiveSimulator(forked_tree(0.5, 0.6), WOOD, Settings(gravity=0.0))
 
@@ -44,8 +44,8 @@ def adaptive(made):
 
 
 def test_a_far_tree_stands_still_and_a_near_one_is_solved(adaptive):
-    assert adaptive(10.0).model == "frozen"
-    assert adaptive(0.01).model in ("modes", "coupled")
+    assert adaptive(10.0).model == 'frozen'
+    assert adaptive(0.01).model in ('modes', 'coupled')
 
 
 def test_within_a_loose_tolerance_branches_are_frozen(adaptive):
@@ -61,7 +61,7 @@ def test_a_budget_comes_before_the_tolerance(adaptive):
     assert tight.cost <= 0.5 * free.cost
     assert free.error < tight.error < free.motion
     assert adaptive(0.1, budget=free.cost).choice.cost < tight.cost
-    assert adaptive(1e-9, budget=1e-3).model == "frozen"
+    assert adaptive(1e-9, budget=1e-3).model == 'frozen'
 
 
 def test_a_slower_machine_can_afford_less(adaptive):
@@ -89,19 +89,21 @@ def test_a_smaller_budget_changes_the_model_without_a_step(adaptive):
 
 
 def test_a_tolerance_nobody_can_meet_takes_the_best(adaptive):
-    assert adaptive(1e-9).model == "coupled"
+    assert adaptive(1e-9).model == 'coupled'
 
 
 def test_coming_nearer_changes_the_model_without_a_step(adaptive):
     sim = adaptive(10.0)
-    wind = simulate_turbulence(5.0, rate=60, duration=40, rng=np.random.default_rng(3), height=10.0)
+    wind = simulate_turbulence(
+        5.0, rate=60, duration=40, rng=np.random.default_rng(3), height=10.0
+    )
     frames, changed_at = [], None
     for i, w in enumerate(wind):
         if i == 1200:
             sim.tolerance = 0.004
         sim.step(w, DT)
         frames.append(sim.place().copy())
-        if changed_at is None and sim.model != "frozen":
+        if changed_at is None and sim.model != 'frozen':
             changed_at = i
     assert changed_at is not None
     assert (changed_at - 1200) * DT <= REVIEW + 2 * DT
@@ -111,10 +113,10 @@ def test_coming_nearer_changes_the_model_without_a_step(adaptive):
     assert fading.max() <= afterwards.max() + 1e-3
 
 
-@pytest.mark.parametrize(("before", "after"), [(0.0, 10.0), (3.0, 12.0)])
+@pytest.mark.parametrize(('before', 'after'), [(0.0, 10.0), (3.0, 12.0)])
 def test_a_gust_is_met_at_once(adaptive, before, after):
     sim = adaptive(0.005)
-    full = SwaySimulator(sim.tree, WOOD, Settings(gravity=0.0), model="coupled")
+    full = SwaySimulator(sim.tree, WOOD, Settings(gravity=0.0), model='coupled')
     for _ in range(20 * 60):
         sim.step((before, 0.0, 0.0), DT)
         full.step((before, 0.0, 0.0), DT)
@@ -141,7 +143,7 @@ def test_an_unforeseen_gust_is_met_by_the_best_model_within_the_budget(adaptive)
             for _ in range(seconds * 60):
                 sim.step((speed, 0.0, 0.0), DT)
         met[budget] = sim.choice
-    assert met[0.0].name == "coupled"
+    assert met[0.0].name == 'coupled'
     assert met[15.0].error > met[0.0].error
     assert met[15.0].cost <= 15.0
 
@@ -153,7 +155,7 @@ def test_gusts_of_the_same_size_as_before_are_left_to_the_tolerance(adaptive):
             sim.step((6.0 if second % 10 == 0 else 2.0, 0.0, 0.0), DT)
         if second >= 15:
             names.add(sim.choice.name)
-    assert "coupled" not in names
+    assert 'coupled' not in names
 
 
 def test_a_gust_that_goes_leaves_the_model_for_a_while(adaptive):
@@ -164,7 +166,7 @@ def test_a_gust_that_goes_leaves_the_model_for_a_while(adaptive):
         if seconds == 2:
             met = sim.model
     best_first = [model for model, *_ in LADDER]
-    assert best_first.index(sim.model) <= best_first.index(met) < best_first.index("frozen")
+    assert best_first.index(sim.model) <= best_first.index(met) < best_first.index('frozen')
 
 
 def test_poses_stay_rotations_while_they_fade(adaptive):
@@ -174,7 +176,7 @@ def test_poses_stay_rotations_while_they_fade(adaptive):
     sim.tolerance = 10.0
     for _ in range(int((REVIEW + RUN_IN - 1.0 + 0.5 * CROSS_FADE) / DT)):
         sim.step((6.0, 1.0, 0.0), DT)
-    assert not np.array_equal(sim.place(), sim.shown.place()), "two models are mixed"
+    assert not np.array_equal(sim.place(), sim.shown.place()), 'two models are mixed'
     np.testing.assert_allclose(np.linalg.norm(sim.place()[:, 3:], axis=1), 1.0, atol=1e-12)
 
 

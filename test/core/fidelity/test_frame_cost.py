@@ -17,18 +17,18 @@ from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def whole():
-    return CalibratedTree(forked_tree(0.5, 0.6), species_named("oak"), Settings())
+    return CalibratedTree(forked_tree(0.5, 0.6), species_named('oak'), Settings())
 
 
 def test_richer_models_cost_more(whole):
     models = (
-        ("frozen", None),
-        ("branch", None),
-        ("subtree", None),
-        ("modes", 6),
-        ("coupled", None),
+        ('frozen', None),
+        ('branch', None),
+        ('subtree', None),
+        ('modes', 6),
+        ('coupled', None),
     )
     costs = [frame_cost(whole.bank(*model), whole.tree) for model in models]
     assert all(less < more for less, more in pairwise(costs))
@@ -36,5 +36,5 @@ def test_richer_models_cost_more(whole):
 
 def test_what_is_frozen_costs_little(whole):
     twigs = whole.tree.subtree_end - np.arange(whole.tree.n_branches) == 1
-    bank = PartlyFrozenTree(whole, twigs).bank("modes", 6)
-    assert frame_cost(bank, whole.tree) < 0.8 * frame_cost(whole.bank("modes", 6), whole.tree)
+    bank = PartlyFrozenTree(whole, twigs).bank('modes', 6)
+    assert frame_cost(bank, whole.tree) < 0.8 * frame_cost(whole.bank('modes', 6), whole.tree)

@@ -15,21 +15,21 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.wind.climate import WindClimate
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, RATIOS, forked_tree
+from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS, forked_tree, RATIOS
 from tree_sway_ros.study.tip_error import record_tips
 
 DAMPING = 0.05
-WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY, damping_bare=DAMPING)
+WOOD = Species('example', 'example', EXAMPLE_MODULUS, EXAMPLE_DENSITY, damping_bare=DAMPING)
 NO_WEIGHT = Settings(gravity=0.0)
 RATE, SETTLED = 60, 180
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def ladder():
     return FidelityLadder(forked_tree(0.5, 0.6), WOOD, NO_WEIGHT)
 
 
-@pytest.mark.parametrize(("length_ratio", "diameter_ratio"), RATIOS)
+@pytest.mark.parametrize(('length_ratio', 'diameter_ratio'), RATIOS)
 def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_ratio):
     tree = forked_tree(length_ratio, diameter_ratio)
     wind = simulate_turbulence(
@@ -60,16 +60,16 @@ def test_estimates_bound_the_true_error_and_are_not_idle(length_ratio, diameter_
 def test_a_model_with_more_modes_errs_less(ladder):
     found = {e.name: e for e in ladder.estimates(WindClimate.steady(6.0, 0.3))}
     errors = [
-        found[name].error for name in ("subtree", "modes 3", "modes 6", "modes 12", "coupled")
+        found[name].error for name in ('subtree', 'modes 3', 'modes 6', 'modes 12', 'coupled')
     ]
     assert errors == sorted(errors, reverse=True)
-    assert found["frozen"].error > found["frozen"].motion
+    assert found['frozen'].error > found['frozen'].motion
 
 
 def test_the_more_is_frozen_the_less_it_costs_and_the_more_it_errs(ladder):
     estimates = ladder.estimates(WindClimate.steady(6.0, 0.3))
     modes = sorted(
-        (e for e in estimates if e.name.startswith("modes 12")), key=lambda e: e.n_frozen
+        (e for e in estimates if e.name.startswith('modes 12')), key=lambda e: e.n_frozen
     )
     assert len(modes) >= 3
     assert [e.cost for e in modes] == sorted((e.cost for e in modes), reverse=True)
@@ -79,4 +79,4 @@ def test_the_more_is_frozen_the_less_it_costs_and_the_more_it_errs(ladder):
 
 def test_no_wind_needs_no_model(ladder):
     estimates = ladder.estimates(WindClimate.steady(0.0, 0.2))
-    assert choose(estimates, tolerance=1e-9).model == "frozen"
+    assert choose(estimates, tolerance=1e-9).model == 'frozen'

@@ -20,17 +20,17 @@ from tree_sway_ros.study.example_trees import EXAMPLE_DENSITY, EXAMPLE_MODULUS
 from tree_sway_ros.study.tip_error import record_tips
 from tree_sway_ros.study.validation.crooked_trees import crooked_tree
 
-WOOD = Species("example", "example", EXAMPLE_MODULUS, EXAMPLE_DENSITY, damping_bare=0.05)
+WOOD = Species('example', 'example', EXAMPLE_MODULUS, EXAMPLE_DENSITY, damping_bare=0.05)
 LIMB_WISE = Settings(twig_tolerance=-1.0, crown_coherence=0.3)
 RATE = 60.0
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def tree():
     return crooked_tree(1)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def ladder(tree):
     return FidelityLadder(tree, WOOD, LIMB_WISE)
 
@@ -40,7 +40,7 @@ def test_estimates_bound_the_error_in_gusts_limb_by_limb(tree, ladder):
         6.0, rate=RATE, duration=6.0, rng=np.random.default_rng(2), height=10.0
     )
     truth = make_simulator(
-        tree, WOOD, model="segments", crown_coherence=0.3, damping_ratio=0.05, in_leaf=False
+        tree, WOOD, model='segments', crown_coherence=0.3, damping_ratio=0.05, in_leaf=False
     )
     true_tips = record_tips(truth, tree, wind, 1.0 / RATE)
     shares = []

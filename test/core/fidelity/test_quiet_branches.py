@@ -20,16 +20,16 @@ FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.05, 20.0, 30)])
 SHARES = (1e-6, 0.003, 0.01, 0.03, 0.1, 10.0)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def answer():
     tree = forked_tree(0.4, 0.35)
-    whole = CalibratedTree(tree, species_named("oak"), Settings())
-    bank = whole.bank("modes", 12)
+    whole = CalibratedTree(tree, species_named('oak'), Settings())
+    bank = whole.bank('modes', 12)
     rotations = key_response(bank.oscillators, whole.coupled.reduction.n_coordinates, FREQUENCIES)
     return whole, bank.branches, rotations
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def sets(answer):
     whole, branches, rotations = answer
     return quiet_sets(whole.tree, branches, rotations, FREQUENCIES, SHARES)
@@ -52,7 +52,7 @@ def test_what_freezing_costs_is_within_its_share(answer, sets):
 
     """
     whole, branches, rotations = answer
-    owner = np.repeat(np.arange(whole.tree.n_branches), branches["n_coordinates"])
+    owner = np.repeat(np.arange(whole.tree.n_branches), branches['n_coordinates'])
     static = rotations[:, :, :1].real
     moved = tip_motion(branches, static)
     for quiet, share in zip(sets[:-1], SHARES, strict=False):

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Headings, and the lines that shoots draw."""
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.growth.axis import aim, direction_of, grow_axis, heading_of
 

@@ -3,8 +3,8 @@
 """
 Grown conifers, in needles, sway as often as measured ones of the same size.
 
-602 conifers of eight species: f0 = 0.0766 + 3.1219 DBH / H^2 in Hz, cm and m (Moore & Maguire 2004,
-Trees 18).
+602 conifers of eight species: f0 = 0.0766 + 3.1219 DBH / H^2 in Hz, cm and m (Moore & Maguire
+2004, Trees 18).
 
 """
 
@@ -20,18 +20,18 @@ from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
-FEW = {("spruce", 10.0), ("pine", 30.0)}
-ALL = product(("spruce", "sitka", "pine", "douglas_fir"), (10.0, 15.0, 20.0, 30.0))
+FEW = {('spruce', 10.0), ('pine', 30.0)}
+ALL = product(('spruce', 'sitka', 'pine', 'douglas_fir'), (10.0, 15.0, 20.0, 30.0))
 
 
 @pytest.mark.parametrize(
-    ("species", "height"),
+    ('species', 'height'),
     [each if each in FEW else pytest.param(*each, marks=pytest.mark.long) for each in ALL],
 )
 def test_conifers_sway_as_often_as_measured_ones(species: str, height: float) -> None:
     tree, wood = grow(species, height, rng=np.random.default_rng(0)), species_named(species)
     stem = tree.segments_of(0)
     diameter = np.interp(1.3, tree.start[stem][:, 2], tree.base_diameter[stem])
-    bank = build_bank(tree, wood, Settings(model="modes", n_modes=1, in_leaf=True))
+    bank = build_bank(tree, wood, Settings(model='modes', n_modes=1, in_leaf=True))
     measured = 0.0766 + 3.1219 * (100.0 * diameter) / height**2
     assert bank.frequencies[0] == pytest.approx(measured, rel=0.15)

@@ -5,10 +5,10 @@
 from collections.abc import Callable
 from functools import cache
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.branch.greenhill import greenhill_length
 from tree_sway_ros.core.growth.benjamina import grow_benjamina
@@ -22,7 +22,7 @@ from tree_sway_ros.study.example_trees import branch_order
 Generator = Callable[[np.random.Generator], Tree]
 GENERATORS: list[Generator] = [grow_benjamina, grow_goldcrest, grow_broadleaf, grow_conifer]
 ANY_SEED = st.integers(0, 2**32 - 1)
-every_habit = pytest.mark.parametrize("generate", GENERATORS)
+every_habit = pytest.mark.parametrize('generate', GENERATORS)
 
 
 @cache
@@ -74,7 +74,7 @@ def test_same_seed_same_tree_another_seed_another(generate: Generator, seed: int
 
 
 @every_habit
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize('seed', range(2))
 def test_about_six_segments_a_branch_and_many_twigs_of_one(generate: Generator, seed: int) -> None:
     tree = grown(generate, seed)
     count = np.diff(tree.branch_first)
@@ -84,7 +84,7 @@ def test_about_six_segments_a_branch_and_many_twigs_of_one(generate: Generator, 
 
 
 @every_habit
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize('seed', range(2))
 def test_twigs_of_a_branch_are_alike_in_groups(generate: Generator, seed: int) -> None:
     tree = grown(generate, seed)
     twigs = tree.branch_first[:-1][np.diff(tree.branch_first) == 1]
@@ -96,7 +96,7 @@ def test_twigs_of_a_branch_are_alike_in_groups(generate: Generator, seed: int) -
 
 
 @every_habit
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize('seed', range(2))
 def test_slenderness_is_that_of_trees(generate: Generator, seed: int) -> None:
     tree = grown(generate, seed)
     slenderness = tree.branch_length / tree.base_diameter[tree.branch_first[:-1]]
@@ -107,7 +107,7 @@ def test_slenderness_is_that_of_trees(generate: Generator, seed: int) -> None:
 
 
 @every_habit
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize('seed', range(2))
 def test_stands_under_its_own_weight(generate: Generator, seed: int) -> None:
     """Even if a branch were as thin throughout as at its middle and carried all its children."""
     tree = grown(generate, seed)

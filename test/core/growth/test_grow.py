@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A tree of any size from species, height and diameter."""
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
-from tree_sway_ros.core.growth.grow import HABITS, grow
+from tree_sway_ros.core.growth.grow import grow, HABITS
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, SpeciesError
@@ -25,7 +25,7 @@ def stem_diameter_at(tree: Tree, height: float) -> float:
 
 
 @given(
-    species=st.sampled_from(["oak", "birch", "spruce", "pine"]),
+    species=st.sampled_from(['oak', 'birch', 'spruce', 'pine']),
     height=st.floats(3.0, 40.0),
     slenderness=st.floats(30.0, 60.0),
 )
@@ -40,43 +40,43 @@ def test_height_and_breast_height_diameter_are_met(
     assert tree.n_segments <= 3000
 
 
-@pytest.mark.parametrize("species", species_keys())
+@pytest.mark.parametrize('species', species_keys())
 def test_every_species_grows_without_a_diameter(species: str) -> None:
-    height = 1.5 if species_named(species).habit == "pot" else 12.0
-    tree = grow(species, height, rng=rng(), name="mine")
-    assert tree.name == "mine"
+    height = 1.5 if species_named(species).habit == 'pot' else 12.0
+    tree = grow(species, height, rng=rng(), name='mine')
+    assert tree.name == 'mine'
     assert 800 >= height / stem_diameter_at(tree, 0.0) >= 20
     assert tree.n_segments <= 3000
 
 
-@pytest.mark.parametrize("habit", HABITS)
+@pytest.mark.parametrize('habit', HABITS)
 def test_the_habit_can_be_chosen(habit: str) -> None:
-    tree = grow("oak", 2.0, habit=habit, rng=rng())  # type: ignore[arg-type]
+    tree = grow('oak', 2.0, habit=habit, rng=rng())  # type: ignore[arg-type]
     assert tree.height == pytest.approx(2.0)
-    assert tree.species == "oak"
+    assert tree.species == 'oak'
 
 
 def test_habits_follow_the_species() -> None:
-    habits = [species_named(s).habit for s in ("spruce", "oak", "goldcrest")]
-    assert habits == ["conifer", "broadleaf", "pot"]
+    habits = [species_named(s).habit for s in ('spruce', 'oak', 'goldcrest')]
+    assert habits == ['conifer', 'broadleaf', 'pot']
 
 
 def test_size_alone_does_not_change_the_shape() -> None:
-    small, large = (grow("oak", height, rng=rng()) for height in (6.0, 12.0))
+    small, large = (grow('oak', height, rng=rng()) for height in (6.0, 12.0))
     np.testing.assert_allclose(large.end, 2.0 * small.end, rtol=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("species", "height", "diameter", "habit", "message"),
+    ('species', 'height', 'diameter', 'habit', 'message'),
     [
-        ("oak", 0.5, None, None, "height 0.5 m is out of range .*give 1 to 50 m"),
-        ("oak", float("nan"), None, None, "height nan m"),
-        ("benjamina", 9.0, None, None, "give 0.2 to 4 m"),
-        ("oak", 20.0, 0.05, None, "bend over under its own weight"),
-        ("oak", 10.0, 9.0, None, "is no stem; give .* to 2 m"),
-        ("oak", 10.0, -0.1, None, "diameter -0.1 m"),
-        ("oak", 10.0, float("nan"), None, "diameter nan m"),
-        ("oak", 10.0, None, "palm", "unknown habit 'palm'; use one of: conifer, broadleaf, pot"),
+        ('oak', 0.5, None, None, 'height 0.5 m is out of range .*give 1 to 50 m'),
+        ('oak', float('nan'), None, None, 'height nan m'),
+        ('benjamina', 9.0, None, None, 'give 0.2 to 4 m'),
+        ('oak', 20.0, 0.05, None, 'bend over under its own weight'),
+        ('oak', 10.0, 9.0, None, 'is no stem; give .* to 2 m'),
+        ('oak', 10.0, -0.1, None, 'diameter -0.1 m'),
+        ('oak', 10.0, float('nan'), None, 'diameter nan m'),
+        ('oak', 10.0, None, 'palm', "unknown habit 'palm'; use one of: conifer, broadleaf, pot"),
     ],
 )
 def test_bad_sizes_are_refused_with_the_cure(
@@ -88,4 +88,4 @@ def test_bad_sizes_are_refused_with_the_cure(
 
 def test_an_unknown_species_is_refused() -> None:
     with pytest.raises(SpeciesError, match="'okk'"):
-        grow("okk", 10.0, rng=rng())
+        grow('okk', 10.0, rng=rng())

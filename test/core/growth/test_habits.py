@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -24,7 +24,10 @@ def width_by_height(tree: Tree, n_bands: int = 8) -> np.ndarray:
     radius = np.hypot(*(tree.end - tree.start[0])[:, :2].T)
     band = np.minimum((tree.end[:, 2] / tree.height * n_bands).astype(int), n_bands - 1)
     return np.array(
-        [np.percentile(radius[band == i], 90) if np.any(band == i) else 0.0 for i in range(n_bands)]
+        [
+            np.percentile(radius[band == i], 90) if np.any(band == i) else 0.0
+            for i in range(n_bands)
+        ]
     )
 
 
@@ -32,9 +35,9 @@ def tips(tree: Tree, order: int) -> np.ndarray:
     return tree.branch_first[1:][branch_order(tree) == order] - 1
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize('seed', SEEDS)
 def test_benjamina_has_several_stems_from_one_short_stock_and_weeps(seed: int) -> None:
-    tree = builtin_tree("benjamina", seed)
+    tree = builtin_tree('benjamina', seed)
     rise = steepness(tree)
     assert tree.height == pytest.approx(1.3)
     assert tree.branch_length[0] < 0.1 * tree.height
@@ -47,9 +50,9 @@ def test_benjamina_has_several_stems_from_one_short_stock_and_weeps(seed: int) -
     assert np.mean(rise[tips(tree, 3)] < 0.0) > 0.75
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize('seed', SEEDS)
 def test_goldcrest_is_a_narrow_cone_of_steep_branches(seed: int) -> None:
-    tree = builtin_tree("goldcrest", seed)
+    tree = builtin_tree('goldcrest', seed)
     assert tree.height == pytest.approx(1.2)
     assert tree.branch_length[0] > 0.95 * tree.height
     width = width_by_height(tree)
@@ -62,9 +65,9 @@ def test_goldcrest_is_a_narrow_cone_of_steep_branches(seed: int) -> None:
     assert np.median(steepness(tree)[tips(tree, 1)]) > 0.9
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize('seed', SEEDS)
 def test_broadleaf_has_a_bare_trunk_and_a_rounded_crown(seed: int) -> None:
-    tree = builtin_tree("broadleaf", seed)
+    tree = builtin_tree('broadleaf', seed)
     assert tree.height == pytest.approx(8.0)
     crown = tree.end[branch_order(tree)[tree.branch_of_segment] > 1]
     assert np.percentile(crown[:, 2], 2) > 0.12 * tree.height
@@ -98,7 +101,7 @@ def lowest_limb(tree: Tree) -> float:
     return float(tree.start[limbs][:, 2].min()) / tree.height
 
 
-@pytest.mark.parametrize("species", ["spruce", "sitka", "douglas_fir"])
+@pytest.mark.parametrize('species', ['spruce', 'sitka', 'douglas_fir'])
 def test_crowns_of_conifers_come_to_a_point(species: str) -> None:
     width = width_by_height(grown(species), 6)
     widest = int(np.argmax(width))
@@ -108,31 +111,31 @@ def test_crowns_of_conifers_come_to_a_point(species: str) -> None:
 
 
 def test_each_species_keeps_its_habit() -> None:
-    trees = {s: grown(s) for s in ("oak", "birch", "beech", "ash", "sycamore", "walnut")}
-    trees |= {s: grown(s) for s in ("spruce", "sitka", "pine")}
+    trees = {s: grown(s) for s in ('oak', 'birch', 'beech', 'ash', 'sycamore', 'walnut')}
+    trees |= {s: grown(s) for s in ('spruce', 'sitka', 'pine')}
     width = {s: 2.0 * width_by_height(tree).max() / tree.height for s, tree in trees.items()}
     tip = {s: np.median(rise_of(tree, 1, at_tip=True)) for s, tree in trees.items()}
     twig = {s: np.median(steepness(tree)[twigs_of(tree)]) for s, tree in trees.items()}
     stem = {s: tree.end[tree.segments_of(0)][-1, 2] / tree.height for s, tree in trees.items()}
     # Birch: narrow, led by one stem, limbs start steeply and end low, twigs hang.
-    assert width["birch"] < 0.55
-    assert stem["birch"] > 0.9
-    assert np.median(rise_of(trees["birch"], 1, at_tip=False)) > 0.6
-    assert tip["birch"] < 0.5
-    assert twig["birch"] < -0.7
+    assert width['birch'] < 0.55
+    assert stem['birch'] > 0.9
+    assert np.median(rise_of(trees['birch'], 1, at_tip=False)) > 0.6
+    assert tip['birch'] < 0.5
+    assert twig['birch'] < -0.7
     # Oak and walnut spread wide and lose their stem in the crown; oak is crooked.
-    for key in ("oak", "walnut"):
+    for key in ('oak', 'walnut'):
         assert width[key] > 0.65
         assert stem[key] < 0.75
-    assert bend(trees["oak"]) > 2.0 * bend(trees["beech"])
+    assert bend(trees['oak']) > 2.0 * bend(trees['beech'])
     # Ash has a long bole, and turns its twigs up.
-    assert lowest_limb(trees["ash"]) > 0.25
-    assert twig["ash"] > 0.6
+    assert lowest_limb(trees['ash']) > 0.25
+    assert twig['ash'] > 0.6
     # Twigs of a spruce hang, those of a Sitka spruce stand level on level branches.
-    assert twig["spruce"] < -0.5
-    assert abs(twig["sitka"]) < 0.35
-    assert np.median(rise_of(trees["spruce"], 1, at_tip=False)) < tip["spruce"] - 0.3
-    assert lowest_limb(trees["pine"]) > 0.45
+    assert twig['spruce'] < -0.5
+    assert abs(twig['sitka']) < 0.35
+    assert np.median(rise_of(trees['spruce'], 1, at_tip=False)) < tip['spruce'] - 0.3
+    assert lowest_limb(trees['pine']) > 0.45
 
 
 def bend(tree: Tree) -> float:
@@ -145,7 +148,7 @@ def bend(tree: Tree) -> float:
     return float(np.mean(angles))
 
 
-@pytest.mark.parametrize("species", ["ash", "sycamore"])
+@pytest.mark.parametrize('species', ['ash', 'sycamore'])
 def test_limbs_stand_in_pairs(species: str) -> None:
     tree = grown(species)
     limbs = tree.branch_first[:-1][branch_order(tree) == 1]
@@ -153,8 +156,8 @@ def test_limbs_stand_in_pairs(species: str) -> None:
     assert np.all(together % 2 == 0)
 
 
-@pytest.mark.parametrize("height", [10.0, 20.0, 30.0])
-@pytest.mark.parametrize("species", ["spruce", "sitka", "pine", "douglas_fir"])
+@pytest.mark.parametrize('height', [10.0, 20.0, 30.0])
+@pytest.mark.parametrize('species', ['spruce', 'sitka', 'pine', 'douglas_fir'])
 def test_stems_of_conifers_have_the_form_factor_of_yield_tables(
     species: str, height: float
 ) -> None:
@@ -165,9 +168,9 @@ def test_stems_of_conifers_have_the_form_factor_of_yield_tables(
     assert 0.42 <= tree.volume[stem].sum() / cylinder <= 0.52
 
 
-@pytest.mark.parametrize("height", [6.0, 12.0, 24.0])
+@pytest.mark.parametrize('height', [6.0, 12.0, 24.0])
 @pytest.mark.parametrize(
-    "species", ["broadleaf", "oak", "birch", "beech", "ash", "sycamore", "walnut"]
+    'species', ['broadleaf', 'oak', 'birch', 'beech', 'ash', 'sycamore', 'walnut']
 )
 def test_wood_of_broadleaves_weighs_what_allometry_says(species: str, height: float) -> None:
     """Chave et al. (2014, eq. 4): dry mass 0.0673 (rho D^2 H)^0.976 in kg, g/cm^3, cm and m."""
@@ -179,17 +182,19 @@ def test_wood_of_broadleaves_weighs_what_allometry_says(species: str, height: fl
 
 
 def test_every_built_in_name_gives_that_tree() -> None:
-    assert BUILTIN_TREES == ("benjamina", "goldcrest", "broadleaf")
+    assert BUILTIN_TREES == ('benjamina', 'goldcrest', 'broadleaf')
     assert [builtin_tree(name).name for name in BUILTIN_TREES] == list(BUILTIN_TREES)
 
 
 def test_an_unknown_name_is_met_with_the_nearest_and_all() -> None:
-    with pytest.raises(ParameterError, match=r"did you mean 'benjamina'\? use one of: .*goldcrest"):
-        builtin_tree("Benjamin")
+    with pytest.raises(
+        ParameterError, match=r"did you mean 'benjamina'\? use one of: .*goldcrest"
+    ):
+        builtin_tree('Benjamin')
     with pytest.raises(ParameterError, match="'xyz'; use one of"):
-        builtin_tree("xyz")
+        builtin_tree('xyz')
 
 
 def test_a_negative_seed_is_refused() -> None:
-    with pytest.raises(ParameterError, match="seed -1"):
-        builtin_tree("benjamina", seed=-1)
+    with pytest.raises(ParameterError, match='seed -1'):
+        builtin_tree('benjamina', seed=-1)

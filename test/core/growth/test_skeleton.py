@@ -31,8 +31,8 @@ def some_diameters(skeleton: Skeleton) -> list[np.ndarray]:
 
 def test_every_shoot_becomes_a_branch_on_its_node() -> None:
     skeleton = tripod()
-    tree = skeleton.to_tree(some_diameters(skeleton), "tripod", "oak")
-    assert (tree.name, tree.species) == ("tripod", "oak")
+    tree = skeleton.to_tree(some_diameters(skeleton), 'tripod', 'oak')
+    assert (tree.name, tree.species) == ('tripod', 'oak')
     assert tree.n_segments == skeleton.n_segments == 7
     np.testing.assert_array_equal(np.diff(tree.branch_first), [3, 2, 1, 1])
     np.testing.assert_array_equal(tree.branch_parent, [-1, 0, 1, 0])
@@ -43,7 +43,7 @@ def test_every_shoot_becomes_a_branch_on_its_node() -> None:
 
 def test_diameters_are_those_of_the_nodes() -> None:
     skeleton = tripod()
-    tree = skeleton.to_tree(some_diameters(skeleton), "tripod", "oak")
+    tree = skeleton.to_tree(some_diameters(skeleton), 'tripod', 'oak')
     np.testing.assert_allclose(tree.base_diameter[:3], [0.1, 0.05 * 5 / 3, 0.05 * 4 / 3])
     np.testing.assert_allclose(tree.tip_diameter[:3], [0.05 * 5 / 3, 0.05 * 4 / 3, 0.05])
     assert tree.base_diameter[3] == pytest.approx(0.05)
@@ -52,7 +52,7 @@ def test_diameters_are_those_of_the_nodes() -> None:
 def test_scaling_reaches_the_height_and_puts_the_root_at_the_origin() -> None:
     skeleton = tripod()
     skeleton.scale_to_height(10.0)
-    tree = skeleton.to_tree(some_diameters(skeleton), "tripod", "oak")
+    tree = skeleton.to_tree(some_diameters(skeleton), 'tripod', 'oak')
     np.testing.assert_array_equal(tree.start[0], 0.0)
     assert tree.height == 10.0
     # The top is the twig's on the stem, at 4 before; all else keeps its shape.

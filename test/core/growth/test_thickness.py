@@ -52,5 +52,5 @@ def test_a_parent_is_thick_enough_for_a_child_that_carries_nearly_all() -> None:
 
 
 def test_a_stem_thinner_than_its_tips_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"too thin.*more than 0\.02 m"):
+    with pytest.raises(ParameterError, match=r'too thin.*more than 0\.02 m'):
         node_diameters(fork(), 0.015, at_height=0.0, tip_diameter=0.01)

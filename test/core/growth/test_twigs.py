@@ -58,7 +58,7 @@ def test_sides_are_right_and_left_of_the_branch_at_the_polar_angle() -> None:
     assert right @ UP_NORTH == pytest.approx(np.cos(0.7))
 
 
-@pytest.mark.parametrize(("lift", "sign"), [(0.8, 1.0), (-0.8, -1.0)])
+@pytest.mark.parametrize(('lift', 'sign'), [(0.8, 1.0), (-0.8, -1.0)])
 def test_lift_turns_them_up_or_lets_them_hang_at_their_length(lift: float, sign: float) -> None:
     level, lifted = straight_branch(), straight_branch()
     for skeleton, amount in ((level, 0.0), (lifted, lift)):

@@ -41,15 +41,15 @@ def test_the_peak_is_that_of_an_oscillator():
     assert level[1] - level[0] == pytest.approx(np.log(100.0), rel=1e-9)
 
 
-@pytest.mark.parametrize("damping", [0.03, 0.1])
-@pytest.mark.parametrize("colour", [0.0, -5.0 / 3.0, 2.0])
+@pytest.mark.parametrize('damping', [0.03, 0.1])
+@pytest.mark.parametrize('colour', [0.0, -5.0 / 3.0, 2.0])
 def test_unbiased_and_as_uncertain_as_it_says(damping, colour):
     found = [ambient_sway(driven(damping, seed, colour=colour), DT, 0.68) for seed in range(16)]
-    for name, truth in (("frequency", 0.7), ("damping", damping)):
+    for name, truth in (('frequency', 0.7), ('damping', damping)):
         values = np.array(
-            [one.frequency if name == "frequency" else one.damping_ratio for one in found]
+            [one.frequency if name == 'frequency' else one.damping_ratio for one in found]
         )
-        error = np.mean([getattr(one, f"{name}_error") for one in found])
+        error = np.mean([getattr(one, f'{name}_error') for one in found])
         scatter = np.sqrt(np.mean((values - truth) ** 2))
         assert abs(values.mean() - truth) < 0.1 * truth
         assert 0.6 < error / scatter < 1.8
@@ -79,10 +79,12 @@ def test_no_resonance_is_refused():
     """Of 30 records of noise without any, none may pass."""
     for seed in range(30):
         noise = np.random.default_rng(seed).normal(size=(6000, 1))
-        with pytest.raises(FormatError, match=r"no sway stands out of the spectrum around 0\.7 Hz"):
+        with pytest.raises(
+            FormatError, match=r'no sway stands out of the spectrum around 0\.7 Hz'
+        ):
             ambient_sway(noise if seed % 2 else np.cumsum(noise, axis=0), DT, 0.7)
 
 
 def test_too_few_cycles():
-    with pytest.raises(FormatError, match=r"14\.0 cycles of 0.7 Hz"):
+    with pytest.raises(FormatError, match=r'14\.0 cycles of 0.7 Hz'):
         ambient_sway(driven(0.05, 0)[:200], DT, 0.7)

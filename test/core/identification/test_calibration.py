@@ -15,16 +15,16 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import ParameterError, TreeError
 
-OAK = species_named("oak")
-COUPLED = Settings(model="coupled")
+OAK = species_named('oak')
+COUPLED = Settings(model='coupled')
 WEIGHTLESS = Settings(gravity=0.0)
 
 
 def slowest(tree, species, settings=COUPLED):
-    return float(build_bank(tree, species, replace(settings, model="coupled")).frequencies[0])
+    return float(build_bank(tree, species, replace(settings, model='coupled')).frequencies[0])
 
 
-@pytest.mark.parametrize("share", [0.2, 0.9, 1.0, 1.5, 20.0])
+@pytest.mark.parametrize('share', [0.2, 0.9, 1.0, 1.5, 20.0])
 def test_the_simulator_has_the_measured_frequency(fork, share):
     tree = fork()
     before = slowest(tree, OAK)
@@ -70,14 +70,14 @@ def test_leaves_weigh_on_the_answer(fork):
 
 
 def test_a_guess_becomes_a_measurement(fork):
-    guess = species_named("benjamina")
+    guess = species_named('benjamina')
     assert guess.is_estimate
     assert not calibrate(fork(), guess, 1.0).species.is_estimate
 
 
 def test_a_tree_that_could_not_stand_gets_a_modulus_that_holds_it(stem):
     tree = stem(length=30.0, base=0.02)
-    with pytest.raises(TreeError, match="buckles"):
+    with pytest.raises(TreeError, match='buckles'):
         slowest(tree, OAK)
     fitted = calibrate(tree, OAK, 0.3)
     assert fitted.frequency_before is None
@@ -100,13 +100,13 @@ def test_the_branch_that_sways_is_named(sketch):
     assert calibrate(tree, OAK, 1.0, settings=WEIGHTLESS).branch == tree.branch_names[1]
 
 
-@pytest.mark.parametrize("frequency", [0.0, -1.0, np.nan, np.inf, 2e3])
+@pytest.mark.parametrize('frequency', [0.0, -1.0, np.nan, np.inf, 2e3])
 def test_a_frequency_out_of_range(fork, frequency):
-    with pytest.raises(ParameterError, match="frequency"):
+    with pytest.raises(ParameterError, match='frequency'):
         calibrate(fork(), OAK, frequency)
 
 
-@pytest.mark.parametrize("damping", [-0.1, 1.5, np.nan])
+@pytest.mark.parametrize('damping', [-0.1, 1.5, np.nan])
 def test_a_damping_ratio_out_of_range(fork, damping):
-    with pytest.raises(ParameterError, match="damping ratio"):
+    with pytest.raises(ParameterError, match='damping ratio'):
         calibrate(fork(), OAK, 1.0, damping)

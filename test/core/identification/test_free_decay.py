@@ -25,7 +25,7 @@ def decay(modes, duration=40.0, noise=0.0, seed=0):
     return motion[:, None]
 
 
-@pytest.mark.parametrize("damping", [0.005, 0.02, 0.1, 0.2])
+@pytest.mark.parametrize('damping', [0.005, 0.02, 0.1, 0.2])
 def test_exact_without_noise(damping):
     """What is left is the filter's start-up, some cycles before the window."""
     found = free_decay(decay([(0.8, damping, 1.0)]), DT, 0.82)
@@ -60,7 +60,7 @@ def test_quiet_tells_a_release_from_wind():
 
 def test_a_decay_that_starts_too_late():
     late = decay([(0.8, 0.05, 1.0)])[::-1].copy()
-    with pytest.raises(FormatError, match=r"0\.\d cycles of 0.8 Hz after the largest swing"):
+    with pytest.raises(FormatError, match=r'0\.\d cycles of 0.8 Hz after the largest swing'):
         free_decay(late, DT, 0.8)
 
 
@@ -68,5 +68,5 @@ def test_a_growing_swing_does_not_decay():
     time = np.arange(0.0, 6.0, DT)
     growing = (np.exp(0.05 * time) * np.sin(2 * np.pi * 0.8 * time))[:, None]
     growing = np.vstack([10.0 * growing[:30], growing])
-    with pytest.raises(FormatError, match=r"no motion that decays near 0\.8 Hz"):
+    with pytest.raises(FormatError, match=r'no motion that decays near 0\.8 Hz'):
         free_decay(growing, DT, 0.8)

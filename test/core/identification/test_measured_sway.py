@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.identification.measured_sway import estimate_sway
 from tree_sway_ros.errors import FormatError, ParameterError
@@ -47,21 +47,21 @@ def ambient(
     return time, motion / motion.std() + 0.01 * rng.normal(size=len(time))
 
 
-@pytest.mark.parametrize("damping", [0.02, 0.05, 0.1])
-@pytest.mark.parametrize("frequency", [0.25, 0.7, 3.0])
+@pytest.mark.parametrize('damping', [0.02, 0.05, 0.1])
+@pytest.mark.parametrize('frequency', [0.25, 0.7, 3.0])
 def test_a_release(frequency, damping):
     found = estimate_sway(*release(frequency, damping, duration=5.0 + 25.0 / frequency))
-    assert found.kind == "release"
+    assert found.kind == 'release'
     assert found.frequency == pytest.approx(frequency, rel=5e-3)
     assert found.damping_ratio == pytest.approx(damping, rel=0.05)
     assert abs(found.damping_ratio - damping) < 5.0 * found.damping_error
 
 
-@pytest.mark.parametrize("damping", [0.03, 0.06, 0.1])
-@pytest.mark.parametrize("acceleration", [False, True])
+@pytest.mark.parametrize('damping', [0.03, 0.06, 0.1])
+@pytest.mark.parametrize('acceleration', [False, True])
 def test_an_ambient_record(damping, acceleration):
     found = estimate_sway(*ambient(0.7, damping, acceleration=acceleration))
-    assert found.kind == "ambient"
+    assert found.kind == 'ambient'
     assert found.frequency == pytest.approx(0.7, rel=0.03)
     assert found.damping_ratio == pytest.approx(damping, rel=0.3)
 
@@ -70,7 +70,7 @@ def test_the_acceleration_of_a_release():
     time, motion = release(noise=0.0, second=0.02)
     force = np.gradient(np.gradient(motion, time), time)
     found = estimate_sway(time, force / np.abs(force).max())
-    assert found.kind == "release"
+    assert found.kind == 'release'
     assert found.frequency == pytest.approx(0.7, rel=5e-3)
     assert found.damping_ratio == pytest.approx(0.05, rel=0.05)
 
@@ -106,7 +106,7 @@ def test_uneven_times_are_taken_as_they_are():
     time = np.sort(rng.uniform(0.0, 30.0, 3000))
     w, damping = 2 * np.pi * 0.7, 0.04
     motion = np.exp(-damping * w * time) * np.cos(w * np.sqrt(1 - damping**2) * time)
-    found = estimate_sway(time, motion, kind="release")
+    found = estimate_sway(time, motion, kind='release')
     assert found.frequency == pytest.approx(0.7, rel=5e-3)
     assert found.damping_ratio == pytest.approx(damping, rel=0.05)
 
@@ -125,14 +125,14 @@ def changed(index, value, column):
 
 
 @pytest.mark.parametrize(
-    ("record", "message"),
+    ('record', 'message'),
     [
-        (changed(7, np.nan, 1), "sample 7: not a finite number"),
-        (changed(7, np.inf, 0), "sample 7: not a finite number"),
-        (changed(7, 0.1, 0), r"sample 7: time 0.1 s after 0.3 s"),
-        ((np.arange(50.0), np.full(50, 2.0)), "nothing moves"),
-        ((np.arange(9.0), np.arange(9.0)), "9 samples"),
-        ((np.arange(50.0), np.zeros((2, 50))), r"shape \(50,\), motion of shape \(2, 50\)"),
+        (changed(7, np.nan, 1), 'sample 7: not a finite number'),
+        (changed(7, np.inf, 0), 'sample 7: not a finite number'),
+        (changed(7, 0.1, 0), r'sample 7: time 0.1 s after 0.3 s'),
+        ((np.arange(50.0), np.full(50, 2.0)), 'nothing moves'),
+        ((np.arange(9.0), np.arange(9.0)), '9 samples'),
+        ((np.arange(50.0), np.zeros((2, 50))), r'shape \(50,\), motion of shape \(2, 50\)'),
     ],
 )
 def test_what_cannot_be_read(record, message):
@@ -140,54 +140,54 @@ def test_what_cannot_be_read(record, message):
         estimate_sway(*record)
 
 
-@pytest.mark.parametrize("kind", ["release", None])
+@pytest.mark.parametrize('kind', ['release', None])
 def test_too_short_a_release(kind):
     time, motion = release(damping=0.02, held=0.0, duration=2.4 / 0.7, second=0.0)
-    with pytest.raises(FormatError, match="cycles"):
+    with pytest.raises(FormatError, match='cycles'):
         estimate_sway(time, motion, kind=kind)
 
 
 def test_too_short_an_ambient_record():
     time, motion = ambient()
-    with pytest.raises(FormatError, match="an ambient record takes at least 20 cycles"):
-        estimate_sway(time[:400], motion[:400], kind="ambient", band=(0.5, 0.9))
+    with pytest.raises(FormatError, match='an ambient record takes at least 20 cycles'):
+        estimate_sway(time[:400], motion[:400], kind='ambient', band=(0.5, 0.9))
 
 
 def test_noise_has_no_sway():
     rng = np.random.default_rng(5)
     for colour in (lambda x: x, np.cumsum):
-        with pytest.raises(FormatError, match="nor ambient"):
+        with pytest.raises(FormatError, match='nor ambient'):
             estimate_sway(np.arange(6000) / RATE, colour(rng.normal(size=6000)))
 
 
 def test_a_gap_and_a_slow_sensor_are_named():
     time, motion = release()
     kept = (time < 6.0) | (time > 7.0)
-    with pytest.raises(FormatError, match=r"1.1 s between samples, for a sway of 0.685 Hz"):
-        estimate_sway(time[kept], motion[kept], kind="release")
-    with pytest.raises(FormatError, match="between samples"):
-        estimate_sway(time[::9], motion[::9], kind="release")
-    with pytest.raises(FormatError, match="without the gaps"):
+    with pytest.raises(FormatError, match=r'1.1 s between samples, for a sway of 0.685 Hz'):
+        estimate_sway(time[kept], motion[kept], kind='release')
+    with pytest.raises(FormatError, match='between samples'):
+        estimate_sway(time[::9], motion[::9], kind='release')
+    with pytest.raises(FormatError, match='without the gaps'):
         estimate_sway(np.where(time > 9.0, time + 1e6, time), motion)
 
 
-@pytest.mark.parametrize("band", [(0.0, 1.0), (2.0, 1.0), (1.0, np.inf), (np.nan, 1.0)])
+@pytest.mark.parametrize('band', [(0.0, 1.0), (2.0, 1.0), (1.0, np.inf), (np.nan, 1.0)])
 def test_an_empty_band(band):
-    with pytest.raises(ParameterError, match="band"):
+    with pytest.raises(ParameterError, match='band'):
         estimate_sway(*release(), band=band)
 
 
 def test_an_unknown_kind():
-    with pytest.raises(ParameterError, match="use one of: release, ambient"):
-        estimate_sway(*release(), kind="free")
+    with pytest.raises(ParameterError, match='use one of: release, ambient'):
+        estimate_sway(*release(), kind='free')
 
 
-@pytest.mark.parametrize("bad", [1e308, 1e200, np.inf])
+@pytest.mark.parametrize('bad', [1e308, 1e200, np.inf])
 def test_what_nothing_measures_is_refused(bad):
     time = 0.05 * np.arange(1000.0)
     motion = np.exp(-0.1 * time) * np.cos(3.0 * time)
     motion[9] = bad
-    with pytest.raises(FormatError, match="sample 9: not a finite number, or one that nothing"):
+    with pytest.raises(FormatError, match='sample 9: not a finite number, or one that nothing'):
         estimate_sway(time, motion)
 
 
@@ -195,38 +195,38 @@ def test_a_time_that_counts_from_another_zero_is_a_gap():
     time = 0.05 * np.arange(1000.0)
     motion = np.exp(-0.1 * time) * np.cos(3.0 * time)
     time[-1] = 1.7e9
-    with pytest.raises(FormatError, match=r"gaps of up to 1\.7e"):
+    with pytest.raises(FormatError, match=r'gaps of up to 1\.7e'):
         estimate_sway(time, motion)
 
 
-@pytest.mark.parametrize("held", [0.0, 3.0, 5.0])
-@pytest.mark.parametrize("frequency", [0.3, 0.5, 0.8])
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize('held', [0.0, 3.0, 5.0])
+@pytest.mark.parametrize('frequency', [0.3, 0.5, 0.8])
+@pytest.mark.parametrize('seed', [0, 1])
 def test_a_short_pull_in_summer(frequency, held, seed):
     """Twenty seconds in all, a tenth of critical damping in leaf."""
     found = estimate_sway(
         *release(frequency, 0.1, duration=20.0, held=held, noise=0.005, seed=seed)
     )
-    assert found.kind == "release"
+    assert found.kind == 'release'
     assert found.frequency == pytest.approx(frequency, rel=0.02)
     assert found.damping_ratio == pytest.approx(0.1, rel=0.1)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
-@pytest.mark.parametrize("noise", [0.005, 0.03])
+@pytest.mark.parametrize('seed', [0, 1, 2])
+@pytest.mark.parametrize('noise', [0.005, 0.03])
 def test_a_pull_too_short_for_its_tree_says_why(noise, seed):
     """Of a sway with too few cycles no other mode, and no noise, is taken in its place."""
     time, motion = release(0.2, 0.1, duration=20.0, held=5.0, noise=noise, seed=seed)
     with pytest.raises(
-        FormatError, match=r"cycles of 0\.[12]\d+ Hz after .*; record 3 cycles after"
+        FormatError, match=r'cycles of 0\.[12]\d+ Hz after .*; record 3 cycles after'
     ):
         estimate_sway(time, motion)
 
 
-@pytest.mark.parametrize("seed", [3, 4, 6])
+@pytest.mark.parametrize('seed', [3, 4, 6])
 def test_a_pull_lost_in_the_wind_says_why(seed):
     """In leaf, a tenth of the pull in other motion: no other mode is taken for the sway."""
     time, motion = release(0.5, 0.1, duration=20.0, held=3.0, noise=0.005, seed=seed)
     _, wind = ambient(0.5, 0.1, duration=60.0, seed=seed)
-    with pytest.raises(FormatError, match=r"beside the swing; pull farther or on a calmer day"):
+    with pytest.raises(FormatError, match=r'beside the swing; pull farther or on a calmer day'):
         estimate_sway(time, motion + 0.1 * wind[: len(motion)])

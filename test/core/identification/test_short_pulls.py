@@ -32,25 +32,25 @@ def pulled(frequency, seed, wind=0.0):
     return time, tip
 
 
-@pytest.mark.parametrize("frequency", [0.3, 0.5, 0.8, 1.5])
+@pytest.mark.parametrize('frequency', [0.3, 0.5, 0.8, 1.5])
 def test_in_calm_air_frequency_and_damping_are_found(frequency):
     for seed in range(4):
         found = estimate_sway(*pulled(frequency, seed))
-        assert found.kind == "release"
+        assert found.kind == 'release'
         assert found.frequency == pytest.approx(frequency, rel=0.01)
         assert found.damping_ratio == pytest.approx(DAMPING, rel=0.05)
 
 
-@pytest.mark.parametrize("frequency", [0.3, 0.5, 0.8, 1.5])
+@pytest.mark.parametrize('frequency', [0.3, 0.5, 0.8, 1.5])
 def test_in_wind_they_are_found_or_it_is_said_why_not(frequency):
     for seed in range(6):
-        found, why = None, ""
+        found, why = None, ''
         try:
             found = estimate_sway(*pulled(frequency, seed, wind=0.02))
         except FormatError as error:
             why = str(error)
         if found is None:
-            assert "beside the swing" in why
+            assert 'beside the swing' in why
         else:
             assert found.frequency == pytest.approx(frequency, rel=0.05)
             assert found.damping_ratio == pytest.approx(DAMPING, rel=0.4)

@@ -40,16 +40,16 @@ def test_a_band_without_a_peak_gives_its_strongest_point():
 def test_one_line_does_not_make_a_peak_where_many_bins_are_averaged():
     power = np.ones_like(F)
     power[200] = 2.0
-    with pytest.raises(FormatError, match="no peak"):
+    with pytest.raises(FormatError, match='no peak'):
         Spectrum(F, power, 500.0).peaks(None, 0.06, min_bins=8)
 
 
 @pytest.mark.parametrize(
-    ("spectrum", "band", "message"),
+    ('spectrum', 'band', 'message'),
     [
-        (hills(), None, "no peak in its spectrum"),
-        (hills((0.7, 1.0)), (20.0, 30.0), "hold nothing in the band"),
-        (hills((0.7, 1.0)), (1e-5, 1e-4), "hold nothing in the band"),
+        (hills(), None, 'no peak in its spectrum'),
+        (hills((0.7, 1.0)), (20.0, 30.0), 'hold nothing in the band'),
+        (hills((0.7, 1.0)), (1e-5, 1e-4), 'hold nothing in the band'),
     ],
 )
 def test_refusals(spectrum, band, message):

@@ -4,22 +4,22 @@
 
 import json
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.leaves.flutter import (
-    AIR_VISCOSITY,
-    LARGEST_ANGLE,
     air_speed,
+    AIR_VISCOSITY,
     flutter_amplitude,
     flutter_angle,
+    LARGEST_ANGLE,
     leaf_list,
     leaf_poses,
 )
-from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
+from tree_sway_ros.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -37,7 +37,7 @@ def leaves_of(tree: Tree, count: int = 20) -> LeafClusters:
     return leaf_clusters(tree, np.random.default_rng(3), count=count)
 
 
-@pytest.mark.parametrize("size", [0.03, 0.1])
+@pytest.mark.parametrize('size', [0.03, 0.1])
 def test_in_light_wind_the_edge_moves_at_the_measured_speed(size: float) -> None:
     speed, frequency = 1.5, 5.0
     measured = (speed / 740.0) ** 2 * size / AIR_VISCOSITY
@@ -114,11 +114,11 @@ def test_the_list_alone_is_enough_to_draw_them() -> None:
     tree = twig()
     leaves = leaves_of(tree)
     told = json.loads(json.dumps(leaf_list(leaves)))
-    gain, largest = told["flutter"]["gain"], told["flutter"]["largest_angle"]
-    frequency, phase = np.array(told["frequency"]), np.array(told["phase"])
+    gain, largest = told['flutter']['gain'], told['flutter']['largest_angle']
+    frequency, phase = np.array(told['frequency']), np.array(told['phase'])
     angle = largest * np.tanh(gain * 3.0**2 / (frequency * largest))
     angle *= np.sin(2.0 * np.pi * frequency * 0.7 + phase)
     np.testing.assert_allclose(angle, flutter_angle(leaves, 3.0, 0.7), atol=1e-3)
-    carrier = Rotation.from_quat(poses_at_rest(tree)[told["segment"], 3:])
-    centre = tree.start[told["segment"]] + carrier.apply(told["offset"])
+    carrier = Rotation.from_quat(poses_at_rest(tree)[told['segment'], 3:])
+    centre = tree.start[told['segment']] + carrier.apply(told['offset'])
     np.testing.assert_allclose(centre, leaf_poses(leaves, poses_at_rest(tree))[:, :3], atol=2e-4)

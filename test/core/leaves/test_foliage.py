@@ -4,19 +4,19 @@
 
 from functools import cache
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.growth import builtin
 from tree_sway_ros.core.leaves.foliage import (
-    MAX_LEAF_AREA_INDEX,
     foliage_of,
     joined_clusters,
     leaf_clusters,
     leafy_length,
+    MAX_LEAF_AREA_INDEX,
     no_clusters,
 )
 from tree_sway_ros.core.tree.building import tree_from_segments
@@ -25,7 +25,7 @@ from tree_sway_ros.core.tree.species import leaf_traits, species_keys
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
-every_tree = pytest.mark.parametrize("name", builtin.BUILTIN_TREES)
+every_tree = pytest.mark.parametrize('name', builtin.BUILTIN_TREES)
 builtin_tree = cache(builtin.builtin_tree)
 
 
@@ -67,7 +67,7 @@ def test_the_wind_meets_less_than_half_of_them(name: str) -> None:
 
 
 def test_few_leaves_hide_nothing_and_many_hide_each_other() -> None:
-    tree = builtin_tree("broadleaf")
+    tree = builtin_tree('broadleaf')
     sparse, dense = (
         foliage_of(tree, traits=LeafTraits(0.07, ratio, 0.2, 4.0)) for ratio in (1.0, 1e6)
     )
@@ -85,7 +85,7 @@ def test_a_pole_has_leaves_too() -> None:
     assert 0.0 < foliage.drag_area[0] < foliage.area[0]
 
 
-@pytest.mark.parametrize("species", [*species_keys(), "of no table"])
+@pytest.mark.parametrize('species', [*species_keys(), 'of no table'])
 def test_every_species_has_leaves(species: str) -> None:
     leaf = leaf_traits(species)
     assert 0.01 < leaf.size < 0.2
@@ -109,7 +109,7 @@ def test_clusters_sit_on_their_segments(name: str, seed: int, count: int) -> Non
 
 
 def test_clusters_spread_evenly_along_the_wood() -> None:
-    tree = builtin_tree("broadleaf")
+    tree = builtin_tree('broadleaf')
     leafy, clusters = leafy_length(tree), leaf_clusters(tree, rng(), count=20_000)
     # One leaf in each of 20,000 equal stretches: each end of a segment may gain or lose one.
     found = np.bincount(clusters.segment, minlength=tree.n_segments) / 20_000
@@ -117,13 +117,13 @@ def test_clusters_spread_evenly_along_the_wood() -> None:
 
 
 def test_clusters_together_show_the_leaf_area() -> None:
-    tree = builtin_tree("broadleaf")
+    tree = builtin_tree('broadleaf')
     shown = 0.25 * np.pi * leaf_clusters(tree, rng(), count=1000).size ** 2
     assert shown.sum() == pytest.approx(foliage_of(tree).area.sum(), rel=0.05)
 
 
 def test_leaves_look_up() -> None:
-    tree = builtin_tree("broadleaf")
+    tree = builtin_tree('broadleaf')
     clusters = leaf_clusters(tree, rng())
     rest = tree.rest_frame[clusters.segment]
     turn = Rotation.from_quat(rest[:, [1, 2, 3, 0]]) * Rotation.from_quat(
@@ -135,7 +135,7 @@ def test_leaves_look_up() -> None:
 
 
 def test_same_seed_same_leaves() -> None:
-    tree = builtin_tree("goldcrest")
+    tree = builtin_tree('goldcrest')
     one, again, other = (leaf_clusters(tree, rng(seed)) for seed in (5, 5, 6))
     np.testing.assert_array_equal(one.offset, again.offset)
     np.testing.assert_array_equal(one.phase, again.phase)
@@ -143,8 +143,8 @@ def test_same_seed_same_leaves() -> None:
 
 
 def test_no_clusters_are_refused() -> None:
-    with pytest.raises(ParameterError, match="0 leaf clusters"):
-        leaf_clusters(builtin_tree("goldcrest"), rng(), count=0)
+    with pytest.raises(ParameterError, match='0 leaf clusters'):
+        leaf_clusters(builtin_tree('goldcrest'), rng(), count=0)
 
 
 def test_joined_clusters_ride_on_the_segments_of_their_own_trees(fork):
@@ -152,6 +152,6 @@ def test_joined_clusters_ride_on_the_segments_of_their_own_trees(fork):
     own = leaf_clusters(tree, np.random.default_rng(0), count=12)
     both = joined_clusters([own, no_clusters(), own], [tree.n_segments] * 3)
     assert both.segment.tolist() == [*own.segment, *(own.segment + 2 * tree.n_segments)]
-    for name in ("offset", "orientation", "size", "frequency", "phase"):
+    for name in ('offset', 'orientation', 'size', 'frequency', 'phase'):
         part = getattr(own, name)
         assert (getattr(both, name) == np.concatenate([part, part])).all()

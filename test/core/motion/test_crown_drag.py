@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.motion.drag import AIR_DENSITY, SHARED_AT, crown_drag, pressure
+from tree_sway_ros.core.motion.drag import AIR_DENSITY, crown_drag, pressure, SHARED_AT
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_keys, species_named
@@ -39,11 +39,11 @@ def test_wood_clad_in_needles_is_part_of_the_crown():
     assert pressure(SHARED_AT, *law) == pytest.approx(0.5 * AIR_DENSITY * 1.2)
 
 
-BROADLEAVES = [key for key in species_keys() if species_named(key).habit == "broadleaf"]
+BROADLEAVES = [key for key in species_keys() if species_named(key).habit == 'broadleaf']
 
 
-@pytest.mark.parametrize("height", [6.0, 12.0, 24.0])
-@pytest.mark.parametrize("species", [*BROADLEAVES, "spruce", "sitka", "douglas_fir", "pine"])
+@pytest.mark.parametrize('height', [6.0, 12.0, 24.0])
+@pytest.mark.parametrize('species', [*BROADLEAVES, 'spruce', 'sitka', 'douglas_fir', 'pine'])
 def test_leaves_add_load_and_let_it_grow_as_in_the_field(species, height):
     """Angelou, Dellwik & Mann (2019): the power of the speed is 1.60 to 1.68, leaves double it."""
     tree, wood = grow(species, height, rng=np.random.default_rng(1)), species_named(species)
@@ -55,7 +55,7 @@ def test_leaves_add_load_and_let_it_grow_as_in_the_field(species, height):
         pressures = np.array([pressure(speed, *crown.drag_law) for speed in SPEEDS])
         loads.append(pressures * SPEEDS**2 * (area + leaves))
     assert 1.5 <= np.polyfit(np.log(SPEEDS), np.log(loads[0]), 1)[0] <= 1.7
-    if wood.habit == "broadleaf":
+    if wood.habit == 'broadleaf':
         ratio = np.interp([6.0, 20.0], SPEEDS, loads[0] / loads[1])
         assert 2.0 <= ratio[0] <= 3.0
         assert ratio[1] >= 1.2

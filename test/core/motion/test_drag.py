@@ -8,10 +8,10 @@ overshoots.
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.integrate import quad
 
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, pressure
@@ -27,17 +27,17 @@ DENSITY_AND_DRAG = 0.5 * 1.225 * 1.2
 
 def drag(record, per_speed_squared, *wind, compliance=0.0):
     """Force alone, on a branch that does not turn."""
-    c = per_speed_squared * record["area"]
-    return drag_and_slip(*record["projector"], c, compliance, *wind, 0.0)[:3]
+    c = per_speed_squared * record['area']
+    return drag_and_slip(*record['projector'], c, compliance, *wind, 0.0)[:3]
 
 
 def record_of(tree, **changes):
-    chosen = Settings(model="branch", gravity=0.0, **changes)
-    return build_bank(tree, species_named("broadleaf"), chosen).branches[0]
+    chosen = Settings(model='branch', gravity=0.0, **changes)
+    return build_bank(tree, species_named('broadleaf'), chosen).branches[0]
 
 
-@pytest.mark.parametrize("direction", [(0, 0, 1), (1, 0, 0), (1, -2, 0.5)])
-@pytest.mark.parametrize("wind", [(7.0, 0.0, 0.0), (3.0, -4.0, 2.0)])
+@pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, -2, 0.5)])
+@pytest.mark.parametrize('wind', [(7.0, 0.0, 0.0), (3.0, -4.0, 2.0)])
 def test_force_on_a_straight_branch_is_the_integral(stem, direction, wind):
     tree = stem(length=2.0, base=0.03, tip=0.01, direction=direction)
     along = (tree.end[-1] - tree.start[0]) / 2.0
@@ -50,9 +50,9 @@ def test_force_on_a_straight_branch_is_the_integral(stem, direction, wind):
 
 def test_the_force_in_a_profile_is_the_integral(stem):
     tree = stem(length=8.0, base=0.2, tip=0.02, cuts=400)
-    profile = WindProfile("power", exponent=0.3)
+    profile = WindProfile('power', exponent=0.3)
     record = record_of(tree, profile=profile)
-    found = drag(record, DENSITY_AND_DRAG, 10.0 * record["speed"], 0.0, 0.0)[0]
+    found = drag(record, DENSITY_AND_DRAG, 10.0 * record['speed'], 0.0, 0.0)[0]
     law = quad(lambda z: (0.2 - 0.0225 * z) * 100.0 * (z / 10.0) ** 0.6, 0.0, 8.0)[0]
     assert found == pytest.approx(DENSITY_AND_DRAG * law, rel=1e-4)
 
@@ -87,26 +87,26 @@ def test_implicit_drag_never_overshoots(stem_record, speed, compliance, seed):
     slack = 1e-9 * np.linalg.norm(across)
     assert left @ across >= -slack * np.linalg.norm(across)
     assert np.linalg.norm(left) <= np.linalg.norm(across) + slack
-    explicit = DENSITY_AND_DRAG * record["area"] * np.linalg.norm(left) * left
+    explicit = DENSITY_AND_DRAG * record['area'] * np.linalg.norm(left) * left
     # A difference of near-equal numbers is what is left where the branch follows at once.
-    rounding = 1e-13 * np.linalg.norm(across) * np.linalg.norm(across) * record["area"]
+    rounding = 1e-13 * np.linalg.norm(across) * np.linalg.norm(across) * record['area']
     assert force == pytest.approx(explicit, rel=1e-6, abs=rounding + 1e-300)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def stem_record(stem):
     return record_of(stem())
 
 
 def test_without_compliance_drag_is_explicit(stem_record):
     free = drag(stem_record, DENSITY_AND_DRAG, 3.0, 4.0, 0.0, compliance=1e-12)
-    assert np.linalg.norm(free) == pytest.approx(DENSITY_AND_DRAG * stem_record["area"] * 25.0)
+    assert np.linalg.norm(free) == pytest.approx(DENSITY_AND_DRAG * stem_record['area'] * 25.0)
 
 
-@pytest.mark.parametrize("dt", [1e-4, 1 / 60, 1.0])
+@pytest.mark.parametrize('dt', [1e-4, 1 / 60, 1.0])
 def test_a_hair_in_a_storm_follows_the_air_and_does_not_shake(stem, dt):
     tree = stem(length=0.2, base=2e-4, tip=1e-4, cuts=2, direction=(0, 1, 0))
-    sim = SwaySimulator(tree, model="branch", gravity=0.0)
+    sim = SwaySimulator(tree, model='branch', gravity=0.0)
     for k in range(200):
         before = sim.place().copy()
         sim.step([100.0 * (-1) ** (k // 20), 30.0, 5.0], dt)
@@ -127,17 +127,17 @@ def test_pressure_streamlines_where_it_was_measured():
 def test_levers_are_those_of_the_load(stem):
     tree = stem(length=2.0, base=0.02, cuts=8)
     record = record_of(tree)
-    assert record["area"] == pytest.approx(0.04)
-    assert record["centre"] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
+    assert record['area'] == pytest.approx(0.04)
+    assert record['centre'] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
     # Mean deflection of the uniform cantilever is 2/5 of its tip's.
-    assert record["lever"] == pytest.approx(0.8, rel=1e-9)
-    assert np.abs(record["push"]).max() == pytest.approx(0.8, rel=1e-9)
+    assert record['lever'] == pytest.approx(0.8, rel=1e-9)
+    assert np.abs(record['push']).max() == pytest.approx(0.8, rel=1e-9)
     # The branch damps itself at the root mean square: 104/405 of the tip's square.
-    push, flow = (np.linalg.norm(record[k][0]) for k in ("push", "flow"))
+    push, flow = (np.linalg.norm(record[k][0]) for k in ('push', 'flow'))
     assert push * flow == pytest.approx(4.0 * 104.0 / 405.0, rel=1e-9)
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes'])
 def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     """
     A cantilever that swings freely: one over the amplitude grows in every cycle by 8/3 of the drag
@@ -146,9 +146,9 @@ def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
 
     """
     length, width = 2.0, 0.02
-    tree, wood = stem(length=length, base=width, cuts=8), species_named("broadleaf")
+    tree, wood = stem(length=length, base=width, cuts=8), species_named('broadleaf')
     sim = SwaySimulator(
-        tree, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich="none"
+        tree, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich='none'
     )
     s = np.linspace(0.0, 1.0, 2001)
     psi = (6.0 * s**2 - 4.0 * s**3 + s**4) / 3.0

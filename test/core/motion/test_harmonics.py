@@ -23,14 +23,14 @@ def sphere():
     return directions.reshape(-1, 3), np.repeat(weight / 48.0, 24)
 
 
-@pytest.mark.parametrize("degree", COUNT)
+@pytest.mark.parametrize('degree', COUNT)
 def test_they_are_orthonormal(degree):
     directions, weight = sphere()
     values = harmonics_at(directions, degree)
     assert values.T @ (weight[:, None] * values) == pytest.approx(np.eye(COUNT[degree]), abs=1e-13)
 
 
-@pytest.mark.parametrize("degree", COUNT)
+@pytest.mark.parametrize('degree', COUNT)
 def test_the_opposite_wind_has_the_opposite_values(degree):
     directions, _ = sphere()
     assert harmonics_at(-directions, degree) == pytest.approx(
@@ -38,7 +38,7 @@ def test_the_opposite_wind_has_the_opposite_values(degree):
     )
 
 
-@pytest.mark.parametrize("degree", COUNT)
+@pytest.mark.parametrize('degree', COUNT)
 def test_the_addition_theorem_holds_for_every_degree(degree):
     directions, _ = sphere()
     values = harmonics_at(directions[:40], degree)

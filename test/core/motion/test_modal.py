@@ -14,13 +14,13 @@ from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
-WOOD = species_named("broadleaf")
+WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 DT = 1 / 120
 
 
 def modal(tree, **changes):
-    chosen = dict(model="modes", n_modes=4, gravity=0.0, enrich="none") | changes
+    chosen = dict(model='modes', n_modes=4, gravity=0.0, enrich='none') | changes
     bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(DT)
     return bank
@@ -44,7 +44,7 @@ def test_each_mode_decays_as_an_oscillator_of_its_own(fork):
     assert n == 4
 
 
-@pytest.mark.parametrize(("n", "within"), [(2, 0.15), (4, 0.1), (7, 0.05), (8, 1e-6)])
+@pytest.mark.parametrize(('n', 'within'), [(2, 0.15), (4, 0.1), (7, 0.05), (8, 1e-6)])
 def test_steady_wind_gives_the_static_answer_whatever_the_number_of_modes(fork, n, within):
     tree = fork()
     bank = modal(tree, n_modes=n, damping_ratio=0.7)
@@ -63,7 +63,7 @@ def test_no_motion_without_load(fork):
 
 
 def test_moments_beyond_the_limit_are_held_and_counted(fork):
-    bank = modal(fork(), model="coupled")
+    bank = modal(fork(), model='coupled')
     assert bank.advance(5.0, 2.0, 0.0, DRAG) == 0
     assert sum(bank.advance(5.0, 2.0, 0.0, 1e12) for _ in range(300)) > 0
     assert np.isfinite(bank.rotations()).all()
@@ -75,18 +75,18 @@ def test_compliance_is_the_answer_to_a_unit_of_force(fork):
 
     """
     tree = fork()
-    bank = modal(tree, model="coupled")
+    bank = modal(tree, model='coupled')
     branches, shapes = bank.branches, bank.shapes
     b = 3
-    own = slice(branches["coordinate"][b], branches["coordinate"][b] + 2)
+    own = slice(branches['coordinate'][b], branches['coordinate'][b] + 2)
     stem = slice(0, 2)
     total = 0.0
     for way in np.eye(3):
-        twist = branches["twist"][b, :2]
-        at = twist[:, :3] + np.cross(twist[:, 3:], branches["centre"][b])
+        twist = branches['twist'][b, :2]
+        at = twist[:, :3] + np.cross(twist[:, 3:], branches['centre'][b])
         moment = np.zeros(len(shapes))
         moment[stem] = at @ way
-        moment[own] = branches["flow"][b, :2] @ way
+        moment[own] = branches['flow'][b, :2] @ way
         force = shapes.T @ moment
         half = 0.5 * DT
         # A mode under a constant force from rest, by its own text-book answer.
@@ -94,7 +94,7 @@ def test_compliance_is_the_answer_to_a_unit_of_force(fork):
         wd = w * np.sqrt(1 - z**2)
         rate = np.exp(-z * w * half) * np.sin(wd * half) / wd * force
         total += moment @ (shapes @ rate)
-    assert bank._loads["compliance"][0, b] == pytest.approx(total / 2.0, rel=1e-9)
+    assert bank._loads['compliance'][0, b] == pytest.approx(total / 2.0, rel=1e-9)
 
 
 def test_reset_forgets_everything(fork):

@@ -34,7 +34,7 @@ def segments_in_all_directions(n=60):
     return tree_from_segments(start, end, rng.uniform(0.006, 0.02, n), parent=parent)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def tree():
     return segments_in_all_directions()
 
@@ -47,14 +47,14 @@ def pair(tree, model, **changes):
 
 
 @pytest.mark.parametrize(
-    ("name", "model"),
+    ('name', 'model'),
     [
-        *(("wild", "branch"), ("wild", "subtree"), ("bench", "subtree")),
-        *(("wild", "modes"), ("wild", "coupled"), ("bench", "modes")),
+        *(('wild', 'branch'), ('wild', 'subtree'), ('bench', 'subtree')),
+        *(('wild', 'modes'), ('wild', 'coupled'), ('bench', 'modes')),
     ],
 )
 def test_two_hundred_random_steps_agree(tree, name, model):
-    sim, twin = pair(tree if name == "wild" else bench_tree(), model)
+    sim, twin = pair(tree if name == 'wild' else bench_tree(), model)
     rng = np.random.default_rng(2)
     largest = 0.0
     for k in range(200):
@@ -66,9 +66,9 @@ def test_two_hundred_random_steps_agree(tree, name, model):
     assert largest > 0.01
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree"])
+@pytest.mark.parametrize('model', ['branch', 'subtree'])
 def test_twigs_that_copy_agree(model):
-    sim, twin = pair(builtin_tree("benjamina"), model)
+    sim, twin = pair(builtin_tree('benjamina'), model)
     assert sim.n_copied > 0
     for k in range(60):
         wind = (6.0, np.sin(k), 0.5)
@@ -77,7 +77,7 @@ def test_twigs_that_copy_agree(model):
 
 
 def test_they_agree_where_loads_are_held(tree):
-    sim, twin = pair(tree, "subtree")
+    sim, twin = pair(tree, 'subtree')
     held = 0
     for k in range(20):
         wind = [145.0, 30.0 * np.sin(k), 5.0]
@@ -90,9 +90,9 @@ def test_they_agree_where_loads_are_held(tree):
     assert sim.counts == twin.counts
 
 
-@pytest.mark.parametrize("enrich", ["none", "carriers", "all"])
+@pytest.mark.parametrize('enrich', ['none', 'carriers', 'all'])
 def test_placing_agrees_for_every_kind_of_coordinate(tree, enrich):
-    sim, twin = pair(tree, "modes", n_modes=6, enrich=enrich)
+    sim, twin = pair(tree, 'modes', n_modes=6, enrich=enrich)
     for k in range(20):
         sim.step([9.0, 4.0 * np.sin(k), 1.0], 1 / 30)
         placed = twin.place_rotations(sim.rotations())
@@ -100,9 +100,9 @@ def test_placing_agrees_for_every_kind_of_coordinate(tree, enrich):
     assert np.abs(sim.tip_displacement).max() > 1e-3
 
 
-@pytest.mark.parametrize("model", ["subtree", "modes"])
+@pytest.mark.parametrize('model', ['subtree', 'modes'])
 def test_frozen_subtrees_agree(tree, model):
-    wood, chosen = species_named("broadleaf"), Settings(model=model, gravity=0.0)
+    wood, chosen = species_named('broadleaf'), Settings(model=model, gravity=0.0)
     quiet = tree.subtree_end - np.arange(tree.n_branches) <= 2
     poses = []
     for plain in (False, True):
@@ -115,7 +115,7 @@ def test_frozen_subtrees_agree(tree, model):
     assert np.abs(poses[0] - poses[1]).max() < 1e-9
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled'])
 def test_a_state_of_one_is_taken_by_the_other(tree, model):
     sim, twin = pair(tree, model)
     for k in range(30):

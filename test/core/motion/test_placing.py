@@ -8,10 +8,10 @@ key rotation.
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.branch.shapes import across
@@ -29,10 +29,10 @@ seeds = st.integers(0, 10**6)
 class Puppet:
     """A tree that is placed at key rotations given by hand."""
 
-    def __init__(self, tree, model="coupled", enrich="none"):
+    def __init__(self, tree, model='coupled', enrich='none'):
         chosen = Settings(model=model, enrich=enrich, gravity=0.0, twig_tolerance=-1.0)
         self.tree = tree
-        self.bank = build_bank(tree, species_named("broadleaf"), chosen)
+        self.bank = build_bank(tree, species_named('broadleaf'), chosen)
         self.n = len(self.bank.oscillators.rotations())
 
     def poses(self, x):
@@ -64,33 +64,35 @@ class Puppet:
         rng = np.random.default_rng(seed)
         x = rng.uniform(-0.1, 0.1, self.n) * largest
         for branch in self.bank.branches:
-            i, heading = branch["coordinate"], rng.uniform(0, 2 * np.pi)
+            i, heading = branch['coordinate'], rng.uniform(0, 2 * np.pi)
             x[i : i + 2] = rng.uniform(0, largest) * np.array([np.cos(heading), np.sin(heading)])
         return x
 
 
-@pytest.fixture(scope="module", params=["none", "all"])
+@pytest.fixture(scope='module', params=['none', 'all'])
 def puppet(fork, request):
     return Puppet(fork(), enrich=request.param)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def gappy(random_tree):
     """
     A random tree whose segments end a little before the next ones start, away from the origin.
 
     """
     start, end, diameter, parent = random_tree(5, 30)
-    return tree_from_segments(start + 3.0, end + 3.0 - 0.1 * (end - start), diameter, parent=parent)
+    return tree_from_segments(
+        start + 3.0, end + 3.0 - 0.1 * (end - start), diameter, parent=parent
+    )
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def gappy_doll(gappy):
     return Puppet(gappy)
 
 
-@pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+@pytest.mark.parametrize('seed', range(2))
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'coupled'])
 def test_at_rest_the_poses_are_the_input(random_tree, model, seed):
     tree = tree_from_segments(*random_tree(seed, 25)[:3])
     doll = Puppet(tree, model)
@@ -166,8 +168,8 @@ def chord_turn(doll, angle, heading=0.4):
     return np.arctan2(sideways @ to, now @ b)
 
 
-@pytest.mark.parametrize("taper", [0.0, 0.5, 0.9])
-@pytest.mark.parametrize(("degrees", "within"), [(1, 1e-6), (10, 2e-5), (30, 1e-3)])
+@pytest.mark.parametrize('taper', [0.0, 0.5, 0.9])
+@pytest.mark.parametrize(('degrees', 'within'), [(1, 1e-6), (10, 2e-5), (30, 1e-3)])
 def test_the_chord_turns_by_the_key_rotation(stem, taper, degrees, within):
     angle = np.radians(degrees)
     for cuts in (1, 6, 20):
@@ -175,7 +177,7 @@ def test_the_chord_turns_by_the_key_rotation(stem, taper, degrees, within):
         assert chord_turn(Puppet(tree), angle) == pytest.approx(angle, abs=within * angle)
 
 
-@pytest.mark.parametrize("taper", [0.0, 0.9])
+@pytest.mark.parametrize('taper', [0.0, 0.9])
 def test_the_chord_goes_on_with_the_key_where_the_shapes_change_over(stem, taper):
     doll = Puppet(stem(tip=0.02 * (1 - taper), cuts=12))
     angles = np.radians(np.linspace(0.0, 85.0, 171))
@@ -186,14 +188,14 @@ def test_the_chord_goes_on_with_the_key_where_the_shapes_change_over(stem, taper
     assert steps.max() < 1.2 * steps.mean()
 
 
-@pytest.mark.parametrize("taper", [0.0, 0.5])
+@pytest.mark.parametrize('taper', [0.0, 0.5])
 def test_the_bent_branch_is_the_beams_curve(stem, taper):
     """
     The static slope, drawn with lengths kept: angles of segments over the key's, at a small angle.
 
     """
     tree = stem(length=1.0, tip=0.02 * (1 - taper), cuts=40)
-    doll = Puppet(tree, "branch")
+    doll = Puppet(tree, 'branch')
     small = 1e-3
     start, end = doll.nodes([small, 0.0])
     drawn = (end[:, 0] - start[:, 0]) / tree.length / small
@@ -226,9 +228,9 @@ def test_a_twist_turns_children_and_leaves_the_stem(sketch):
     for side in (1.0, -1.0):
         drawn.add(0, 4, (side, 0, 0), 0.5, 0.01, 0.01, 2)
     tree = drawn.tree()
-    doll = Puppet(tree, enrich="stem")
+    doll = Puppet(tree, enrich='stem')
     x = np.zeros(doll.n)
-    per_key = doll.bank.branches[1]["twist"][: doll.bank.branches[0]["n_coordinates"], 3:]
+    per_key = doll.bank.branches[1]['twist'][: doll.bank.branches[0]['n_coordinates'], 3:]
     last = int(np.argmax(np.abs(per_key[:, 2])))
     assert per_key[last, :2] == pytest.approx(0.0, abs=1e-9)
     x[last] = 0.5 / per_key[last, 2]

@@ -18,20 +18,20 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 
-OAK = species_named("oak")
-MODELS = ("branch", "subtree", "modes", "coupled")
+OAK = species_named('oak')
+MODELS = ('branch', 'subtree', 'modes', 'coupled')
 DAMPED = Settings(gravity=0.0, damping_ratio=0.2, n_modes=8)
 LIGHT = 0.3
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def bank_of(fork):
     calibrated = CalibratedTree(fork(), OAK, DAMPED)
     return cache(lambda model: calibrated.bank(model, 8))
 
 
 def count(bank):
-    return int((bank.branches["coordinate"] + bank.branches["n_coordinates"]).max())
+    return int((bank.branches['coordinate'] + bank.branches['n_coordinates']).max())
 
 
 def at_rest(bank):
@@ -53,8 +53,8 @@ def displaced(sim, tree):
     return tips_of_poses(tree, sim.place()) - tree.end[tree.branch_first[1:] - 1]
 
 
-@pytest.mark.parametrize("way", [0, 1])
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize('way', [0, 1])
+@pytest.mark.parametrize('model', MODELS)
 def test_static_answer_is_where_steady_wind_leaves_the_tips(fork, bank_of, model, way):
     tree = fork()
     sim = SwaySimulator(tree, OAK, DAMPED, model=model)
@@ -66,8 +66,8 @@ def test_static_answer_is_where_steady_wind_leaves_the_tips(fork, bank_of, model
     assert displaced(sim, tree) == pytest.approx(expected.real * load_of(LIGHT), abs=5e-3 * size)
 
 
-@pytest.mark.parametrize("share", [0.5, 1.0, 1.6])
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize('share', [0.5, 1.0, 1.6])
+@pytest.mark.parametrize('model', MODELS)
 def test_a_load_that_swings_moves_the_tips_as_the_response_says(fork, bank_of, model, share):
     tree, bank = fork(), bank_of(model)
     sim = SwaySimulator(tree, OAK, DAMPED, model=model)
@@ -87,10 +87,10 @@ def test_a_load_that_swings_moves_the_tips_as_the_response_says(fork, bank_of, m
 
 
 def test_a_frozen_tree_answers_nothing(bank_of):
-    assert not answer(bank_of("frozen"), [0.0, 1.0]).any()
+    assert not answer(bank_of('frozen'), [0.0, 1.0]).any()
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'coupled'])
 def test_fast_loads_move_inertia_alone(bank_of, model):
     """Far above all modes the answer falls with the square of the frequency."""
     slow, fast, faster = np.moveaxis(answer(bank_of(model), [0.0, 4e4, 8e4]), -1, 0)
@@ -100,13 +100,13 @@ def test_fast_loads_move_inertia_alone(bank_of, model):
 
 def test_modes_left_out_answer_at_once(bank_of):
     """
-    Truncation keeps their static share: at rest it is exact, for the linear part of a wind from any
-    side, far above the modes it stays.
+    Truncation keeps their static share: at rest it is exact, for the linear part of a wind from
+    any side, far above the modes it stays.
 
     """
-    rests = [at_rest(bank_of(model)) for model in ("modes", "coupled")]
+    rests = [at_rest(bank_of(model)) for model in ('modes', 'coupled')]
     assert rests[0] == pytest.approx(rests[1], abs=1e-9 * np.abs(rests[1]).max())
-    modes, coupled = (answer(bank_of(model), [0.0, 4e4, 8e4]) for model in ("modes", "coupled"))
+    modes, coupled = (answer(bank_of(model), [0.0, 4e4, 8e4]) for model in ('modes', 'coupled'))
     assert modes[..., 0] == pytest.approx(coupled[..., 0], abs=1e-3 * np.abs(coupled).max())
     assert modes[..., 1] == pytest.approx(modes[..., 2], abs=1e-6 * np.abs(modes).max())
     assert np.abs(modes[..., 2]).max() > 1e-3 * np.abs(coupled[..., 0]).max()
@@ -114,24 +114,24 @@ def test_modes_left_out_answer_at_once(bank_of):
 
 def test_small_rotations_are_joined_from_the_root(bank_of):
     """On its own, a turn of the stem carries all that sits on it as a rigid body at its seat."""
-    bank = bank_of("coupled")
+    bank = bank_of('coupled')
     branches, stem = bank.branches, bank.branches[0]
-    for c in range(int(stem["n_coordinates"])):
+    for c in range(int(stem['n_coordinates'])):
         rotations = np.zeros(count(bank))
-        rotations[stem["coordinate"] + c] = 0.1
+        rotations[stem['coordinate'] + c] = 0.1
         tips = tip_motion(branches, rotations)
-        assert tips[0] == pytest.approx(0.1 * stem["reach"][c])
+        assert tips[0] == pytest.approx(0.1 * stem['reach'][c])
         for b in range(1, len(branches)):
             limb = b
-            while branches[limb]["parent"] > 0:
-                limb = branches[limb]["parent"]
-            linear, angular = np.split(branches[limb]["twist"][c], 2)
-            carried = linear + np.cross(angular, branches[b]["tip"])
+            while branches[limb]['parent'] > 0:
+                limb = branches[limb]['parent']
+            linear, angular = np.split(branches[limb]['twist'][c], 2)
+            carried = linear + np.cross(angular, branches[b]['tip'])
             assert tips[b] == pytest.approx(0.1 * carried, abs=1e-14)
 
 
 def test_motion_is_linear_in_the_rotations_and_in_every_column(bank_of):
-    bank, rng = bank_of("subtree"), np.random.default_rng(0)
+    bank, rng = bank_of('subtree'), np.random.default_rng(0)
     many = rng.normal(size=(count(bank), 2, 3)) + 1j * rng.normal(size=(count(bank), 2, 3))
     whole = tip_motion(bank.branches, many)
     assert whole.shape == (len(bank.branches), 3, 2, 3)

@@ -16,10 +16,10 @@ from tree_sway_ros.study.example_trees import forked_tree
 
 pytestmark = pytest.mark.compiled
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 
 
-@pytest.mark.parametrize("model", ["subtree", "coupled"])
+@pytest.mark.parametrize('model', ['subtree', 'coupled'])
 def test_as_branches_whose_keys_are_zero(model):
     tree = forked_tree(0.5, 0.6)
     whole = CalibratedTree(tree, OAK, Settings())

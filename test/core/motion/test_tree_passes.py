@@ -18,7 +18,7 @@ from tree_sway_ros.core.motion.tree_passes import (
     wind_forces,
 )
 from tree_sway_ros.core.rotation import turned
-from tree_sway_ros.core.simulator.assembly import CalibratedTree, build_bank
+from tree_sway_ros.core.simulator.assembly import build_bank, CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.validation.crooked_trees import crooked_tree
@@ -31,9 +31,9 @@ DRAG = 0.5 * 1.225 * 1.2
 class Loaded:
     """A tree with its records, forces and rates at hand."""
 
-    def __init__(self, tree, enrich="none"):
-        chosen = Settings(model="coupled", enrich=enrich, gravity=0.0)
-        bank = build_bank(tree, species_named("broadleaf"), chosen)
+    def __init__(self, tree, enrich='none'):
+        chosen = Settings(model='coupled', enrich=enrich, gravity=0.0)
+        bank = build_bank(tree, species_named('broadleaf'), chosen)
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
         self.loads = load_records(self.branches)
@@ -41,9 +41,9 @@ class Loaded:
 
     def handed(self, force):
         """Moments on the key rotations, and pulls, of forces at the load centres, at rest."""
-        self.work["rotation"] = 0.0
-        self.work["force"] = force
-        self.loads["turned_force"][0, :, : len(force)] = np.transpose(force)
+        self.work['rotation'] = 0.0
+        self.work['force'] = force
+        self.loads['turned_force'][0, :, : len(force)] = np.transpose(force)
         moment, pull = np.zeros(self.n), np.zeros(len(self.branches))
         generalised_loads(self.branches, self.work, self.loads, True, moment, pull)
         return moment, pull
@@ -56,19 +56,19 @@ class Loaded:
         outward_pass(self.branches, self.work, np.zeros(self.n), v)
         out = []
         for branch, work in zip(self.branches, self.work, strict=True):
-            base = work["velocity"]
-            at = base[:3] + branch["couple"].T @ base[3:]
-            own = slice(branch["coordinate"], branch["coordinate"] + branch["n_coordinates"])
-            out.append(at + v[own] @ branch["push"][: branch["n_coordinates"]])
+            base = work['velocity']
+            at = base[:3] + branch['couple'].T @ base[3:]
+            own = slice(branch['coordinate'], branch['coordinate'] + branch['n_coordinates'])
+            out.append(at + v[own] @ branch['push'][: branch['n_coordinates']])
         return np.array(out)
 
 
-@pytest.fixture(scope="module", params=["none", "all"])
+@pytest.fixture(scope='module', params=['none', 'all'])
 def loaded(fork, request):
     return Loaded(fork(), request.param)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize('seed', range(3))
 def test_moments_do_the_work_of_the_forces(loaded, seed):
     rng = np.random.default_rng(seed)
     force, v = rng.normal(size=(4, 3)), rng.normal(size=loaded.n)
@@ -80,11 +80,11 @@ def test_moments_do_the_work_of_the_forces(loaded, seed):
 def test_the_stem_feels_all_force_and_moment(loaded):
     force = np.random.default_rng(1).normal(size=(4, 3))
     loaded.handed(force)
-    moment = np.einsum("bij,bj->bi", loaded.branches["couple"], force)
+    moment = np.einsum('bij,bj->bi', loaded.branches['couple'], force)
     total = np.concatenate([force.sum(axis=0), moment.sum(axis=0)])
-    assert loaded.work["wrench"][0] == pytest.approx(total, abs=1e-12)
+    assert loaded.work['wrench'][0] == pytest.approx(total, abs=1e-12)
     one = np.concatenate([force[2], moment[2]])
-    assert loaded.work["wrench"][2] == pytest.approx(one, abs=1e-12)
+    assert loaded.work['wrench'][2] == pytest.approx(one, abs=1e-12)
 
 
 def test_a_child_takes_over_the_turn_of_its_parent(loaded):
@@ -92,12 +92,12 @@ def test_a_child_takes_over_the_turn_of_its_parent(loaded):
     v[:2] = 0.3, -0.2
     outward_pass(loaded.branches, loaded.work, v, v)
     for child in (1, 3):
-        twist = loaded.branches["twist"][child, :2, 3:]
-        assert loaded.work["rotation"][child] == pytest.approx(v[:2] @ twist)
-        assert loaded.work["velocity"][child, 3:] == pytest.approx(v[:2] @ twist)
+        twist = loaded.branches['twist'][child, :2, 3:]
+        assert loaded.work['rotation'][child] == pytest.approx(v[:2] @ twist)
+        assert loaded.work['velocity'][child, 3:] == pytest.approx(v[:2] @ twist)
     # The twig on a stiff limb goes along as one body.
-    assert loaded.work["velocity"][2] == pytest.approx(loaded.work["velocity"][1])
-    assert not loaded.work["rotation"][0].any()
+    assert loaded.work['velocity'][2] == pytest.approx(loaded.work['velocity'][1])
+    assert not loaded.work['rotation'][0].any()
 
 
 def test_pull_is_along_the_chord_times_how_far_up_it_acts(stem):
@@ -114,16 +114,16 @@ def test_what_is_carried_pulls_at_its_own_height(sketch):
     for way, length in (((1, 0, 0), 0.4), ((0, 1, 1), 1.0), ((-1, 0, 0), 0.4), ((0, -1, 1), 1.0)):
         drawn.add(0, 4, way, length, 0.01, 0.01, 2)
     tree = Loaded(drawn.tree())
-    turn = np.linalg.norm(tree.branches["twist"][1, :2, 3:], axis=1).mean()
+    turn = np.linalg.norm(tree.branches['twist'][1, :2, 3:], axis=1).mean()
     # A level child swings with the tip; one that rises by h further by its parent's slope there
     # times h.
-    assert tree.branches["axial_lever"][1] == pytest.approx(1.0, rel=1e-9)
-    rise = tree.branches["centre"][2, 2] - 1.0
-    assert tree.branches["axial_lever"][2] == pytest.approx(1.0 + turn * rise, rel=1e-9)
+    assert tree.branches['axial_lever'][1] == pytest.approx(1.0, rel=1e-9)
+    rise = tree.branches['centre'][2, 2] - 1.0
+    assert tree.branches['axial_lever'][2] == pytest.approx(1.0 + turn * rise, rel=1e-9)
 
 
 def test_still_branches_feel_the_wind_of_the_books(loaded):
-    loaded.work["velocity"], loaded.work["rotation"] = 0.0, 0.0
+    loaded.work['velocity'], loaded.work['rotation'] = 0.0, 0.0
     loaded.blow((6.0, 2.0, 1.0))
     wind = np.array([6.0, 2.0, 1.0])
     tree = loaded.tree
@@ -133,28 +133,28 @@ def test_still_branches_feel_the_wind_of_the_books(loaded):
         across = wind - (wind @ along) * along
         area = (0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length)[own].sum()
         expected = DRAG * area * np.linalg.norm(across) * across
-        assert loaded.work["force"][b] == pytest.approx(expected)
+        assert loaded.work['force'][b] == pytest.approx(expected)
 
 
 def test_a_branch_that_goes_with_the_wind_feels_none(stem):
     tree = Loaded(stem())
-    tree.work["velocity"][0] = [6.0, 2.0, 0.0, 0.0, 0.0, 0.0]
+    tree.work['velocity'][0] = [6.0, 2.0, 0.0, 0.0, 0.0, 0.0]
     tree.blow((6.0, 2.0, 0.0))
-    assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)
+    assert tree.work['force'][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
 def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
     """Laid flat into the wind by its base, an upright stem feels nothing."""
     tree = Loaded(stem())
     # Cayley's map turns by twice the arc tangent of half the vector.
-    tree.work["rotation"][0] = [0.0, 2.0 * np.tan(np.pi / 4), 0.0]
+    tree.work['rotation'][0] = [0.0, 2.0 * np.tan(np.pi / 4), 0.0]
     tree.blow((6.0, 0.0, 0.0))
-    assert tree.work["force"][0] == pytest.approx(np.zeros(3), abs=1e-12)
+    assert tree.work['force'][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
 def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
     tree = crooked_tree(4)
-    layer = CalibratedTree(tree, species_named("oak"), Settings(in_leaf=False)).coupled
+    layer = CalibratedTree(tree, species_named('oak'), Settings(in_leaf=False)).coupled
     for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
         true, fitted, centred = np.zeros((3, tree.n_branches, 3))
         for b, (model, record) in enumerate(zip(layer.models, layer.branches, strict=True)):
@@ -163,11 +163,11 @@ def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
             piece = np.linalg.norm(across, axis=1)[:, None] * across
             force = (model.drag_area * model.beam.weight)[..., None] * piece[:, None]
             true[b] = np.cross(model.beam.point, force).sum(axis=(0, 1))
-            projector = record["projector"][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+            projector = record['projector'][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
             drag = np.sqrt(wind @ projector @ wind) * (projector @ wind)
-            drag *= record["area"] * record["speed"] ** 2
-            fitted[b] = record["couple"] @ drag
-            centred[b] = np.cross(record["centre"], force.sum(axis=(0, 1)))
+            drag *= record['area'] * record['speed'] ** 2
+            fitted[b] = record['couple'] @ drag
+            centred[b] = np.cross(record['centre'], force.sum(axis=(0, 1)))
         error = np.linalg.norm(fitted - true) / np.linalg.norm(true)
         assert error < 0.01
         # Nearer than the true force would be, were it to act at one place in all winds.
@@ -183,12 +183,12 @@ class _Bent:
         outward_pass(loaded.branches, loaded.work, x, 0.0 * x)
         self.branches, self.work, self.loads = loaded.branches, loaded.work, loaded.loads
         n = len(force)
-        base = loaded.work["rotation"]
-        turn = np.einsum("bc,bck->bk", x.reshape(-1, 2), loaded.branches["turn"][:, :2])
+        base = loaded.work['rotation']
+        turn = np.einsum('bc,bck->bk', x.reshape(-1, 2), loaded.branches['turn'][:, :2])
         into = self.loads[0]
-        into["base"][:, :n], into["turned"][:, :n] = base.T, (base + turn).T
-        into["own_force"][:, :n] = force.T
-        into["turned_force"][:, :n] = np.array(
+        into['base'][:, :n], into['turned'][:, :n] = base.T, (base + turn).T
+        into['own_force'][:, :n] = force.T
+        into['turned_force'][:, :n] = np.array(
             [_turned(t, f) for t, f in zip(turn, force, strict=True)]
         ).T
         self.moment = np.zeros(len(x))
@@ -213,9 +213,9 @@ def test_a_stem_feels_the_moment_of_a_limb_where_it_now_stands(sketch):
     drawn.add(0, 8, (0, 0, 1), 0.5, 0.01, 0.01, 2)
     x = np.array([0.2, 0.0, 0.0, 0.0])
     tree, down = drawn.tree(), np.array([0.0, 0.0, -1.0])
-    turned_by = x[0] * Loaded(tree).branches["twist"][1, 0, 3:]
+    turned_by = x[0] * Loaded(tree).branches['twist'][1, 0, 3:]
     bent = _Bent(tree, x, np.array([np.zeros(3), _turned(-turned_by, down)]))
-    wrench = bent.work["wrench"][0]
+    wrench = bent.work['wrench'][0]
     assert wrench[:3] == pytest.approx(down, abs=1e-12)
     aside = 0.2 + 0.25 * np.sin(2.0 * np.arctan(0.5 * np.linalg.norm(turned_by)))
     assert np.linalg.norm(wrench[3:]) == pytest.approx(aside, rel=1e-3)

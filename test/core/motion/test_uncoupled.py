@@ -17,12 +17,12 @@ from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 
-WOOD = species_named("broadleaf")
+WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 
 
 def oscillators(tree, dt=1 / 60, **changes):
-    chosen = dict(model="branch", gravity=0.0, twig_tolerance=-1.0) | changes
+    chosen = dict(model='branch', gravity=0.0, twig_tolerance=-1.0) | changes
     bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(dt)
     return bank
@@ -36,8 +36,8 @@ def test_a_planar_sway_is_the_papers_equation(stem):
     bank = oscillators(stem(length=1.0, base=0.003, cuts=4), dt=1 / 480, damping_ratio=0.1)
     branch = bank.branches[0]
     inertia, damping, stiffness = bank.inertia[0], bank.damping[0], bank.stiffness[0]
-    push = np.linalg.norm(branch["push"][0])
-    flow, turn = np.linalg.norm(branch["flow"][0]), np.linalg.norm(branch["turn"][0])
+    push = np.linalg.norm(branch['push'][0])
+    flow, turn = np.linalg.norm(branch['flow'][0]), np.linalg.norm(branch['turn'][0])
 
     def wind(t):
         return 4.0 + 1.5 * np.sin(5.0 * t)
@@ -49,8 +49,8 @@ def test_a_planar_sway_is_the_papers_equation(stem):
         seen = 2.0 * np.arctan(turn * angle / 2.0)
         across = (wind(t) - flow * speed) * np.cos(seen)
         # Pieces move faster and slower than their mean.
-        beside = branch["spread"] * speed**2
-        force = DRAG * branch["area"] * np.sqrt(across**2 + beside) * across
+        beside = branch['spread'] * speed**2
+        force = DRAG * branch['area'] * np.sqrt(across**2 + beside) * across
         px, pz = force * np.cos(seen), -force * np.sin(seen)
         moment = push * (px * np.cos(angle) - pz * np.sin(angle))
         return speed, (moment - damping * speed - stiffness * angle) / inertia
@@ -67,7 +67,7 @@ def test_a_planar_sway_is_the_papers_equation(stem):
     assert np.abs(np.array(path)[:, 1]).max() == 0.0
 
 
-@pytest.mark.parametrize("dt", [1 / 240, 1 / 60, 1 / 15])
+@pytest.mark.parametrize('dt', [1 / 240, 1 / 60, 1 / 15])
 def test_still_air_takes_energy_and_never_gives(stem, dt):
     bank = oscillators(stem(length=1.0, base=0.004, cuts=4), dt, damping_ratio=0.0)
     bank.state[:2, :] = [[0.2, -0.1], [1.0, 3.0]]
@@ -81,17 +81,17 @@ def test_still_air_takes_energy_and_never_gives(stem, dt):
 
 
 def test_what_is_carried_loads_the_stem_only_if_it_carries(fork):
-    for model, carries in (("branch", False), ("subtree", True)):
+    for model, carries in (('branch', False), ('subtree', True)):
         bank = oscillators(fork(), model=model)
         bank.advance(5.0, 0.0, 0.0, DRAG)
         every = bank.moment.reshape(-1, 2)[0].copy()
-        own = bank.work["force"][0] @ bank.branches["push"][0, :2].T
+        own = bank.work['force'][0] @ bank.branches['push'][0, :2].T
         assert bank.carries == carries
         assert np.allclose(every, own) != carries
 
 
 def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
-    bank = oscillators(fork(), model="subtree")
+    bank = oscillators(fork(), model='subtree')
     assert bank.advance(5.0, 0.0, 0.0, DRAG) == 0
     # However heavy the air, at first a branch does no more than go along with it.
     assert bank.advance(5.0, 0.0, 0.0, 1e12) == 0
@@ -105,7 +105,7 @@ def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
 
 
 def test_reset_forgets_everything(fork):
-    bank, fresh = (oscillators(fork(), model="subtree") for _ in range(2))
+    bank, fresh = (oscillators(fork(), model='subtree') for _ in range(2))
     for k in range(20):
         bank.advance(9.0, 1.0 * k, 0.0, DRAG)
     bank.reset()

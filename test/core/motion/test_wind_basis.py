@@ -12,7 +12,7 @@ import pytest
 from tree_sway_ros.core.fidelity.ladder import TABLE_FLOOR, TABLE_MARGIN
 from tree_sway_ros.core.growth.builtin import builtin_tree
 from tree_sway_ros.core.motion.drag import pressure
-from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, SwaySimulator
+from tree_sway_ros.core.simulator.simulator import SwaySimulator, WIND_REFUSED
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.bench.sizes import against, gusts_and_turns
@@ -57,30 +57,30 @@ gusty = gusts_and_turns
 
 def against_modes(tree, winds):
     """Error over motion of all segments, root mean squares; and the simulator on the table."""
-    one, other = SwaySimulator(tree, model="wind_basis"), SwaySimulator(tree, model="modes")
+    one, other = SwaySimulator(tree, model='wind_basis'), SwaySimulator(tree, model='modes')
     return against(one, other, winds), one
 
 
 TREES = {
-    "benjamina": lambda: builtin_tree("benjamina"),
-    "goldcrest": lambda: builtin_tree("goldcrest"),
-    "crooked 1": lambda: crooked(1),
-    "crooked 2": lambda: crooked(2),
-    "crooked 4": lambda: crooked(4),
+    'benjamina': lambda: builtin_tree('benjamina'),
+    'goldcrest': lambda: builtin_tree('goldcrest'),
+    'crooked 1': lambda: crooked(1),
+    'crooked 2': lambda: crooked(2),
+    'crooked 4': lambda: crooked(4),
 }
 
 
-@pytest.mark.parametrize("name", TREES)
+@pytest.mark.parametrize('name', TREES)
 def test_it_errs_by_no_more_than_it_tells(name):
     tree = TREES[name]()
-    for speed, most in ((5.0, 0.03), (12.0, 0.03 if "crooked" not in name else 1.0)):
+    for speed, most in ((5.0, 0.03), (12.0, 0.03 if 'crooked' not in name else 1.0)):
         share, sim = against_modes(tree, gusty(speed))
         told = TABLE_FLOOR + TABLE_MARGIN * sim.bank.oscillators.table.error
         assert share <= min(most, told)
 
 
 def test_a_steep_wind_is_outside_of_the_table_and_stepped_by_branches(fork):
-    one, other = (SwaySimulator(fork(), model=m, n_modes=4) for m in ("wind_basis", "modes"))
+    one, other = (SwaySimulator(fork(), model=m, n_modes=4) for m in ('wind_basis', 'modes'))
     for _ in range(200):
         one.step((0.5, 0.2, 3.0), DT), other.step((0.5, 0.2, 3.0), DT)
     assert one.bank.oscillators.n_outside == 200
@@ -92,8 +92,8 @@ def test_a_steep_wind_is_outside_of_the_table_and_stepped_by_branches(fork):
 
 
 def test_a_gentle_wind_from_any_elevation_is_in_the_table(fork):
-    one = SwaySimulator(fork(), model="wind_basis", n_modes=12)
-    other = SwaySimulator(fork(), model="modes", n_modes=9)
+    one = SwaySimulator(fork(), model='wind_basis', n_modes=12)
+    other = SwaySimulator(fork(), model='modes', n_modes=9)
     for k in range(200):
         turn = 0.05 * k
         wind = [0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.6 * (-1.0) ** (k // 50)]
@@ -105,7 +105,7 @@ def test_a_gentle_wind_from_any_elevation_is_in_the_table(fork):
 
 
 def test_a_storm_beyond_the_table_is_stepped_by_branches_and_stays_bounded(fork):
-    sim = SwaySimulator(fork(), model="wind_basis")
+    sim = SwaySimulator(fork(), model='wind_basis')
     for wind in gusty(40.0):
         sim.step(wind, DT)
     assert sim.bank.oscillators.n_outside > 0
@@ -116,7 +116,7 @@ def test_a_storm_beyond_the_table_is_stepped_by_branches_and_stays_bounded(fork)
 
 
 def test_the_base_moment_is_that_of_the_modes():
-    one, other = (SwaySimulator(crooked(1), model=m) for m in ("wind_basis", "modes"))
+    one, other = (SwaySimulator(crooked(1), model=m) for m in ('wind_basis', 'modes'))
     for wind in gusty(6.0, seconds=3.0):
         one.step(wind, DT), other.step(wind, DT)
     before = one.place()
@@ -135,28 +135,28 @@ def test_a_tree_too_soft_for_the_table_is_told():
         steps[:-1], steps[1:], np.full((8, 2), 0.06), parent=np.arange(-1, 7)
     )
     tables = [
-        SwaySimulator(tree, model="wind_basis").bank.oscillators.table for tree in (soft, stiff)
+        SwaySimulator(tree, model='wind_basis').bank.oscillators.table for tree in (soft, stiff)
     ]
     assert tables[1].error < 0.02
-    assert tables[0].record["most_pressure"][0] < tables[1].record["most_pressure"][0]
+    assert tables[0].record['most_pressure'][0] < tables[1].record['most_pressure'][0]
 
 
-@pytest.mark.parametrize("degree", [0, 2, 4, 7])
+@pytest.mark.parametrize('degree', [0, 2, 4, 7])
 def test_a_degree_that_is_none_is_refused(fork, degree):
-    with pytest.raises(ParameterError, match=f"degree {degree}"):
-        SwaySimulator(fork(), model="wind_basis", degree=degree)
+    with pytest.raises(ParameterError, match=f'degree {degree}'):
+        SwaySimulator(fork(), model='wind_basis', degree=degree)
 
 
 def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
-    for tree in (crooked(1, n_branches=20), builtin_tree("broadleaf")):
-        bank = SwaySimulator(tree, model="wind_basis").bank.oscillators
+    for tree in (crooked(1, n_branches=20), builtin_tree('broadleaf')):
+        bank = SwaySimulator(tree, model='wind_basis').bank.oscillators
         sizes.add((bank.record.nbytes, bank.pace.nbytes, bank.instance.nbytes))
     assert len(sizes) == 1
 
 
 def test_a_step_in_one_call_is_that_of_its_parts(fork):
-    sim, parts = (SwaySimulator(fork(), model="wind_basis") for _ in range(2))
+    sim, parts = (SwaySimulator(fork(), model='wind_basis') for _ in range(2))
     bank = parts.bank.oscillators
     for wind in gusty(4.0)[:240]:
         assert sim.step(wind, DT) == 0
@@ -167,9 +167,9 @@ def test_a_step_in_one_call_is_that_of_its_parts(fork):
     assert sim.place() == pytest.approx(sim.place_rotations(sim.rotations()), abs=1e-12)
 
 
-@pytest.mark.parametrize("bad", [(np.nan, 0.0, 0.0), (0.0, -np.inf, 0.0), (1e3, 0.0, 0.0)])
+@pytest.mark.parametrize('bad', [(np.nan, 0.0, 0.0), (0.0, -np.inf, 0.0), (1e3, 0.0, 0.0)])
 def test_a_step_in_one_call_keeps_the_wind_that_was(fork, bad):
-    sim, other = (SwaySimulator(fork(), model="wind_basis") for _ in range(2))
+    sim, other = (SwaySimulator(fork(), model='wind_basis') for _ in range(2))
     good = (3.0, -1.0, 0.2)
     assert sim.step(good, DT) == other.step(good, DT) == 0
     assert sim.step(bad, DT) == WIND_REFUSED

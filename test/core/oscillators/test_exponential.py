@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
+import math
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import pytest
 
 from tree_sway_ros.core.oscillators.exponential import (
     exponential_differences,
@@ -19,8 +19,8 @@ from tree_sway_ros.core.oscillators.exponential import (
     two_product,
 )
 
-mpmath = pytest.importorskip("mpmath", reason="needs mpmath, an oracle of many digits")
-NAMES = ("g", "d", "s", "p", "q", "p - q")
+mpmath = pytest.importorskip('mpmath', reason='needs mpmath, an oracle of many digits')
+NAMES = ('g', 'd', 's', 'p', 'q', 'p - q')
 
 
 def found(alpha, kappa):
@@ -47,16 +47,16 @@ def exact(alpha, kappa):
         return (g, d, s, p, q, p - q), abs(mean) + abs(a * s)
 
 
-@pytest.mark.parametrize("kappa", [1e-12, 1e-4, 0.3, 2.0, 2.3, 50.0, 1e4, 1e8])
+@pytest.mark.parametrize('kappa', [1e-12, 1e-4, 0.3, 2.0, 2.3, 50.0, 1e4, 1e8])
 @pytest.mark.parametrize(
-    "ratio", [0.0, 1e-6, 0.05, 0.9999999, 1.0, 1.0000001, 1.06, 1.5, 30.0, 1e3]
+    'ratio', [0.0, 1e-6, 0.05, 0.9999999, 1.0, 1.0000001, 1.06, 1.5, 30.0, 1e3]
 )
 def test_six_numbers_to_twelve_digits(kappa, ratio):
     alpha = ratio * math.sqrt(kappa)
     values, sizes = exact(alpha, kappa)
     for name, value, true in zip(NAMES, found(alpha, kappa), values, strict=True):
-        unit = sizes if name in "gd" else abs(true)
-        if name == "s":  # a sine over its phase crosses zero
+        unit = sizes if name in 'gd' else abs(true)
+        if name == 's':  # a sine over its phase crosses zero
             unit = max(unit, math.exp(-alpha) / max(1.0, math.sqrt(kappa)))
         assert abs(value - true) <= 1e-12 * unit + 1e-300, (name, value, true)
 
@@ -92,7 +92,7 @@ def test_a_product_out_of_range_keeps_a_finite_error():
     assert two_product(1e300, 1e300) == (math.inf, 0.0)
 
 
-@pytest.mark.parametrize("z", [-1e-300, -1e-9, -1e-3, -0.999, -1.001, -5.0, -700.0])
+@pytest.mark.parametrize('z', [-1e-300, -1e-9, -1e-3, -0.999, -1.001, -5.0, -700.0])
 def test_phi_functions(z):
     with mpmath.workdps(60):
         x = mpmath.mpf(z)
@@ -103,7 +103,7 @@ def test_phi_functions(z):
     assert (phi1(0.0), phi2(0.0)) == (1.0, 0.5)
 
 
-@pytest.mark.parametrize("turns", [1, 100, 10_000])
+@pytest.mark.parametrize('turns', [1, 100, 10_000])
 def test_the_phase_of_many_turns_keeps_its_digits(turns):
     """In plain floats the error of the phase grows with the turns; as a sum of two it does not."""
     inertia, damping, h = 0.37, 1e-3, 1 / 60

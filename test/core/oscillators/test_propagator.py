@@ -4,16 +4,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.linalg import expm
 
 from tree_sway_ros.core.oscillators.propagator import fill_propagator, propagator
 from tree_sway_ros.errors import ParameterError
 
-mpmath = pytest.importorskip("mpmath", reason="needs mpmath, an oracle of many digits")
+mpmath = pytest.importorskip('mpmath', reason='needs mpmath, an oracle of many digits')
 RATIOS = (0, 1e-8, 1e-3, 0.02, 0.05, 0.5, 0.999, 1, 1.0000001, 1.001, 1.05, 1.2, 2, 5, 50, 1000)
 positive = st.floats(1e-3, 1e3)
 
@@ -34,7 +34,7 @@ def textbook(inertia, damping, stiffness, dt):
         return exact, abs(mean) + abs(a * s)
 
 
-@pytest.mark.parametrize("exponent", range(-8, 5))
+@pytest.mark.parametrize('exponent', range(-8, 5))
 def test_coefficients_agree_with_mpmath(exponent):
     for ratio in RATIOS:
         inertia, dt = 0.37, 1 / 60
@@ -71,7 +71,9 @@ def test_any_oscillator_agrees_with_the_matrix_exponential(inertia, damping, sti
     row = propagator(inertia, damping, stiffness, dt)[0]
     scale = np.repeat([[1, dt, dt * dt / inertia, dt * dt / inertia]], 2, 0)
     scale[1] *= max(1.0, damping / inertia * dt, stiffness / inertia * dt * dt) / dt
-    assert np.all(np.abs(row - augmented(inertia, damping, stiffness, dt)) <= 1e-11 * scale.ravel())
+    assert np.all(
+        np.abs(row - augmented(inertia, damping, stiffness, dt)) <= 1e-11 * scale.ravel()
+    )
 
 
 def test_free_body_and_free_damped_body():
@@ -82,7 +84,7 @@ def test_free_body_and_free_damped_body():
     assert propagator(i, 3.0, 0, h)[0] == pytest.approx(augmented(i, 3.0, 0, h), rel=1e-13)
 
 
-@pytest.mark.parametrize("stiffness", [0.0, 0.3, 40.0, 4e4])
+@pytest.mark.parametrize('stiffness', [0.0, 0.3, 40.0, 4e4])
 def test_no_inertia_is_the_limit_of_a_small_one(stiffness):
     limit = propagator(0, 0.5, stiffness, 0.05)[0]
     small = propagator(1e-11, 0.5, stiffness, 0.05)[0]
@@ -95,7 +97,7 @@ def test_no_inertia_no_damping_is_static():
     assert v1 == pytest.approx((8.0 - 2.0) / 4.0 / 0.5)
 
 
-@pytest.mark.parametrize("stiffness", [0.0, 7.0, 1e300])
+@pytest.mark.parametrize('stiffness', [0.0, 7.0, 1e300])
 def test_extreme_values_stay_finite(stiffness):
     for inertia in (1e-290, 1e-200, 1e-30, 1e200):
         for damping in (0.0, 1e-290, 1e-3, 1e200):
@@ -103,14 +105,14 @@ def test_extreme_values_stay_finite(stiffness):
 
 
 def test_refuses_by_name():
-    with pytest.raises(ParameterError, match=r"oscillator 1: .*all zero"):
+    with pytest.raises(ParameterError, match=r'oscillator 1: .*all zero'):
         propagator([1.0, 0.0], [0.0, 0.0], [1.0, 0.0], 0.1)
-    with pytest.raises(ParameterError, match=r"oscillator 2: stiffness of -1\.0"):
+    with pytest.raises(ParameterError, match=r'oscillator 2: stiffness of -1\.0'):
         propagator(1.0, 0.1, [1.0, 2.0, -1.0], 0.1)
-    with pytest.raises(ParameterError, match="oscillator 0: inertia of nan"):
+    with pytest.raises(ParameterError, match='oscillator 0: inertia of nan'):
         propagator(np.nan, 0.1, 1.0, 0.1)
     for dt in (0.0, -0.1, np.inf, np.nan):
-        with pytest.raises(ParameterError, match="time step"):
+        with pytest.raises(ParameterError, match='time step'):
             propagator(1.0, 0.1, 1.0, dt)
 
 
@@ -123,7 +125,9 @@ def test_the_kernel_reports_the_first_refused_row_and_leaves_it_still():
 
 
 @settings(max_examples=100, deadline=None)
-@given(inertia=positive, damping=st.floats(0, 1e3), stiffness=positive, split=st.floats(0.05, 0.95))
+@given(
+    inertia=positive, damping=st.floats(0, 1e3), stiffness=positive, split=st.floats(0.05, 0.95)
+)
 def test_two_steps_are_one(inertia, damping, stiffness, split):
     """The group law: a line cut in two pieces moves the state as the whole."""
     h, state, m0, m1 = 0.04, np.array([0.3, -1.0]), 2.0, -0.7

@@ -7,10 +7,10 @@ The two-axis branch: its formulas against Lagrange's own, its step against a num
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.oscillators import two_axis
 from tree_sway_ros.core.oscillators.propagator import propagator
@@ -100,7 +100,7 @@ def test_gyroscopic_term_keeps_to_geodesics(x, y, vx, vy):
 
 
 @pytest.mark.parametrize(
-    ("theta", "bound"), [(0.05, 1e-14), (0.5, 1e-11), (1.57, 1e-9), (2.35, 5e-9)]
+    ('theta', 'bound'), [(0.05, 1e-14), (0.5, 1e-11), (1.57, 1e-9), (2.35, 5e-9)]
 )
 def test_the_series_keeps_its_promise(theta, bound):
     w = (0.3, 0.8, -0.5)
@@ -152,7 +152,7 @@ def test_mirrored_and_turned_loads_give_mirrored_and_turned_motion():
     assert turned == pytest.approx(state[[1, 0, 3, 2]] * [[-1], [1], [-1], [1]], abs=1e-12)
 
 
-@pytest.mark.parametrize("scale", [1.0, 1e4, 1e200])
+@pytest.mark.parametrize('scale', [1.0, 1e4, 1e200])
 def test_loads_beyond_the_limit_are_held_and_counted(scale):
     wb, w1, w2, held = two_axis.limit_load(1.0 * scale, -4.0 * scale, 8.0 * scale, 3.0)
     assert held == 1
@@ -163,7 +163,7 @@ def test_loads_beyond_the_limit_are_held_and_counted(scale):
     assert two_axis.limit_load(1.0, 2.0, 2.0, 3.0) == (1.0, 2.0, 2.0, 0)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf])
 def test_a_load_that_is_no_number_does_not_reach_the_state(bad):
     state, force, rows, guard = bank(3, 4)
     force[1, 1] = bad

@@ -3,9 +3,9 @@
 """
 Matrices of the key rotations, against differences of placed segments.
 
-Placing knows nothing of mass or weight, and the matrices nothing of quaternions: the kinetic energy
-of the placed segments and the second variation of the height of pieces that turn one upon another
-must be what the matrices say.
+Placing knows nothing of mass or weight, and the matrices nothing of quaternions: the kinetic
+energy of the placed segments and the second variation of the height of pieces that turn one upon
+another must be what the matrices say.
 
 """
 
@@ -74,15 +74,15 @@ class Reduced:
 def mass_by_differences(reduced, differences):
     x0 = np.zeros(reduced.reduction.n_coordinates)
     moved = differences(reduced.points, x0)
-    return np.einsum("sg,sgki,sgkj->ij", reduced.weights, moved, moved)
+    return np.einsum('sg,sgki,sgkj->ij', reduced.weights, moved, moved)
 
 
 def height_of_weight(reduced, x):
     """
     Mass times height in [kg m], every piece of a branch turned on top of all before it.
 
-    So does the elastic moment that bears the weight at rest turn with the piece it acts on, and its
-    work is of first order alone. Placing turns a segment at once by the sum of what turns it.
+    So does the elastic moment that bears the weight at rest turn with the piece it acts on, and
+    its work is of first order alone. Placing turns a segment at once by the sum of what turns it.
 
     """
     tree, first, total = reduced.tree, reduced.reduction.first, 0.0
@@ -96,7 +96,7 @@ def height_of_weight(reduced, x):
         for step in steps.as_matrix():
             turns.append(turns[-1] @ step)
         tangents = np.repeat(beam.tangent, 5, axis=0)
-        ahead = np.einsum("pij,pj->pi", turns[1:], tangents).reshape(beam.point.shape)
+        ahead = np.einsum('pij,pj->pi', turns[1:], tangents).reshape(beam.point.shape)
         points, _, feet = beam.from_base(ahead)
         total += (model.mass * beam.weight * (base[2] + points[..., 2])).sum()
         child_slope = np.tensordot(own, [one.child_slope for one in model.fields], axes=1)
@@ -131,12 +131,12 @@ def relative(one, other):
     return np.abs((one - other) / np.outer(scale, scale)).max()
 
 
-@pytest.mark.parametrize("shape", ["fork", "straight"])
+@pytest.mark.parametrize('shape', ['fork', 'straight'])
 def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences, shape):
     error = []
-    for fine in (8, 16) if shape == "fork" else (16, 32):
+    for fine in (8, 16) if shape == 'fork' else (16, 32):
         tree = fork(fine)
-        if shape == "straight":
+        if shape == 'straight':
             tree = forked_tree(0.5, 0.6, segments=fine, generations=2)
         reduced = Reduced(tree, enriched=range(tree.n_branches))
         matrix = reduced.reduction.mass.toarray()
@@ -166,7 +166,7 @@ def test_weight_is_the_second_variation_of_height(fork):
     assert np.log2(error[0] / error[1]) == pytest.approx(2.0, abs=0.1)
 
 
-@pytest.mark.parametrize("enriched", [(), (0,), (0, 1, 2, 3)])
+@pytest.mark.parametrize('enriched', [(), (0,), (0, 1, 2, 3)])
 def test_mass_is_symmetric_and_positive(fork, enriched):
     reduction = Reduced(fork(), enriched=enriched).reduction
     mass = reduction.mass.toarray()

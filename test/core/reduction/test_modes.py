@@ -25,7 +25,7 @@ from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.study.frame.frame import frame_model
 
-TREE_121 = Path(__file__).parents[3].parent / "shared" / "data" / "trees" / "tree121.csv"
+TREE_121 = Path(__file__).parents[3].parent / 'shared' / 'data' / 'trees' / 'tree121.csv'
 
 
 def reduced(tree, gravity=9.81, modulus=9e9, enriched=()):
@@ -69,9 +69,9 @@ def crown(sketch, n=120):
 def test_lanczos_finds_what_the_dense_problem_has(sketch, monkeypatch):
     tree = crown(sketch)
     matrices = reduced(tree, enriched=(0,))
-    monkeypatch.setattr(modes_module, "_DENSE_UP_TO", 10)
+    monkeypatch.setattr(modes_module, '_DENSE_UP_TO', 10)
     sparse, factor = natural_modes(tree, matrices, 8), buckling_factor(matrices)
-    monkeypatch.setattr(modes_module, "_DENSE_UP_TO", 10_000)
+    monkeypatch.setattr(modes_module, '_DENSE_UP_TO', 10_000)
     dense, exact = natural_modes(tree, matrices, 8), buckling_factor(matrices)
     assert sparse.circular == pytest.approx(dense.circular, rel=1e-8)
     assert factor[0] == pytest.approx(exact[0], rel=1e-6)
@@ -80,8 +80,8 @@ def test_lanczos_finds_what_the_dense_problem_has(sketch, monkeypatch):
     assert np.linalg.svd(overlap, compute_uv=False) == pytest.approx(np.ones(8), abs=1e-6)
 
 
-@pytest.mark.parametrize("model", ["subtree", "coupled"])
-@pytest.mark.parametrize(("share", "ratio"), [(0.5, 0.935), (0.9, 0.521)])
+@pytest.mark.parametrize('model', ['subtree', 'coupled'])
+@pytest.mark.parametrize(('share', 'ratio'), [(0.5, 0.935), (0.9, 0.521)])
 def test_weight_slows_an_upright_stem(stem, model, share, ratio):
     """Greenhill (1881): at these shares of the length at which it buckles."""
     tree, wood = flagpole(stem, share)
@@ -90,19 +90,19 @@ def test_weight_slows_an_upright_stem(stem, model, share, ratio):
     assert there / without == pytest.approx(ratio, rel=0.03)
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled'])
 def test_a_stem_beyond_greenhills_length_is_refused_by_name(stem, model):
     tree, wood = flagpole(stem, 1.02)
     with pytest.raises(
         TreeError, match=r"branch 'stem': buckles under its own weight.*thick"
     ) as error:
         SwaySimulator(tree, wood, model=model, n_modes=1)
-    assert "9" in error.value.what
+    assert '9' in error.value.what
     assert SwaySimulator(tree, wood, model=model, n_modes=1, gravity=0.0).frequencies(1)[0] > 0.0
 
 
 def flagpole(stem, share):
-    wood = Species("x", "x", modulus=8e9, density=900.0)
+    wood = Species('x', 'x', modulus=8e9, density=900.0)
     rigidity = 8e9 * np.pi / 64 * 0.01**4
     length = share * greenhill_length(rigidity, 900.0 * np.pi / 4 * 0.01**2 * 9.81)
     return stem(length=length, base=0.01, cuts=8), wood
@@ -116,7 +116,7 @@ def test_the_buckling_factor_counts_weight(stem):
     assert three == pytest.approx(8.0, rel=1e-3)
     assert three < one < 1.03 * three
     assert coordinate in (0, 1)
-    assert buckling_factor(reduced(tree, gravity=0.0))[0] == float("inf")
+    assert buckling_factor(reduced(tree, gravity=0.0))[0] == float('inf')
 
 
 def test_a_thin_branch_that_buckles_is_the_one_that_is_named(sketch):
@@ -125,59 +125,59 @@ def test_a_thin_branch_that_buckles_is_the_one_that_is_named(sketch):
     drawn.add(0, 2, (1, 0, 1), 0.5, 0.02, 0.01, 2)
     drawn.add(0, 4, (0, 0.01, 1), 3.0, 0.004, 0.004, 3)
     with pytest.raises(TreeError, match="branch 'b2': buckles"):
-        SwaySimulator(drawn.tree(), model="coupled")
+        SwaySimulator(drawn.tree(), model='coupled')
 
 
 def test_the_cure_in_the_refusal_cures(stem):
     tree, wood = flagpole(stem, 1.3)
     matrices = reduced(tree, modulus=wood.modulus)
-    with pytest.raises(TreeError, match="modulus") as error:
+    with pytest.raises(TreeError, match='modulus') as error:
         refuse_buckling(tree, matrices)
-    times = float(error.value.cure.split("modulus ")[1].split(" times")[0])
+    times = float(error.value.cure.split('modulus ')[1].split(' times')[0])
     refuse_buckling(tree, reduced(tree, modulus=times * wood.modulus))
-    thicker = float(error.value.cure.split("diameters ")[1].split(" times")[0])
+    thicker = float(error.value.cure.split('diameters ')[1].split(' times')[0])
     stout = stem(length=tree.branch_length[0], base=0.01 * thicker, cuts=8)
     refuse_buckling(stout, reduced(stout, modulus=wood.modulus))
 
 
 def test_a_branch_without_mass_is_refused_by_name(stem):
-    weightless = Species("air", "air", modulus=1e9, density=0.0)
+    weightless = Species('air', 'air', modulus=1e9, density=0.0)
     with pytest.raises(TreeError, match="branch 'stem': massless"):
-        SwaySimulator(stem(), weightless, model="coupled")
+        SwaySimulator(stem(), weightless, model='coupled')
 
 
-@pytest.mark.parametrize("count", [0, -1, 3])
+@pytest.mark.parametrize('count', [0, -1, 3])
 def test_a_count_of_modes_that_is_not_there_is_refused(stem, count):
     tree = stem()
-    with pytest.raises(ParameterError, match=r"of a tree that has 2; ask for 1 to 2"):
+    with pytest.raises(ParameterError, match=r'of a tree that has 2; ask for 1 to 2'):
         natural_modes(tree, reduced(tree), count)
 
 
-@pytest.mark.parametrize("direction", [(0, 0, 1), (1, 0, 0), (1, 2, 0.3)])
+@pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, 2, 0.3)])
 def test_frequencies_do_not_depend_on_where_a_stem_points(stem, direction):
-    sim = SwaySimulator(stem(direction=direction), model="coupled", gravity=0.0)
-    upright = SwaySimulator(stem(), model="coupled", gravity=0.0)
+    sim = SwaySimulator(stem(direction=direction), model='coupled', gravity=0.0)
+    upright = SwaySimulator(stem(), model='coupled', gravity=0.0)
     assert sim.frequencies() == pytest.approx(upright.frequencies(), rel=1e-9)
 
 
 def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
     """
-    0.7154 0.7254 1.4084 1.7586 Hz: Euler-Bernoulli frame of 17,424 degrees of freedom, E 8 GPa, 900
-    kg/m^3, with the twist of an isotropic rod.
+    0.7154 0.7254 1.4084 1.7586 Hz: Euler-Bernoulli frame of 17,424 degrees of freedom, E 8 GPa,
+    900 kg/m^3, with the twist of an isotropic rod.
 
     """
     if not TREE_121.exists():
-        pytest.skip(f"the tree of 121 branches is not at {TREE_121}")
-    rows = np.genfromtxt(TREE_121, delimiter=",", names=True)
-    columns = [np.stack([rows[c + k] for c in "xyz"], axis=1) for k in "01"]
+        pytest.skip(f'the tree of 121 branches is not at {TREE_121}')
+    rows = np.genfromtxt(TREE_121, delimiter=',', names=True)
+    columns = [np.stack([rows[c + k] for c in 'xyz'], axis=1) for k in '01']
     tree = tree_from_segments(
         *columns,
-        np.stack([rows["d0"], rows["d1"]], axis=1),
-        parent=rows["parent"].astype(int),
-        branch=rows["branch"].astype(int),
+        np.stack([rows['d0'], rows['d1']], axis=1),
+        parent=rows['parent'].astype(int),
+        branch=rows['branch'].astype(int),
     )
-    wood = Species("frame", "frame", modulus=8e9, density=900.0, shear_ratio=1 / 2.6)
-    slowest = {"model": "modes", "n_modes": 6, "mode_choice": "slowest"}
+    wood = Species('frame', 'frame', modulus=8e9, density=900.0, shear_ratio=1 / 2.6)
+    slowest = {'model': 'modes', 'n_modes': 6, 'mode_choice': 'slowest'}
     sim = SwaySimulator(tree, wood, gravity=0.0, **slowest)
     assert sim.frequencies(4) == pytest.approx([0.7154, 0.7254, 1.4084, 1.7586], rel=0.005)
     # Green wood twists more easily, and the weight of what leans helps it to.
@@ -194,8 +194,8 @@ def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.01, 0.01, 10)
     drawn.add(0, 10, (1, 0, 0), 0.02, 0.1, 0.1, 1)
     drawn.add(0, 10, (-1, 0, 0), 0.02, 0.1, 0.1, 1)
-    sim = SwaySimulator(drawn.tree(), model="coupled", gravity=0.0, enrich="all")
-    wood = species_named("broadleaf")
+    sim = SwaySimulator(drawn.tree(), model='coupled', gravity=0.0, enrich='all')
+    wood = species_named('broadleaf')
     tip = 2 * wood.density * np.pi / 4 * 0.1**2 * 0.02
     own = wood.density * np.pi / 4 * 0.01**2
     w = np.sqrt(3.0 * wood.modulus * np.pi / 64 * 0.01**4 / (tip + 33.0 / 140.0 * own))

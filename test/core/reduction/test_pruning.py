@@ -15,10 +15,10 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import forked_tree
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def whole():
     return CalibratedTree(forked_tree(0.5, 0.6), OAK, Settings())
 
@@ -78,6 +78,6 @@ def test_an_even_wind_pushes_as_hard_as_before(whole):
 
 def test_no_wind_area_no_load(whole):
     bare = whole.coupled.branches.copy()
-    bare["area"] = 0.0
+    bare['area'] = 0.0
     records = moving_records(Pruning(whole.tree, twigs_of(whole.tree)), bare)
-    np.testing.assert_array_equal(records["push"], bare["push"][~twigs_of(whole.tree)])
+    np.testing.assert_array_equal(records['push'], bare['push'][~twigs_of(whole.tree)])

@@ -19,8 +19,8 @@ from tree_sway_ros.errors import TreeError
 from tree_sway_ros.study.example_trees import (
     EXAMPLE_DENSITY,
     EXAMPLE_MODULUS,
-    RATIOS,
     forked_tree,
+    RATIOS,
     tapered_stem,
 )
 from tree_sway_ros.study.frame.frame import frame_model
@@ -38,7 +38,14 @@ def bush():
     """A stem with three branches, short to compute."""
     start = [[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 2], [0.5, 0, 1.5], [0, 0, 2]]
     end = [[0, 0, 1], [0, 0, 2], [0.5, 0, 1.5], [0, 0.3, 2.9], [1.0, 0.2, 1.7], [-0.6, 0.1, 2.4]]
-    width = [[0.05, 0.04], [0.04, 0.03], [0.02, 0.015], [0.03, 0.01], [0.015, 0.01], [0.015, 0.008]]
+    width = [
+        [0.05, 0.04],
+        [0.04, 0.03],
+        [0.02, 0.015],
+        [0.03, 0.01],
+        [0.015, 0.01],
+        [0.015, 0.008],
+    ]
     return tree_from_segments(start, end, width, parent=[-1, 0, 0, 1, 2, 1])
 
 
@@ -57,8 +64,8 @@ def sway(model, dt, duration=1.0):
     return tips_of(model)
 
 
-@pytest.mark.parametrize("gravity", [0.0, 9.81])
-@pytest.mark.parametrize("ratios", RATIOS[::2])
+@pytest.mark.parametrize('gravity', [0.0, 9.81])
+@pytest.mark.parametrize('ratios', RATIOS[::2])
 def test_frequencies_converge_to_the_beams_with_the_square_of_the_segments(ratios, gravity):
     tree = forked_tree(*ratios)
     beam = frame_model(tree, E, RHO, gravity, shear_ratio=500.0, subdivisions=4).frequencies(6)
@@ -89,7 +96,7 @@ def test_uniform_cantilever_of_twenty_segments():
 
 def test_stem_above_greenhill_length_is_refused():
     length = 1.02 * (7.8373 * E * 0.1**2 / (16.0 * RHO * 9.81)) ** (1 / 3)
-    with pytest.raises(TreeError, match="buckles"):
+    with pytest.raises(TreeError, match='buckles'):
         ArticulatedTree(tapered_stem(length, np.full(21, 0.1)), E, RHO, gravity=9.81)
 
 
@@ -127,7 +134,7 @@ def test_undamped_tree_keeps_its_energy_and_falls_as_gravity_says():
     )
     for _ in range(60):
         model.step(np.zeros(3), DT)
-    assert np.abs(model.state.rate).max() < 1e-12, "rest is the loaded shape"
+    assert np.abs(model.state.rate).max() < 1e-12, 'rest is the loaded shape'
     bodies = model.bodies
     rng = np.random.default_rng(0)
     model.state.rate[:] = 0.5 * rng.standard_normal(model.state.rate.shape)

@@ -89,7 +89,7 @@ def plain_bodies(bodies, turn, rate):
             joint[i] += joint[p]
             spin[i] += spin[p]
             speed[i] = speed[p] + np.cross(spin[p], arm)
-    lever = np.einsum("nij,nj->ni", rotation, bodies.centre)
+    lever = np.einsum('nij,nj->ni', rotation, bodies.centre)
     return rotation, joint + lever, speed + np.cross(spin, lever), spin
 
 
@@ -102,11 +102,11 @@ def test_motion_is_that_of_the_plain_sums():
     rotation, _, velocity, spin = plain_bodies(m.bodies, turn, rate)
     assert motion.rotation == pytest.approx(rotation, abs=1e-13)
     assert motion.spin == pytest.approx(spin, abs=1e-13)
-    lever = np.einsum("nij,nj->ni", rotation, m.bodies.centre)
+    lever = np.einsum('nij,nj->ni', rotation, m.bodies.centre)
     assert motion.velocity + np.cross(spin, lever) == pytest.approx(velocity, abs=1e-13)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize('seed', range(3))
 def test_angular_momentum_about_the_root_changes_by_weight_and_the_root_joint(seed):
     """Far from rest and turning fast, so that every bias term counts."""
     m = model()
@@ -119,8 +119,8 @@ def test_angular_momentum_about_the_root_changes_by_weight_and_the_root_joint(se
         # Rates are in axes that turn with the body: to second order both advance together.
         turn_t = moved(turn, t * rate + 0.5 * t * t * accel)
         rotation, centre, velocity, spin = plain_bodies(bodies, turn_t, rate + t * accel)
-        inertia = np.einsum("nij,njk,nlk->nil", rotation, bodies.inertia, rotation)
-        own = np.einsum("nij,nj->ni", inertia, spin)
+        inertia = np.einsum('nij,njk,nlk->nil', rotation, bodies.inertia, rotation)
+        own = np.einsum('nij,nj->ni', inertia, spin)
         return (bodies.mass[:, None] * np.cross(centre - root, velocity) + own).sum(axis=0)
 
     h = 1e-5
@@ -164,7 +164,7 @@ def test_a_push_is_felt_by_every_joint_below_it():
     assert total.ravel() == pytest.approx(generalised, abs=1e-12)
 
 
-@pytest.mark.parametrize("gravity", [0.0, G])
+@pytest.mark.parametrize('gravity', [0.0, G])
 def test_small_turns_are_pulled_back_by_the_stiffness_matrix(gravity):
     m, tiny = model(gravity=gravity), 1e-6
     by = np.random.default_rng(1).normal(size=m.state.rate.shape)
@@ -182,7 +182,7 @@ def test_mass_matrix_is_twice_the_kinetic_energy():
     rate = np.random.default_rng(4).normal(size=m.state.rate.shape)
     _, _, velocity, spin = plain_bodies(m.bodies, m.state.turn, rate)
     twice = m.bodies.mass @ np.sum(velocity**2, axis=1)
-    twice += np.einsum("ni,nij,nj->", spin, m.bodies.inertia, spin)
+    twice += np.einsum('ni,nij,nj->', spin, m.bodies.inertia, spin)
     assert rate.ravel() @ joint_mass(m.bodies) @ rate.ravel() == pytest.approx(twice, rel=1e-12)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.reference.articulated_step import GAMMA, Laws, drag
+from tree_sway_ros.core.reference.articulated_step import drag, GAMMA, Laws
 from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 
 pytestmark = pytest.mark.compiled
@@ -25,8 +25,8 @@ def stability(z):
     return (1 + (1 - 2 * GAMMA) * z + (0.5 - 2 * GAMMA + GAMMA**2) * z * z) / (1 - GAMMA * z) ** 2
 
 
-@pytest.mark.parametrize("damping", [0.0, 2e-3])
-@pytest.mark.parametrize("ratio", [0.1, 1.0, 30.0])
+@pytest.mark.parametrize('damping', [0.0, 2e-3])
+@pytest.mark.parametrize('ratio', [0.1, 1.0, 30.0])
 def test_a_small_swing_grows_as_the_stability_function_says(ratio, damping):
     """One joint is linear for small turns, and its spring and damper are the whole Jacobian."""
     model = ArticulatedTree(
@@ -56,14 +56,14 @@ def test_drag_is_across_the_segment_and_with_the_square():
     up, still = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     assert drag(laws(), up, (3.0, 4.0, 9.0), still) == pytest.approx((9.0, 12.0, 0.0))
     assert drag(laws(), up, (0.0, 0.0, 9.0), still) == (0.0, 0.0, 0.0)
-    assert drag(laws(), up, (3.0, 4.0, 0.0), (3.0, 4.0, 7.0)) == (0.0, 0.0, 0.0), "carried along"
+    assert drag(laws(), up, (3.0, 4.0, 0.0), (3.0, 4.0, 7.0)) == (0.0, 0.0, 0.0), 'carried along'
     assert drag(laws(), up, still, (2.0, 0.0, 0.0)) == pytest.approx((-2.4, 0.0, 0.0)), (
-        "still air brakes"
+        'still air brakes'
     )
 
 
 @pytest.mark.parametrize(
-    ("speed", "counted"), [(1.0, 4.0), (4.0, 4.0), (9.0, 9.0), (20.0, 20.0), (50.0, 20.0)]
+    ('speed', 'counted'), [(1.0, 4.0), (4.0, 4.0), (9.0, 9.0), (20.0, 20.0), (50.0, 20.0)]
 )
 def test_crowns_streamline_between_two_speeds(speed, counted):
     found = drag(laws(0.5), (0.0, 0.0, 1.0), (speed, 0.0, 0.0), (0.0, 0.0, 0.0))[0]

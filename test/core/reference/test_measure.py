@@ -28,7 +28,7 @@ class Turning:
         out[:, 3:] = (lean * Rotation.from_rotvec([0.0, -np.pi / 2, 0.0])).as_quat()
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize('seed', range(3))
 def test_a_tip_is_a_length_ahead_along_the_poses_x(seed):
     tree, rng = forked_tree(0.5, 0.6, generations=2), np.random.default_rng(seed)
     turn = Rotation.from_quat(rng.normal(size=(tree.n_segments, 4)))
@@ -55,7 +55,7 @@ def test_the_score_is_error_over_motion():
     assert tip_error(tree, rest + 1.25 * sway, rest + sway) == pytest.approx(0.25)
     assert tip_error(tree, rest - sway, rest + sway) == pytest.approx(2.0)
     aside = rest + sway[..., ::-1]
-    assert tip_error(tree, aside, rest + sway) == pytest.approx(np.sqrt(2.0)), "at a right angle"
+    assert tip_error(tree, aside, rest + sway) == pytest.approx(np.sqrt(2.0)), 'at a right angle'
 
 
 def test_means_over_frames_keep_the_integral():
@@ -67,5 +67,5 @@ def test_means_over_frames_keep_the_integral():
     assert frame_means(time, wind, dt).sum(axis=0) * dt == pytest.approx(whole, abs=1e-12)
     steady = frame_means([0.0, 1.0], np.tile([3.0, 0.0, 1.0], (2, 1)), 0.3)
     assert steady == pytest.approx(np.tile([3.0, 0.0, 1.0], (3, 1))), (
-        "a frame that is not full is left out"
+        'a frame that is not full is left out'
     )

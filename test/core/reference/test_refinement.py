@@ -30,7 +30,7 @@ def test_places_along_the_parent():
     assert tree.place_on_parent == pytest.approx([1.0, 0.25, 0.5, 1.0])
 
 
-@pytest.mark.parametrize(("pieces", "seats"), [(2, [0, 1, 1]), (4, [1, 2, 3]), (3, [0, 1, 2])])
+@pytest.mark.parametrize(('pieces', 'seats'), [(2, [0, 1, 1]), (4, [1, 2, 3]), (3, [0, 1, 2])])
 def test_a_branch_sits_on_the_piece_it_starts_at(pieces, seats):
     tree = with_arms(0.3, 0.5, 1.0)
     cut = refined(tree, pieces)
@@ -40,7 +40,7 @@ def test_a_branch_sits_on_the_piece_it_starts_at(pieces, seats):
     assert cut.start[first] == pytest.approx(tree.start[1:])
 
 
-@pytest.mark.parametrize("pieces", [2, 5])
+@pytest.mark.parametrize('pieces', [2, 5])
 def test_pieces_join_taper_on_and_remember_their_source(pieces):
     tree = forked_tree(0.65, 0.6, generations=3)
     cut = refined(tree, pieces)

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rotations against scipy, and torques against the work they do."""
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.reference import rotation_kernel as kernel
@@ -65,7 +65,7 @@ def test_quaternions_are_scipys(seed, size):
     kernel.matrix_of(q, matrix)
     assert matrix == pytest.approx(expected.as_matrix(), abs=1e-14)
     assert kernel.logarithm(q) == pytest.approx(v, abs=1e-12)
-    assert kernel.logarithm(-q) == pytest.approx(v, abs=1e-12), "the same rotation"
+    assert kernel.logarithm(-q) == pytest.approx(v, abs=1e-12), 'the same rotation'
 
 
 @settings(deadline=None)
@@ -80,7 +80,7 @@ def test_turning_on_is_in_the_bodys_own_axes(seed):
     assert matrix == pytest.approx(expected.as_matrix(), abs=1e-13)
 
 
-@pytest.mark.parametrize("size", [0.0, 1e-12, 0.9e-3, 1.1e-3, 2.0 * np.pi - 1e-3])
+@pytest.mark.parametrize('size', [0.0, 1e-12, 0.9e-3, 1.1e-3, 2.0 * np.pi - 1e-3])
 def test_small_and_nearly_whole_turns(size):
     q = quaternion(size * np.array(AXIS))
     expected = Rotation.from_rotvec(size * np.array(AXIS)).as_quat()
@@ -96,7 +96,7 @@ def test_the_result_may_overwrite_its_argument():
     assert q == pytest.approx(expected, abs=0.0)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize('seed', range(6))
 def test_twist_and_its_gradient(seed, differences):
     q = quaternion(vector(seed))
     angle, gradient = kernel.twist_of(q, AXIS)
@@ -113,7 +113,7 @@ def test_twist_of_a_pure_twist_and_of_a_pure_swing():
     assert kernel.twist_of(both, AXIS)[0] == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize("size", [1e-6, 0.9e-2, 1.1e-2, 1.0, 3.0])
+@pytest.mark.parametrize('size', [1e-6, 0.9e-2, 1.1e-2, 1.0, 3.0])
 def test_held_torque_works_as_a_constant_one(size, differences):
     """
     Its work on a small turn more is the constant torque's on the change of the rotation vector.

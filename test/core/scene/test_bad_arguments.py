@@ -18,21 +18,21 @@ from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import ParameterError
 
 DT = 1.0 / 60.0
-KINDS = (*MODELS, "segments", "auto", "forest")
+KINDS = (*MODELS, 'segments', 'auto', 'forest')
 
 
 def simulator(tree, kind, **changes):
-    wood = species_named("broadleaf")
-    if kind == "segments":
+    wood = species_named('broadleaf')
+    if kind == 'segments':
         return SegmentsSimulator(tree, wood, Settings(**changes))
-    if kind == "auto":
+    if kind == 'auto':
         return AdaptiveSimulator(tree, wood, Settings(**changes))
-    if kind == "forest":
-        return Forest([PlacedTree("one", tree), PlacedTree("two", tree, 3.0)])
+    if kind == 'forest':
+        return Forest([PlacedTree('one', tree), PlacedTree('two', tree, 3.0)])
     return SwaySimulator(tree, wood, Settings(model=kind, n_modes=4, **changes))
 
 
-@pytest.fixture(scope="module", params=KINDS)
+@pytest.fixture(scope='module', params=KINDS)
 def sim(fork, request):
     return simulator(fork(), request.param)
 
@@ -40,38 +40,38 @@ def sim(fork, request):
 def bad_blocks(n):
     whole = np.zeros((n, 7))
     return {
-        "short": np.zeros((n - 1, 7)),
-        "narrow": np.zeros((n, 6)),
-        "turned": np.zeros((7, n)),
-        "flat": np.zeros(7 * n),
-        "single": np.zeros((n, 7), np.float32),
-        "whole numbers": np.zeros((n, 7), np.int64),
-        "swapped": np.zeros((n, 7), ">f8"),
-        "by columns": np.zeros((n, 7), order="F"),
-        "every second": np.zeros((2 * n, 7))[::2],
-        "read only": np.broadcast_to(0.0, (n, 7)),
-        "crooked": np.zeros(n * 56 + 4, np.uint8)[4:].view(np.float64).reshape(n, 7),
-        "list": whole.tolist(),
+        'short': np.zeros((n - 1, 7)),
+        'narrow': np.zeros((n, 6)),
+        'turned': np.zeros((7, n)),
+        'flat': np.zeros(7 * n),
+        'single': np.zeros((n, 7), np.float32),
+        'whole numbers': np.zeros((n, 7), np.int64),
+        'swapped': np.zeros((n, 7), '>f8'),
+        'by columns': np.zeros((n, 7), order='F'),
+        'every second': np.zeros((2 * n, 7))[::2],
+        'read only': np.broadcast_to(0.0, (n, 7)),
+        'crooked': np.zeros(n * 56 + 4, np.uint8)[4:].view(np.float64).reshape(n, 7),
+        'list': whole.tolist(),
     }
 
 
-@pytest.mark.parametrize("bad", bad_blocks(2))
+@pytest.mark.parametrize('bad', bad_blocks(2))
 def test_an_array_that_cannot_hold_the_poses_is_refused(sim, bad):
     sim.step((5.0, 0.0, 0.0), DT)
     block = bad_blocks(sim.tree.n_segments)[bad]
-    with pytest.raises(ParameterError, match=r"out: .*cannot be filled; give np.empty"):
+    with pytest.raises(ParameterError, match=r'out: .*cannot be filled; give np.empty'):
         sim.place(block)
-    if hasattr(sim, "place_rotations"):
-        with pytest.raises(ParameterError, match="out: "):
+    if hasattr(sim, 'place_rotations'):
+        with pytest.raises(ParameterError, match='out: '):
             sim.place_rotations(sim.rotations(), block)
 
 
 def test_rotations_of_another_number_are_refused(sim):
-    if not hasattr(sim, "place_rotations"):
-        pytest.skip("a forest has no rotations of its own")
+    if not hasattr(sim, 'place_rotations'):
+        pytest.skip('a forest has no rotations of its own')
     good = sim.rotations()
-    for bad in (good[:-1], np.append(good, 0.0), good[None], ["x"] * len(good)):
-        with pytest.raises(ParameterError, match="rotations: "):
+    for bad in (good[:-1], np.append(good, 0.0), good[None], ['x'] * len(good)):
+        with pytest.raises(ParameterError, match='rotations: '):
             sim.place_rotations(bad)
     told = sim.place_rotations(np.repeat(good, 2)[::2].astype(np.float32))
     assert np.abs(told - sim.place_rotations(good)).max() < 1e-5
@@ -93,27 +93,27 @@ def test_the_tip_is_told_without_placing(sim):
     told = np.array(sim.tip_displacement)
     sim.place()
     assert (told == sim.tip_displacement).all()
-    assert (np.abs(told).max() > 1e-6) == (sim.model != "frozen")
+    assert (np.abs(told).max() > 1e-6) == (sim.model != 'frozen')
 
 
-@pytest.mark.parametrize("dt", [0.0, -DT, np.nan, np.inf])
+@pytest.mark.parametrize('dt', [0.0, -DT, np.nan, np.inf])
 def test_a_step_of_no_time_is_refused_at_once_and_later(fork, sim, dt):
-    for one in (sim, simulator(fork(), "subtree")):
-        with pytest.raises(ParameterError, match=r"step"):
+    for one in (sim, simulator(fork(), 'subtree')):
+        with pytest.raises(ParameterError, match=r'step'):
             one.step((1.0, 0.0, 0.0), dt)
 
 
-@pytest.mark.parametrize("name", ["leaf_mass", "leaf_area"])
-@pytest.mark.parametrize("kind", ["subtree", "modes", "segments"])
+@pytest.mark.parametrize('name', ['leaf_mass', 'leaf_area'])
+@pytest.mark.parametrize('kind', ['subtree', 'modes', 'segments'])
 def test_leaves_are_one_number_per_branch(fork, kind, name):
     n = fork().n_branches
-    for bad in (np.zeros(n - 1), np.zeros((n, 1)), [-1.0] * n, [np.nan] * n, ["x"] * n):
-        with pytest.raises(ParameterError, match=r"lea(f|ves)"):
+    for bad in (np.zeros(n - 1), np.zeros((n, 1)), [-1.0] * n, [np.nan] * n, ['x'] * n):
+        with pytest.raises(ParameterError, match=r'lea(f|ves)'):
             simulator(fork(), kind, **{name: bad})
     simulator(fork(), kind, **{name: [0.1] * n})
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled'])
 def test_motion_that_is_not_finite_goes_on_from_rest(fork, model):
     sim = simulator(fork(), model)
     sim.step((5.0, 0.0, 0.0), DT)
@@ -127,7 +127,7 @@ def test_motion_that_is_not_finite_goes_on_from_rest(fork, model):
     assert sim.tip_displacement[0] > 0.0
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled", "segments"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled', 'segments'])
 def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
     """Half a millimetre across and a kilometre long, with its weight left out."""
     nodes = np.array([(0, 0, 0), (0, 0, 2), (0, 0, 4), (1e3, 0, 4)], float)
@@ -142,7 +142,7 @@ def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
 
 def test_every_segment_stands_gusts_of_a_hurricane(fork):
     """Explicit drag on its twigs blew up from 28 m/s on; it is taken in finer steps there."""
-    sim = simulator(fork(), "segments")
+    sim = simulator(fork(), 'segments')
     rng = np.random.default_rng(0)
     for k in range(240):
         speed = 44.0 + 16.0 * np.sin(0.5 * k)

@@ -12,10 +12,10 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import species_named
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def pair(fork):
     trees = fork(), fork(3)
     return [AdaptiveSimulator(tree, OAK, Settings()) for tree in trees]
@@ -26,7 +26,7 @@ def test_each_tree_gets_its_share_of_the_budget(pair):
     set_demand([*pair, pinned], tolerance=0.01, budget=40.0)
     assert [each.budget for each in pair] == pytest.approx([10.0, 30.0])
     assert [each.tolerance for each in pair] == [0.01, 0.01]
-    assert not hasattr(pinned, "tolerance")
+    assert not hasattr(pinned, 'tolerance')
 
 
 def test_a_camera_turns_pixels_into_metres(pair):

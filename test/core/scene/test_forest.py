@@ -4,17 +4,17 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, SwaySimulator
+from tree_sway_ros.core.simulator.simulator import OK, SwaySimulator, WIND_REFUSED
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
 from tree_sway_ros.errors import ParameterError, TreeError
@@ -31,37 +31,39 @@ def gusts(n, mean=8.0):
 
 def turned(wind, yaw):
     """The wind in the frame of a tree that is turned by yaw."""
-    return Rotation.from_euler("z", -yaw).apply(wind)
+    return Rotation.from_euler('z', -yaw).apply(wind)
 
 
 def test_one_tree_at_the_anemometer_moves_as_alone(fork):
     tree = fork()
     forest, alone = (
-        Forest([PlacedTree("tree", tree)], model="subtree"),
-        SwaySimulator(tree, model="subtree"),
+        Forest([PlacedTree('tree', tree)], model='subtree'),
+        SwaySimulator(tree, model='subtree'),
     )
     for wind in gusts(120):
         assert forest.step(wind, DT) == alone.step(wind, DT) == OK
         assert forest.place() == pytest.approx(alone.place(), abs=1e-12)
-    assert forest.simulators[0].tip_displacement == pytest.approx(alone.tip_displacement, abs=1e-12)
+    assert forest.simulators[0].tip_displacement == pytest.approx(
+        alone.tip_displacement, abs=1e-12
+    )
 
 
 @given(
     yaw=st.floats(-7.0, 7.0),
     x=st.floats(-30.0, 30.0),
     y=st.floats(-30.0, 30.0),
-    model=st.sampled_from(["branch", "subtree", "coupled"]),
+    model=st.sampled_from(['branch', 'subtree', 'coupled']),
 )
 @settings(max_examples=12, deadline=None)
 def test_a_turned_tree_moves_as_alone_in_the_turned_wind(fork, yaw, x, y, model):
     tree = fork()
-    one_wind = {"convection_ratio": np.inf, "model": model}
-    forest = Forest([PlacedTree("tree", tree, x=x, y=y, z=2.0, yaw=yaw)], **one_wind)
+    one_wind = {'convection_ratio': np.inf, 'model': model}
+    forest = Forest([PlacedTree('tree', tree, x=x, y=y, z=2.0, yaw=yaw)], **one_wind)
     alone = SwaySimulator(tree, model=model)
     for wind in gusts(30):
         forest.step(wind, DT)
         alone.step(turned(wind, yaw), DT)
-    about = Rotation.from_euler("z", yaw)
+    about = Rotation.from_euler('z', yaw)
     poses, own = forest.place(), alone.place()
     assert poses[:, :3] == pytest.approx(about.apply(own[:, :3]) + np.array([x, y, 2.0]), abs=1e-8)
     # How a segment is rolled about itself is free; the way it points is not.
@@ -71,8 +73,8 @@ def test_a_turned_tree_moves_as_alone_in_the_turned_wind(fork, yaw, x, y, model)
 
 def test_a_gust_reaches_one_tree_after_the_other(stem):
     tree = stem(length=2.0, base=0.02, tip=0.006)
-    row = [PlacedTree(f"tree{i}", tree, x=20.0 * i) for i in range(4)]
-    forest = Forest(row, model="branch", damping_ratio=0.3)
+    row = [PlacedTree(f'tree{i}', tree, x=20.0 * i) for i in range(4)]
+    forest = Forest(row, model='branch', damping_ratio=0.3)
     calm = np.tile([5.0, 0.0, 0.0], (1200, 1))
     calm[300:330, 0] = 10.0
     tips = []
@@ -87,37 +89,37 @@ def test_a_gust_reaches_one_tree_after_the_other(stem):
 
 
 def test_the_block_holds_the_trees_one_after_another(fork, stem):
-    forest = Forest([PlacedTree("a", fork()), PlacedTree("b", stem(), x=4.0)])
+    forest = Forest([PlacedTree('a', fork()), PlacedTree('b', stem(), x=4.0)])
     block = np.full((forest.tree.n_segments, 7), np.nan)
     forest.step((6.0, 1.0, 0.0), DT)
     assert forest.place(block) is block
     assert np.isfinite(block).all()
-    assert block[forest.segments_of("b")][0, :3] == pytest.approx([4.0, 0.0, 0.0])
+    assert block[forest.segments_of('b')][0, :3] == pytest.approx([4.0, 0.0, 0.0])
     assert (block == forest.place()).all()
-    with pytest.raises(ParameterError, match="use one of: a, b"):
-        forest.segments_of("c")
+    with pytest.raises(ParameterError, match='use one of: a, b'):
+        forest.segments_of('c')
 
 
 def test_at_rest_the_block_is_that_of_the_joined_tree(fork, stem):
-    forest = Forest([PlacedTree("a", fork(), yaw=1.0), PlacedTree("b", stem(), x=4.0)])
+    forest = Forest([PlacedTree('a', fork(), yaw=1.0), PlacedTree('b', stem(), x=4.0)])
     assert forest.place()[:, :3] == pytest.approx(forest.tree.start, abs=1e-12)
 
 
 def test_each_tree_may_have_a_species_and_a_model_of_its_own(stem):
     trees = [
-        PlacedTree("a", stem()),
-        PlacedTree("b", stem(), species=species_named("oak"), settings=Settings(model="branch")),
+        PlacedTree('a', stem()),
+        PlacedTree('b', stem(), species=species_named('oak'), settings=Settings(model='branch')),
     ]
-    forest = Forest(trees, model="subtree")
-    assert forest.model == "subtree, branch"
-    assert [sim.species.key for sim in forest.simulators] == ["broadleaf", "oak"]
+    forest = Forest(trees, model='subtree')
+    assert forest.model == 'subtree, branch'
+    assert [sim.species.key for sim in forest.simulators] == ['broadleaf', 'oak']
     assert forest.n_solved + forest.n_copied == forest.tree.n_branches
 
 
-@pytest.mark.parametrize("bad", [(np.nan, 0, 0), (np.inf, 0, 0), (1e300, 0, 0), (500.0, 0, 0)])
+@pytest.mark.parametrize('bad', [(np.nan, 0, 0), (np.inf, 0, 0), (1e300, 0, 0), (500.0, 0, 0)])
 def test_a_wind_that_cannot_be_is_refused_and_forgotten(fork, bad):
     forests = [
-        Forest([PlacedTree(n, fork(), x=x) for n, x in (("a", 0.0), ("b", 9.0))]) for _ in "12"
+        Forest([PlacedTree(n, fork(), x=x) for n, x in (('a', 0.0), ('b', 9.0))]) for _ in '12'
     ]
     winds = gusts(200)
     for i, wind in enumerate(winds):
@@ -130,7 +132,7 @@ def test_a_wind_that_cannot_be_is_refused_and_forgotten(fork, bad):
 
 
 def test_reset_brings_every_tree_to_rest(fork):
-    forest = Forest([PlacedTree("a", fork()), PlacedTree("b", fork(), x=9.0)])
+    forest = Forest([PlacedTree('a', fork()), PlacedTree('b', fork(), x=9.0)])
     rest = forest.place().copy()
     runs = []
     for _ in range(2):
@@ -145,19 +147,19 @@ def test_reset_brings_every_tree_to_rest(fork):
 
 def test_a_forest_that_cannot_be_is_refused(fork):
     with pytest.raises(ParameterError, match="two trees called 'a'"):
-        Forest([PlacedTree("a", fork()), PlacedTree("a", fork())])
-    with pytest.raises(TreeError, match="no trees"):
+        Forest([PlacedTree('a', fork()), PlacedTree('a', fork())])
+    with pytest.raises(TreeError, match='no trees'):
         Forest([])
     with pytest.raises(ParameterError):
-        Forest([PlacedTree("a", fork())]).step((1.0, 0.0, 0.0), 0.0)
+        Forest([PlacedTree('a', fork())]).step((1.0, 0.0, 0.0), 0.0)
 
 
 def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
     tree = fork()
     trees = [
-        PlacedTree("bare", tree, leaf_on=False),
-        PlacedTree("green", tree, leaf_on=True),
-        PlacedTree("as asked", tree),
+        PlacedTree('bare', tree, leaf_on=False),
+        PlacedTree('green', tree, leaf_on=True),
+        PlacedTree('as asked', tree),
     ]
     forest = Forest(trees, in_leaf=True, convection_ratio=np.inf)
     assert [sim.settings.in_leaf for sim in forest.simulators] == [False, True, True]
@@ -173,18 +175,18 @@ def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
 
 def test_every_tree_finds_the_model_it_needs(fork, stem):
     trees = [
-        PlacedTree("fork", fork()),
-        PlacedTree("twig", stem(length=0.1, base=0.02, tip=0.01)),
+        PlacedTree('fork', fork()),
+        PlacedTree('twig', stem(length=0.1, base=0.02, tip=0.01)),
     ]
-    forest = Forest(trees, model="auto", tolerance=1e-3)
+    forest = Forest(trees, model='auto', tolerance=1e-3)
     chosen = [each.choice.name for each in simulators_of(forest)]
-    assert chosen[1] == "frozen"
-    assert chosen[0] != "frozen"
+    assert chosen[1] == 'frozen'
+    assert chosen[0] != 'frozen'
     assert forest.step((6.0, 0.0, 0.0), DT) == OK
     assert simulators_of(forest.simulators[0]) == (forest.simulators[0],)
 
 
 def test_an_error_names_the_tree(stem):
     thin = stem(length=30.0, base=0.02, tip=0.02)
-    with pytest.raises(TreeError, match=r"^reed: "):
-        Forest([PlacedTree("oak", stem()), PlacedTree("reed", thin)])
+    with pytest.raises(TreeError, match=r'^reed: '):
+        Forest([PlacedTree('oak', stem()), PlacedTree('reed', thin)])

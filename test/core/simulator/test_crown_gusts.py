@@ -23,7 +23,7 @@ from tree_sway_ros.study.validation.winds import turbulent
 FRAME = 1.0 / 60.0
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def tree():
     return crooked_tree(4)
 
@@ -37,13 +37,13 @@ def tips(tree, wind, model, coherence):
 
 def test_models_agree_with_every_segment_solved_in_gusts_limb_by_limb(tree):
     wind = turbulent(6.0, 8.0, 4)
-    truth = tips(tree, wind, "segments", 0.5)
-    assert tip_error(tree, tips(tree, wind, "coupled", 0.5), truth) < 0.08
+    truth = tips(tree, wind, 'segments', 0.5)
+    assert tip_error(tree, tips(tree, wind, 'coupled', 0.5), truth) < 0.08
     # The check can tell the two winds apart.
-    assert tip_error(tree, tips(tree, wind, "coupled", 1.0), truth) > 0.12
+    assert tip_error(tree, tips(tree, wind, 'coupled', 1.0), truth) > 0.12
 
 
-@pytest.mark.parametrize("model", ["branch", "modes"])
+@pytest.mark.parametrize('model', ['branch', 'modes'])
 def test_numpy_meets_the_same_gusts(tree, model):
     settings = Settings(model=model, crown_coherence=0.5)
     sim = SwaySimulator(tree, WOOD, settings)
@@ -55,7 +55,7 @@ def test_numpy_meets_the_same_gusts(tree, model):
     assert sim.place() == pytest.approx(twin.place(), abs=1e-9)
 
 
-@pytest.mark.parametrize("model", ["subtree", "wind_basis", "modes", "segments"])
+@pytest.mark.parametrize('model', ['subtree', 'wind_basis', 'modes', 'segments'])
 def test_a_state_goes_on_bit_for_bit(model):
     tree = bench_tree()
     sim, other = (make_simulator(tree, WOOD, model=model, crown_coherence=0.6) for _ in range(2))
@@ -80,7 +80,7 @@ def test_frozen_branches_leave_the_delays_of_the_others(tree):
 
 def test_a_table_of_even_winds_takes_the_mean_of_the_limbs():
     tree = bench_tree()
-    both = [make_simulator(tree, WOOD, model="wind_basis", crown_coherence=c) for c in (1.0, 0.5)]
+    both = [make_simulator(tree, WOOD, model='wind_basis', crown_coherence=c) for c in (1.0, 0.5)]
     gust = np.vstack([np.tile([4.0, 0.0, 0.0], (600, 1)), np.tile([8.0, 0.0, 0.0], (30, 1))])
     for x in gust:
         for sim in both:
@@ -92,7 +92,7 @@ def test_a_table_of_even_winds_takes_the_mean_of_the_limbs():
 def test_models_of_a_change_have_felt_the_same_gusts(tree):
     settings = Settings(crown_coherence=0.5)
     sim = SwaySimulator(tree, WOOD, settings)
-    better = SwaySimulator(tree, WOOD, replace(settings, model="coupled"))
+    better = SwaySimulator(tree, WOOD, replace(settings, model='coupled'))
     wind = turbulent(6.0, 3.0, 3)
     for x in wind:
         sim.step(x, FRAME)

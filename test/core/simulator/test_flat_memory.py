@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+import sys
 
 import numpy as np
 import pytest
@@ -16,13 +16,13 @@ pytestmark = pytest.mark.compiled
 
 DT = 1.0 / 60.0
 WINDS = [(5.0 + np.sin(0.1 * k), np.cos(0.07 * k), 0.1) for k in range(200)]
-MODELS = ("wind_basis", "modes", "coupled", "subtree", "branch")
+MODELS = ('wind_basis', 'modes', 'coupled', 'subtree', 'branch')
 
 
 @pytest.fixture
 def allocations():
     """How many arrays compiled code has asked memory for."""
-    runtime = pytest.importorskip("numba.core.runtime._nrt_python")
+    runtime = pytest.importorskip('numba.core.runtime._nrt_python')
     runtime.memsys_enable_stats()
     yield runtime.memsys_get_stats_alloc
     runtime.memsys_disable_stats()
@@ -30,10 +30,10 @@ def allocations():
 
 def resident():
     """Memory of this process in [kB]."""
-    status = Path("/proc/self/status")
+    status = Path('/proc/self/status')
     if not status.exists():
-        pytest.skip("memory is told by /proc alone")
-    return next(int(line.split()[1]) for line in status.read_text().split("\n") if "VmRSS" in line)
+        pytest.skip('memory is told by /proc alone')
+    return next(int(line.split()[1]) for line in status.read_text().split('\n') if 'VmRSS' in line)
 
 
 def sway(simulator, out, rounds):
@@ -43,7 +43,7 @@ def sway(simulator, out, rounds):
         simulator.place(out)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize('model', MODELS)
 def test_no_step_asks_for_memory(fork, model, allocations):
     simulator = SwaySimulator(fork(), model=model)
     out = np.zeros((simulator.tree.n_segments, 7))
@@ -59,7 +59,7 @@ def test_no_step_asks_for_memory(fork, model, allocations):
 
 
 def test_a_million_steps_take_no_memory(fork):
-    simulator = SwaySimulator(fork(), model="wind_basis")
+    simulator = SwaySimulator(fork(), model='wind_basis')
     out = np.zeros((simulator.tree.n_segments, 7))
     sway(simulator, out, 50)
     before = resident()

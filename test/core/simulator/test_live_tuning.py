@@ -20,7 +20,7 @@ DT = 1.0 / 120.0
 CALM, BREEZE = (0.0, 0.0, 0.0), (5.0, 1.0, 0.0)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def tree():
     return bench_tree()
 
@@ -43,10 +43,10 @@ def frequency(tips):
     return float(np.argmax(power)) / (16 * len(tips) * DT)
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled", "segments"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled', 'segments'])
 def test_a_stiffer_tree_sways_as_one_made_so(tree, model):
     stiff = WOOD.__class__(
-        "stiff", "stiff", 2.0 * WOOD.modulus, WOOD.density,
+        'stiff', 'stiff', 2.0 * WOOD.modulus, WOOD.density,
         damping_bare=WOOD.damping_bare, shear_ratio=WOOD.shear_ratio,
     )  # fmt: skip
     made = make_simulator(tree, stiff, model=model)
@@ -58,7 +58,7 @@ def test_a_stiffer_tree_sways_as_one_made_so(tree, model):
     assert abs(wanted / before - 1.0) > 0.3
 
 
-@pytest.mark.parametrize("model", ["subtree", "wind_basis", "modes", "segments"])
+@pytest.mark.parametrize('model', ['subtree', 'wind_basis', 'modes', 'segments'])
 def test_more_damping_ends_the_sway_as_in_a_tree_made_so(tree, model):
     tuned = make_simulator(tree, WOOD, model=model)
     tuned.tune(damping_ratio=0.3)
@@ -69,7 +69,7 @@ def test_more_damping_ends_the_sway_as_in_a_tree_made_so(tree, model):
     assert np.abs(light - made).max() > 0.2 * np.abs(made).max()
 
 
-@pytest.mark.parametrize("model", ["modes", "segments"])
+@pytest.mark.parametrize('model', ['modes', 'segments'])
 def test_weight_changes_as_in_a_tree_made_with_it(tree, model):
     tuned = make_simulator(tree, WOOD, model=model, gravity=9.81)
     tuned.tune(gravity=2.0)
@@ -78,14 +78,14 @@ def test_weight_changes_as_in_a_tree_made_with_it(tree, model):
 
 
 def test_the_constants_of_the_volume_rule(tree):
-    rule = {"model": "branch", "stiffness": "volume_rule"}
+    rule = {'model': 'branch', 'stiffness': 'volume_rule'}
     tuned = make_simulator(tree, WOOD, **rule)
     tuned.tune(volume_stiffness=6.0e5, volume_damping=9.0e3)
     made = make_simulator(tree, WOOD, **rule, volume_stiffness=6.0e5, volume_damping=9.0e3)
     assert free_sway(tuned, 1.0) == pytest.approx(free_sway(made, 1.0), abs=1e-6)
 
 
-@pytest.mark.parametrize("model", ["subtree", "modes", "segments"])
+@pytest.mark.parametrize('model', ['subtree', 'modes', 'segments'])
 def test_no_pose_jumps(tree, model):
     sim = make_simulator(tree, WOOD, model=model)
     for _ in range(600):
@@ -106,15 +106,15 @@ def test_no_pose_jumps(tree, model):
 
 
 @pytest.mark.parametrize(
-    ("changes", "why"),
+    ('changes', 'why'),
     [
-        ({"damping_ratio": -0.1}, "damping_ratio"),
-        ({"damping_ratio": float("nan")}, "damping_ratio"),
-        ({"stiffness_factor": 0.0}, "stiffness_factor"),
-        ({"gravity": 31.0}, "gravity"),
-        ({"volume_stiffness": 1.0e5}, "volume rule"),
-        ({"modulus": 1e9}, "cannot change while the tree sways"),
-        ({"stiffness_factor": 0.1, "gravity": 30.0}, "buckles"),
+        ({'damping_ratio': -0.1}, 'damping_ratio'),
+        ({'damping_ratio': float('nan')}, 'damping_ratio'),
+        ({'stiffness_factor': 0.0}, 'stiffness_factor'),
+        ({'gravity': 31.0}, 'gravity'),
+        ({'volume_stiffness': 1.0e5}, 'volume rule'),
+        ({'modulus': 1e9}, 'cannot change while the tree sways'),
+        ({'stiffness_factor': 0.1, 'gravity': 30.0}, 'buckles'),
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_changes(tree, changes, why):
@@ -128,17 +128,17 @@ def test_what_cannot_be_is_refused_and_nothing_changes(tree, changes, why):
 
 
 def test_weight_needs_a_tree_that_was_made_with_it(tree):
-    with pytest.raises(ParameterError, match="without weight"):
+    with pytest.raises(ParameterError, match='without weight'):
         SwaySimulator(tree, WOOD, gravity=0.0).tune(gravity=9.81)
 
 
 def test_a_table_holds_for_one_stiffness(tree):
-    with pytest.raises(ParameterError, match="wind_basis"):
-        SwaySimulator(tree, WOOD, model="wind_basis").tune(stiffness_factor=2.0)
+    with pytest.raises(ParameterError, match='wind_basis'):
+        SwaySimulator(tree, WOOD, model='wind_basis').tune(stiffness_factor=2.0)
 
 
 def test_a_forest_takes_a_change_as_a_whole(tree):
-    forest = Forest([PlacedTree(f"t{k}", tree, species=WOOD, x=9.0 * k) for k in range(2)])
+    forest = Forest([PlacedTree(f't{k}', tree, species=WOOD, x=9.0 * k) for k in range(2)])
     forest.tune(damping_ratio=0.2)
     assert [each.check_tuning().damping_ratio for each in forest.simulators] == [0.2, 0.2]
     with pytest.raises(ParameterError):

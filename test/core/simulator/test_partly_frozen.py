@@ -16,17 +16,17 @@ from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.study.example_trees import forked_tree
 from tree_sway_ros.study.tip_error import record_tips, tip_error
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 DT = 1.0 / 60.0
 SETTINGS = Settings(n_modes=6)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def whole():
     return CalibratedTree(forked_tree(0.5, 0.6), OAK, SETTINGS)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def wind():
     return simulate_turbulence(6.0, rate=60, duration=4, rng=np.random.default_rng(1), height=10.0)
 
@@ -36,7 +36,7 @@ def tips(calibrated, whole, wind, model):
     return sim, record_tips(sim, whole.tree, wind, DT)
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled'])
 def test_nothing_frozen_changes_nothing(whole, wind, model):
     none = PartlyFrozenTree(whole, np.zeros(whole.tree.n_branches, bool))
     _, before = tips(whole, whole, wind[:60], model)
@@ -44,7 +44,7 @@ def test_nothing_frozen_changes_nothing(whole, wind, model):
     np.testing.assert_allclose(after, before, atol=1e-12)
 
 
-@pytest.mark.parametrize("model", ["subtree", "modes", "coupled"])
+@pytest.mark.parametrize('model', ['subtree', 'modes', 'coupled'])
 def test_frozen_twigs_cost_two_percent_of_the_motion(whole, wind, model):
     tree = whole.tree
     twigs = tree.subtree_end - np.arange(tree.n_branches) == 1
@@ -56,7 +56,7 @@ def test_frozen_twigs_cost_two_percent_of_the_motion(whole, wind, model):
 
 def test_all_frozen_but_the_stem(whole, wind):
     alone = PartlyFrozenTree(whole, np.ones(whole.tree.n_branches, bool))
-    sim, _ = tips(alone, whole, wind[:60], "coupled")
+    sim, _ = tips(alone, whole, wind[:60], 'coupled')
     assert sim.n_solved == 1
     assert sim.mass == pytest.approx(SwaySimulator(whole.tree, OAK, SETTINGS).mass)
     assert np.isfinite(sim.place()).all()

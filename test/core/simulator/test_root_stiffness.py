@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -20,10 +20,10 @@ from tree_sway_ros.core.tree.species import species_named, typical_root_stiffnes
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.frame.frame import frame_model
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 LENGTH, WIDTH = 5.0, 0.1
 BENDING = OAK.modulus * math.pi / 64.0 * WIDTH**4
-USUAL = Settings(model="modes", n_modes=2, mode_choice="slowest", gravity=0.0, in_leaf=False)
+USUAL = Settings(model='modes', n_modes=2, mode_choice='slowest', gravity=0.0, in_leaf=False)
 
 
 def first_frequency(ratio: float) -> float:
@@ -42,7 +42,7 @@ def first_frequency(ratio: float) -> float:
     return root**2 / (2.0 * math.pi * LENGTH**2) * math.sqrt(BENDING / line_mass)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 5.0, 40.0])
+@pytest.mark.parametrize('ratio', [1.0, 5.0, 40.0])
 def test_a_pole_on_a_spring_sways_as_the_closed_form(ratio, stem):
     pole, spring = stem(length=LENGTH, base=WIDTH, cuts=16), ratio * BENDING / LENGTH
     known = first_frequency(ratio)
@@ -55,7 +55,7 @@ def test_a_pole_on_a_spring_sways_as_the_closed_form(ratio, stem):
 
 
 def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
-    tree = grow("walnut", 12.0, rng=np.random.default_rng(0))
+    tree = grow('walnut', 12.0, rng=np.random.default_rng(0))
     mass = float(OAK.density * tree.volume[tree.segments_of(0)].sum())
     rooted = replace(OAK, root_stiffness=typical_root_stiffness(mass))
     usual = replace(USUAL, n_modes=12)
@@ -76,12 +76,12 @@ def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
 
 def test_segments_stand_on_the_same_spring(stem):
     pole = stem(length=LENGTH, base=WIDTH, cuts=16)
-    told = Settings(model="segments", root_stiffness=5.0 * BENDING / LENGTH, gravity=0.0)
+    told = Settings(model='segments', root_stiffness=5.0 * BENDING / LENGTH, gravity=0.0)
     by_model = SegmentsSimulator(pole, OAK, told).frequencies(1)[0]
     assert by_model == pytest.approx(first_frequency(5.0), rel=0.03)
 
 
-@pytest.mark.parametrize("stiffness", [0.0, -1.0, math.nan])
+@pytest.mark.parametrize('stiffness', [0.0, -1.0, math.nan])
 def test_roots_that_cannot_be_are_refused(stiffness):
-    with pytest.raises(ParameterError, match="give a stiffness above 0"):
+    with pytest.raises(ParameterError, match='give a stiffness above 0'):
         Settings(root_stiffness=stiffness)

@@ -32,10 +32,10 @@ for model in ("modes", "coupled"):
 def digests(threads, cache):
     environment = {
         **os.environ,
-        **{"OPENBLAS_NUM_THREADS": str(threads), "TREE_SWAY_CACHE": str(cache)},
+        **{'OPENBLAS_NUM_THREADS': str(threads), 'TREE_SWAY_CACHE': str(cache)},
     }
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
+        [sys.executable, '-c', PROGRAM],
         env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
     return done.stdout
@@ -44,15 +44,15 @@ def digests(threads, cache):
 def test_two_processes_give_the_same_bits_on_any_number_of_threads(tmp_path):
     """The first process compiles (where there is a compiler), the second finds it done."""
     first = digests(2, tmp_path)
-    assert first.count("\n") == 2
+    assert first.count('\n') == 2
     assert digests(1, tmp_path) == first
     if not WHY_PLAIN:
-        assert list(tmp_path.glob("*.kernel"))
+        assert list(tmp_path.glob('*.kernel'))
 
 
 def test_what_is_within_runs_on_one_thread_and_the_number_comes_back():
     if not _switches():
-        pytest.skip("numpy and scipy are linked with another BLAS")
+        pytest.skip('numpy and scipy are linked with another BLAS')
     before = [get() for _, get in _switches()]
     with one_thread():
         assert [get() for _, get in _switches()] == [1] * len(before)

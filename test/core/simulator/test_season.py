@@ -28,9 +28,9 @@ from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 SPEEDS = np.geomspace(2.0, 20.0, 10)
-GROWN = {"oak": 12.0, "birch": 9.0, "spruce": 12.0, "pine": 14.0}
+GROWN = {'oak': 12.0, 'birch': 9.0, 'spruce': 12.0, 'pine': 14.0}
 _long = pytest.mark.long
 
 
@@ -49,15 +49,15 @@ def branch_wood(tree):
 
 def first_frequency(tree, settings):
     bank = build_bank(
-        tree, species_named(tree.species), replace(settings, model="modes", n_modes=1)
+        tree, species_named(tree.species), replace(settings, model='modes', n_modes=1)
     )
     return bank.frequencies[0]
 
 
 def test_leaves_weigh_catch_and_damp(fork):
-    tree = replace(fork(), species="oak")
+    tree = replace(fork(), species='oak')
     foliage = foliage_of(tree)
-    usual = Settings(model="branch", gravity=0.0)
+    usual = Settings(model='branch', gravity=0.0)
     leafy = in_season(tree, OAK, replace(usual, in_leaf=True))
     assert (leafy.leaf_mass == foliage.mass).all()
     assert (leafy.leaf_area == foliage.drag_area).all()
@@ -69,7 +69,7 @@ def test_leaves_weigh_catch_and_damp(fork):
 
 
 def test_untold_an_oak_is_bare_and_a_spruce_is_not(fork):
-    spruce = species_named("spruce")
+    spruce = species_named('spruce')
     assert in_season(fork(), OAK, Settings()) == Settings(in_leaf=False)
     leafy = in_season(fork(), spruce, Settings())
     assert leafy.in_leaf
@@ -89,39 +89,39 @@ def test_leaves_may_be_given(fork):
 
 
 def test_leaves_on_a_bare_tree_are_refused():
-    with pytest.raises(ParameterError, match="leaves on a bare tree"):
+    with pytest.raises(ParameterError, match='leaves on a bare tree'):
         Settings(in_leaf=False, leaf_mass=np.ones(1))
 
 
-@pytest.mark.parametrize("key", species_keys())
+@pytest.mark.parametrize('key', species_keys())
 def test_needles_stay(key):
     wood = species_named(key)
-    assert wood.leaves.is_evergreen == (wood.habit != "broadleaf")
+    assert wood.leaves.is_evergreen == (wood.habit != 'broadleaf')
 
 
-SPRUCE = species_named("spruce")
+SPRUCE = species_named('spruce')
 DOORS = {
-    "SwaySimulator": lambda tree, **how: SwaySimulator(tree, **how),
-    "make_simulator": lambda tree, **how: make_simulator(tree, **how),
-    "auto": lambda tree, **how: make_simulator(tree, model="auto", **how),
-    "segments": lambda tree, **how: make_simulator(tree, model="segments", **how),
-    "file": lambda tree, **how: TreeFile(tree, SPRUCE, "a file").simulator(**how),
-    "Forest": lambda tree, **how: Forest([PlacedTree("tree", tree)], **how).simulators[0],
+    'SwaySimulator': lambda tree, **how: SwaySimulator(tree, **how),
+    'make_simulator': lambda tree, **how: make_simulator(tree, **how),
+    'auto': lambda tree, **how: make_simulator(tree, model='auto', **how),
+    'segments': lambda tree, **how: make_simulator(tree, model='segments', **how),
+    'file': lambda tree, **how: TreeFile(tree, SPRUCE, 'a file').simulator(**how),
+    'Forest': lambda tree, **how: Forest([PlacedTree('tree', tree)], **how).simulators[0],
 }
 
 
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize('door', DOORS)
 def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door, fork):
-    tree = replace(fork(), species="spruce")
+    tree = replace(fork(), species='spruce')
     assert DOORS[door](tree).settings.in_leaf is True
     assert DOORS[door](tree, in_leaf=False).settings.in_leaf is False
 
 
 def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():
-    tree = builtin_tree("goldcrest")
+    tree = builtin_tree('goldcrest')
     leafy, bare = (
-        SwaySimulator(tree, model="modes", n_modes=1, mode_choice="slowest", **how).frequencies(1)
-        for how in ({}, {"in_leaf": False})
+        SwaySimulator(tree, model='modes', n_modes=1, mode_choice='slowest', **how).frequencies(1)
+        for how in ({}, {'in_leaf': False})
     )
     assert leafy == pytest.approx(3.49, abs=0.02)
     assert bare == pytest.approx(6.69, abs=0.02)
@@ -137,18 +137,18 @@ _too_light = pytest.mark.xfail(
 
 
 @pytest.mark.parametrize(
-    ("name", "shares"),
+    ('name', 'shares'),
     [
-        ("pine", (0.15, 0.60)),
-        ("benjamina", (0.15, 0.44)),
-        pytest.param("spruce", (0.20, 0.60), marks=_long),
-        pytest.param("spruce", (0.15, 0.60), marks=[_long, _too_light]),
-        pytest.param("goldcrest", (0.15, 0.60), marks=_long),
-        pytest.param("broadleaf", (0.15, 0.33), marks=_long),
-        pytest.param("broadleaf", (0.15, 0.60), marks=[_long, _too_heavy]),
-        pytest.param("oak", (0.08, 0.22), marks=_long),
-        pytest.param("oak", (0.15, 0.60), marks=[_long, _too_heavy]),
-        pytest.param("benjamina", (0.15, 0.60), marks=[_long, _too_heavy]),
+        ('pine', (0.15, 0.60)),
+        ('benjamina', (0.15, 0.44)),
+        pytest.param('spruce', (0.20, 0.60), marks=_long),
+        pytest.param('spruce', (0.15, 0.60), marks=[_long, _too_light]),
+        pytest.param('goldcrest', (0.15, 0.60), marks=_long),
+        pytest.param('broadleaf', (0.15, 0.33), marks=_long),
+        pytest.param('broadleaf', (0.15, 0.60), marks=[_long, _too_heavy]),
+        pytest.param('oak', (0.08, 0.22), marks=_long),
+        pytest.param('oak', (0.15, 0.60), marks=[_long, _too_heavy]),
+        pytest.param('benjamina', (0.15, 0.60), marks=[_long, _too_heavy]),
     ],
 )
 def test_leaves_lower_the_first_frequency(name, shares):
@@ -167,11 +167,11 @@ def test_leaves_lower_the_first_frequency(name, shares):
 
 
 @pytest.mark.parametrize(
-    "name",
+    'name',
     [
-        pytest.param(key, marks=[] if key in ("oak", "birch") else [_long])
+        pytest.param(key, marks=[] if key in ('oak', 'birch') else [_long])
         for key in species_keys()
-        if species_named(key).habit == "broadleaf"
+        if species_named(key).habit == 'broadleaf'
     ],
 )
 def test_broadleaves_in_leaf_sway_as_much_slower_as_measured_ones(name):
@@ -198,15 +198,15 @@ def growth_of_load(tree, settings):
 
 
 @pytest.mark.parametrize(
-    "name",
+    'name',
     [
-        "benjamina",
-        "pine",
-        *(pytest.param(each, marks=_long) for each in ("oak", "birch", "spruce")),
+        'benjamina',
+        'pine',
+        *(pytest.param(each, marks=_long) for each in ('oak', 'birch', 'spruce')),
     ],
 )
 def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
-    tree, usual = tree_named(name), Settings(model="subtree")
+    tree, usual = tree_named(name), Settings(model='subtree')
     assert 1.90 <= growth_of_load(tree, replace(usual, in_leaf=False)) <= 2.05
     assert 1.50 <= growth_of_load(tree, replace(usual, in_leaf=True)) <= 1.70
 
@@ -214,7 +214,7 @@ def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
 def test_the_base_moment_is_that_of_drag(stem):
     """A stem in a steady wind: pressure times area times the height of its middle."""
     tree = stem(length=2.0, base=0.05)
-    sim = SwaySimulator(tree, model="branch", damping_ratio=0.7)
+    sim = SwaySimulator(tree, model='branch', damping_ratio=0.7)
     for _ in range(200):
         sim.step((3.0, 0.0, 0.0), 0.1)
     pushed = 0.5 * 1.225 * 1.2 * 3.0**2 * (2.0 * 0.05)

@@ -14,37 +14,37 @@ from tree_sway_ros.errors import ParameterError
 
 def test_the_defaults_stand():
     chosen = Settings()
-    assert chosen.model == "modes"
+    assert chosen.model == 'modes'
     assert chosen.model in MODELS
     assert chosen.damping_ratio is None
     with pytest.raises(dataclasses.FrozenInstanceError):
-        chosen.model = "frozen"
+        chosen.model = 'frozen'
 
 
-@pytest.mark.parametrize("model", FIDELITIES)
+@pytest.mark.parametrize('model', FIDELITIES)
 def test_every_model_can_be_asked_for(model):
     assert Settings(model=model).model == model
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ('given', 'message'),
     [
-        (dict(model="fast"), "unknown model 'fast'; use one of: auto, frozen, branch"),
-        (dict(stiffness="felt"), "unknown stiffness 'felt'; use one of: beam, volume_rule"),
-        (dict(enrich="some"), "unknown enrich 'some'; use one of: none"),
+        (dict(model='fast'), "unknown model 'fast'; use one of: auto, frozen, branch"),
+        (dict(stiffness='felt'), "unknown stiffness 'felt'; use one of: beam, volume_rule"),
+        (dict(enrich='some'), "unknown enrich 'some'; use one of: none"),
         (
-            dict(stiffness="volume_rule", model="modes"),
+            dict(stiffness='volume_rule', model='modes'),
             "stiffness: the volume rule on model 'modes'",
         ),
-        (dict(stiffness="volume_rule", model="coupled"), "use it on 'branch' or 'subtree'"),
-        (dict(damping_ratio=-0.1), "damping ratio -0.1; give 0 or more"),
-        (dict(damping_ratio=float("nan")), "damping ratio nan"),
-        (dict(n_modes=0), "n_modes: 0 modes; ask for 1 or more"),
-        (dict(volume_stiffness=0.0), "volume_stiffness 0.0; give a finite number above 0"),
-        (dict(volume_damping=float("inf")), "volume_damping inf"),
-        (dict(max_wind=float("nan")), "max_wind: nan is out of range"),
-        (dict(gravity=-9.81), r"gravity -9.81 m/s\^2; give 0 or more"),
-        (dict(gravity=float("nan")), "gravity nan"),
+        (dict(stiffness='volume_rule', model='coupled'), "use it on 'branch' or 'subtree'"),
+        (dict(damping_ratio=-0.1), 'damping ratio -0.1; give 0 or more'),
+        (dict(damping_ratio=float('nan')), 'damping ratio nan'),
+        (dict(n_modes=0), 'n_modes: 0 modes; ask for 1 or more'),
+        (dict(volume_stiffness=0.0), 'volume_stiffness 0.0; give a finite number above 0'),
+        (dict(volume_damping=float('inf')), 'volume_damping inf'),
+        (dict(max_wind=float('nan')), 'max_wind: nan is out of range'),
+        (dict(gravity=-9.81), r'gravity -9.81 m/s\^2; give 0 or more'),
+        (dict(gravity=float('nan')), 'gravity nan'),
     ],
 )
 def test_what_is_out_of_range_is_refused(given, message):

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import ParameterError, SpeciesError
 
-MOVING = [model for model in MODELS if model != "frozen"]
+MOVING = [model for model in MODELS if model != 'frozen']
 DT = 1.0 / 60.0
 
 
@@ -41,7 +41,7 @@ def model(request):
 
 
 def swaying(tree, model, **changes):
-    return SwaySimulator(tree, model=model, **({"n_modes": 4} | changes))
+    return SwaySimulator(tree, model=model, **({'n_modes': 4} | changes))
 
 
 def test_the_same_wind_gives_the_same_bits(fork, model):
@@ -59,19 +59,19 @@ def test_without_wind_a_tree_stands_exactly_at_rest(fork, model):
     assert sim.tip_displacement == pytest.approx(np.zeros(3), abs=1e-14)
 
 
-@pytest.mark.parametrize("name", BUILTIN_TREES)
+@pytest.mark.parametrize('name', BUILTIN_TREES)
 def test_a_westerly_bends_every_tree_to_the_east(name):
-    bends_east(builtin_tree(name), "subtree")
+    bends_east(builtin_tree(name), 'subtree')
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize('model', MODELS)
 def test_a_westerly_bends_the_tree_of_every_model_to_the_east(fork, model):
     bends_east(fork(), model, n_modes=4)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", BUILTIN_TREES)
-@pytest.mark.parametrize("model", ["frozen", "branch", "modes", "coupled"])
+@pytest.mark.parametrize('name', BUILTIN_TREES)
+@pytest.mark.parametrize('model', ['frozen', 'branch', 'modes', 'coupled'])
 def test_a_westerly_bends_every_tree_on_every_model_to_the_east(name, model):
     bends_east(builtin_tree(name), model)
 
@@ -82,7 +82,7 @@ def bends_east(tree, model, **changes):
     for _ in range(240):
         sim.step([6.0, 0.0, 0.0], DT)
     moved = sim.place()[:, :3] - rest
-    if model == "frozen":
+    if model == 'frozen':
         assert not moved.any()
         return
     assert sim.tip_displacement[0] > 1e-5
@@ -100,16 +100,16 @@ def test_mirrored_wind_gives_mirrored_motion(mirror_fork, model):
     assert other[:, partner, :3] == pytest.approx(one[:, :, :3] * mirror, abs=1e-9)
 
 
-@pytest.mark.parametrize("heading", [0.7, np.pi])
+@pytest.mark.parametrize('heading', [0.7, np.pi])
 @pytest.mark.parametrize(
-    ("model", "within", "gravity"),
+    ('model', 'within', 'gravity'),
     # What is left: the inertia a branch gives way with, and the static rest under weight, go by
     # each axis.
     [
-        ("branch", 1e-12, 9.81),
-        ("subtree", 1e-5, 9.81),
-        ("modes", 1e-12, 0.0),
-        ("coupled", 1e-12, 9.81),
+        ('branch', 1e-12, 9.81),
+        ('subtree', 1e-5, 9.81),
+        ('modes', 1e-12, 0.0),
+        ('coupled', 1e-12, 9.81),
     ],
 )
 def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, heading):
@@ -131,7 +131,7 @@ def test_a_turned_tree_in_turned_wind_moves_alike(fork, model, within, gravity, 
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize('model', MODELS)
 def test_a_step_allocates_nothing(fork, model):
     sim = swaying(fork(), model)
     wind, out = np.array([5.0, 1.0, 0.0]), np.zeros((sim.tree.n_segments, 7))
@@ -155,7 +155,7 @@ def test_a_step_allocates_nothing(fork, model):
     assert peak - before < 2048
 
 
-@pytest.mark.parametrize("taper", [0.0, 0.6])
+@pytest.mark.parametrize('taper', [0.0, 0.6])
 def test_static_deflection_is_the_beams(stem, model, taper):
     length, base, wind = 1.2, 0.012, 5.0
     tree = stem(length, base, base * (1 - taper), cuts=8)
@@ -175,8 +175,8 @@ def test_static_deflection_is_the_beams(stem, model, taper):
 
 
 def test_the_step_is_of_second_order(fork, model, request):
-    if model in ("modes", "wind_basis"):
-        reason = "the static rest shown is that of the middle of the step: order 1.5, at 0.5 um"
+    if model in ('modes', 'wind_basis'):
+        reason = 'the static rest shown is that of the middle of the step: order 1.5, at 0.5 um'
         request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
 
     def tip_after(n):
@@ -193,16 +193,16 @@ def test_the_step_is_of_second_order(fork, model, request):
 
     truth = tip_after(4096)
     # The stiffest modes of `coupled` need fine steps to be resolved.
-    steps = {"wind_basis": (64, 128), "coupled": (256, 512)}.get(model, (128, 256))
+    steps = {'wind_basis': (64, 128), 'coupled': (256, 512)}.get(model, (128, 256))
     error = [np.abs(tip_after(n) - truth).max() for n in steps]
     order = np.log2(error[0] / error[1])
     assert order > 1.65
     # What the table adds shrinks faster yet, until it is all that is left.
-    assert order < 2.35 or model == "wind_basis"
+    assert order < 2.35 or model == 'wind_basis'
 
 
 def test_place_writes_where_it_is_told(fork):
-    sim = swaying(fork(), "subtree")
+    sim = swaying(fork(), 'subtree')
     sim.step([8.0, 0.0, 0.0], DT)
     out = np.zeros((sim.tree.n_segments, 7))
     assert sim.place(out) is out
@@ -212,32 +212,32 @@ def test_place_writes_where_it_is_told(fork):
 
 
 def test_what_it_says_of_the_tree(fork):
-    sim = swaying(fork(), "coupled", leaf_mass=np.array([0.0, 0.1, 0.1, 0.1]))
-    assert sim.model == "coupled"
+    sim = swaying(fork(), 'coupled', leaf_mass=np.array([0.0, 0.1, 0.1, 0.1]))
+    assert sim.model == 'coupled'
     assert sim.mass == pytest.approx(900.0 * sim.tree.volume.sum() + 0.3)
     assert sim.n_solved + sim.n_copied == sim.tree.n_branches
     assert (np.diff(sim.frequencies()) >= 0).all()
     assert len(sim.frequencies(3)) == 3
-    assert len(swaying(fork(), "frozen").frequencies()) == 0
+    assert len(swaying(fork(), 'frozen').frequencies()) == 0
 
 
 def test_errors_of_a_simulator(fork):
     with pytest.raises(SpeciesError, match="unknown species 'plastic'"):
         SwaySimulator(plastic(fork()))
-    with pytest.raises(ParameterError, match="100 modes of a tree that has"):
-        SwaySimulator(fork(), model="modes", n_modes=100)
-    with pytest.raises(ParameterError, match="no_such_setting"):
+    with pytest.raises(ParameterError, match='100 modes of a tree that has'):
+        SwaySimulator(fork(), model='modes', n_modes=100)
+    with pytest.raises(ParameterError, match='no_such_setting'):
         SwaySimulator(fork(), no_such_setting=1)
 
 
 def plastic(tree):
     return tree_from_segments(
-        tree.start, tree.end, tree.base_diameter, parent=tree.segment_parent, species="plastic"
+        tree.start, tree.end, tree.base_diameter, parent=tree.segment_parent, species='plastic'
     )
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("model", ["subtree", "modes"])
+@pytest.mark.parametrize('model', ['subtree', 'modes'])
 def test_memory_stays_flat_over_many_steps(fork, model):
     """What compiled code takes, no tracer of Python's sees: the process's own size tells."""
     sim = swaying(fork(), model)

@@ -21,12 +21,12 @@ from tree_sway_ros.errors import ParameterError
 DT = 1.0 / 60.0
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def benjamina():
-    return SwaySimulator(builtin_tree("benjamina"), model="modes")
+    return SwaySimulator(builtin_tree('benjamina'), model='modes')
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def basis(benjamina):
     return state_basis(benjamina, 16)
 
@@ -50,7 +50,7 @@ def gaps(sim, basis, speed, steps=600):
     return np.linalg.norm(placed - through, axis=2), placed - placed.mean(axis=0)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def fine_basis(benjamina):
     return state_basis(benjamina, 36)
 
@@ -85,21 +85,21 @@ def test_what_is_beyond_full_scale_is_held_and_counted(basis):
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
-    joints = SwaySimulator(fork(), model="coupled", enrich="all").joints
+    joints = SwaySimulator(fork(), model='coupled', enrich='all').joints
     rng = np.random.default_rng(3)
-    x = rng.normal(size=(int(joints["n_coordinates"].sum()), 4))
+    x = rng.normal(size=(int(joints['n_coordinates'].sum()), 4))
     forces = rng.normal(size=(len(joints), 3, 5))
-    work = np.einsum("bik,bil->kl", tip_motion(joints, x), forces)
+    work = np.einsum('bik,bil->kl', tip_motion(joints, x), forces)
     assert x.T @ tip_moments(joints, forces) == pytest.approx(work, rel=1e-12)
 
 
 def test_a_tree_that_stands_still_has_a_basis(fork):
-    basis = state_basis(SwaySimulator(fork(), model="frozen"))
+    basis = state_basis(SwaySimulator(fork(), model='frozen'))
     assert (basis.rotations(basis.coordinates(np.zeros(len(basis.matrix)))) == 0.0).all()
 
 
 def test_the_simulator_is_left_as_it_was(fork):
-    sim = SwaySimulator(fork(), model="branch")
+    sim = SwaySimulator(fork(), model='branch')
     sim.step((4.0, 1.0, 0.0), DT)
     before = sim.state().values.tobytes()
     state_basis(sim)
@@ -107,7 +107,7 @@ def test_the_simulator_is_left_as_it_was(fork):
 
 
 def test_no_coordinates_are_refused(fork):
-    with pytest.raises(ParameterError, match="0 coordinates"):
+    with pytest.raises(ParameterError, match='0 coordinates'):
         state_basis(SwaySimulator(fork()), 0)
 
 
@@ -128,7 +128,7 @@ print(basis.digest, hashlib.sha256(poses.tobytes()).hexdigest())
 def test_two_processes_find_the_same_bits():
     told = {
         subprocess.run(
-            [sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True
+            [sys.executable, '-c', PROGRAM], capture_output=True, text=True, check=True
         ).stdout
         for _ in range(2)
     }

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 import hashlib
 import subprocess
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ import pytest
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.state.tree_state import TreeState, digest_of
+from tree_sway_ros.core.state.tree_state import digest_of, TreeState
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import StateError
 from tree_sway_ros.study.bench.bench_tree import bench_tree
@@ -28,7 +28,7 @@ def winds(n, seed=4):
     return np.array([5.0, 1.0, 0.2]) + np.cumsum(rng.normal(0.0, 0.5, (n, 3)), axis=0)
 
 
-@pytest.fixture(scope="module", params=FIDELITIES)
+@pytest.fixture(scope='module', params=FIDELITIES)
 def tree_on(request, fork):
     tree = fork()
     return lambda: make_simulator(tree, species_named(tree.species), model=request.param)
@@ -66,11 +66,11 @@ def test_key_rotations_place_as_the_simulator_does(tree_on):
     rest = sim.expand(tree_on().state())
     moved = np.linalg.norm(poses[:, :3] - rest[:, :3], axis=1).max()
     gap = np.linalg.norm(sim.place_rotations(sim.rotations())[:, :3] - poses[:, :3], axis=1).max()
-    if sim.model != "segments":
+    if sim.model != 'segments':
         assert gap <= 1e-12
         return
     # Segments bend in more ways than shapes: the fit is nearer than the coupled model comes.
-    coupled = SwaySimulator(sim.tree, settings=sim.settings, model="coupled")
+    coupled = SwaySimulator(sim.tree, settings=sim.settings, model='coupled')
     for wind in winds(40):
         coupled.step(wind, DT)
     assert gap <= np.linalg.norm(coupled.place()[:, :3] - poses[:, :3], axis=1).max()
@@ -78,16 +78,16 @@ def test_key_rotations_place_as_the_simulator_does(tree_on):
 
 
 def foreign(state):
-    yield "version", replace(state, version=99)
-    yield "another", replace(state, tree="another")
-    yield "model", replace(state, model="coupled")
-    yield "settings", replace(state, digest="0" * 16)
-    yield "number of values", replace(state, values=state.values[1:])
-    yield "finite", replace(state, values=state.values * np.nan)
+    yield 'version', replace(state, version=99)
+    yield 'another', replace(state, tree='another')
+    yield 'model', replace(state, model='coupled')
+    yield 'settings', replace(state, digest='0' * 16)
+    yield 'number of values', replace(state, values=state.values[1:])
+    yield 'finite', replace(state, values=state.values * np.nan)
 
 
 def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
-    sim = SwaySimulator(fork(), model="subtree")
+    sim = SwaySimulator(fork(), model='subtree')
     for wind in winds(10):
         sim.step(wind, DT)
     before = sim.state()
@@ -101,8 +101,8 @@ def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
 
 def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
     tree = fork()
-    sim = make_simulator(tree, species_named(tree.species), model="auto")
-    for state in (replace(sim.state(), model="modes 99"), replace(sim.state(), digest="0" * 16)):
+    sim = make_simulator(tree, species_named(tree.species), model='auto')
+    for state in (replace(sim.state(), model='modes 99'), replace(sim.state(), digest='0' * 16)):
         with pytest.raises(StateError, match=f"'{state.model}'"):
             sim.set_state(state)
         with pytest.raises(StateError, match=f"'{state.model}'"):
@@ -110,24 +110,24 @@ def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
 
 
 @pytest.mark.parametrize(
-    "data",
-    [b"", b"{}\n", b"{", b"[1]\n", b'{"tree": "a"}\n12345678', b"\xff\n", b"null\n"],
+    'data',
+    [b'', b'{}\n', b'{', b'[1]\n', b'{"tree": "a"}\n12345678', b'\xff\n', b'null\n'],
 )
 def test_bytes_that_hold_no_state_are_refused(data):
-    with pytest.raises(StateError, match="no state"):
+    with pytest.raises(StateError, match='no state'):
         TreeState.from_bytes(data)
 
 
 def test_half_a_number_is_no_state(fork):
     data = SwaySimulator(fork()).state().to_bytes()
-    with pytest.raises(StateError, match="no state"):
+    with pytest.raises(StateError, match='no state'):
         TreeState.from_bytes(data[:-3])
 
 
 def test_the_digest_tells_trees_and_settings_apart(fork, stem):
     tree, sim = fork(), SwaySimulator(fork())
     own = digest_of(tree, sim.settings)
-    assert own == digest_of(replace(fork(), name="of another name"), sim.settings)
+    assert own == digest_of(replace(fork(), name='of another name'), sim.settings)
     assert own != digest_of(stem(), sim.settings)
     assert own != digest_of(tree, replace(sim.settings, gravity=0.0))
     leaves = np.ones(tree.n_branches)
@@ -146,13 +146,13 @@ print(hashlib.sha256(poses.tobytes()).hexdigest())
 """
 
 
-@pytest.mark.parametrize("model", ["wind_basis", "modes"])
+@pytest.mark.parametrize('model', ['wind_basis', 'modes'])
 def test_another_process_places_a_state_bit_for_bit(model):
     sim = SwaySimulator(bench_tree(), model=model)
     for wind in winds(60):
         sim.step(wind, DT)
     state, poses = sim.state(), sim.place()
     told = subprocess.run(
-        [sys.executable, "-c", ELSEWHERE], input=state.to_bytes(), capture_output=True, check=True
+        [sys.executable, '-c', ELSEWHERE], input=state.to_bytes(), capture_output=True, check=True
     )
     assert told.stdout.decode().strip() == hashlib.sha256(poses.tobytes()).hexdigest()

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.errors import TreeError
@@ -121,7 +121,7 @@ def test_siblings_stand_from_base_to_tip_of_their_parent():
 def test_nodes_need_not_meet_exactly_but_nearly():
     close = START + np.array([[0, 0, 0], [0, 0, 1e-5], [1e-5, 0, 0]])
     assert tree_from_segments(close, END, THICK).segment_parent.tolist() == [-1, 0, 0]
-    with pytest.raises(TreeError, match="2 roots"):
+    with pytest.raises(TreeError, match='2 roots'):
         tree_from_segments(START + np.array([[0], [0], [0.01]]), END, THICK)
 
 
@@ -140,11 +140,11 @@ def test_a_shoot_from_the_middle_of_a_segment_begins_a_branch():
 
 def test_names_follow_sorted_keys_or_depth_first_order():
     given_names = tree_from_segments(
-        START, END, THICK, branch=[7, 7, 3], branch_names=["shoot", "trunk"]
+        START, END, THICK, branch=[7, 7, 3], branch_names=['shoot', 'trunk']
     )
-    assert given_names.branch_names == ("trunk", "shoot")
-    assert given_names.segment_names == ("trunk/0", "trunk/1", "shoot/0")
-    assert tree_from_segments(START, END, THICK).branch_names == ("stem", "b1")
+    assert given_names.branch_names == ('trunk', 'shoot')
+    assert given_names.segment_names == ('trunk/0', 'trunk/1', 'shoot/0')
+    assert tree_from_segments(START, END, THICK).branch_names == ('stem', 'b1')
 
 
 def test_nothing_of_a_tree_can_be_written(random_tree):
@@ -153,7 +153,7 @@ def test_nothing_of_a_tree_can_be_written(random_tree):
     arrays += [tree.length, tree.volume, tree.branch_length, tree.branch_of_segment]
     assert len(arrays) == 13
     for array in arrays:
-        with pytest.raises(ValueError, match="read-only"):
+        with pytest.raises(ValueError, match='read-only'):
             array[0] = 0
 
 
@@ -165,31 +165,31 @@ def test_the_input_stays_the_callers_own():
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ('change', 'message'),
     [
-        (dict(start=[], end=[], diameter=[]), "no segments; give at least one"),
-        (dict(end=END[:2]), r"end \(2, 3\) .* do not match; give \(n, 3\)"),
-        (dict(diameter=[0.1, 0.1]), "do not match"),
-        (dict(start=START[:, :2]), "do not match"),
-        (dict(start=np.where(START == 1, np.nan, START)), "row 1: a number that is not finite"),
-        (dict(diameter=[0.1, 0.1, np.inf]), "row 2: a number that is not finite"),
-        (dict(end=[END[0], START[1], END[2]]), r"row 1: zero length \(.*remove the segment"),
-        (dict(diameter=[0.1, 0.0, 0.1]), "row 1: diameter .* is not positive"),
-        (dict(diameter=[[0.1, 0.1], [0.1, 0.1], [0.1, -0.1]]), "row 2: diameter"),
-        (dict(parent=[-1, 0, 3]), "row 2: orphan: its parent 3 does not exist; name a parent"),
-        (dict(parent=[-1, 0, -2]), "row 2: orphan"),
-        (dict(parent=[-1, 0, -1]), "row 2: 2 roots: .*only row 0"),
-        (dict(parent=[-1, 2, 1]), "row 1: cyclic: .*break the cycle"),
-        (dict(parent=[0, 0, 1]), "row 0: cyclic"),
-        (dict(parent=[-1.0, 0.0, 0.0]), "parent must be 3 integers"),
-        (dict(parent=[-1, 0]), r"parent must be 3 integers, not \(2,\)"),
-        (dict(branch=["a", "a", "b"]), "branch must be 3 integers"),
-        (dict(branch=[0, 0, 0]), "row 2: branch 0 is not one chain: .*branch of its own"),
-        (dict(branch=[0, 1, 0], parent=[-1, 0, 1]), "row 2: branch 0 is not one chain"),
-        (dict(branch_names=["only one"]), "1 branch names for 2 branches"),
+        (dict(start=[], end=[], diameter=[]), 'no segments; give at least one'),
+        (dict(end=END[:2]), r'end \(2, 3\) .* do not match; give \(n, 3\)'),
+        (dict(diameter=[0.1, 0.1]), 'do not match'),
+        (dict(start=START[:, :2]), 'do not match'),
+        (dict(start=np.where(START == 1, np.nan, START)), 'row 1: a number that is not finite'),
+        (dict(diameter=[0.1, 0.1, np.inf]), 'row 2: a number that is not finite'),
+        (dict(end=[END[0], START[1], END[2]]), r'row 1: zero length \(.*remove the segment'),
+        (dict(diameter=[0.1, 0.0, 0.1]), 'row 1: diameter .* is not positive'),
+        (dict(diameter=[[0.1, 0.1], [0.1, 0.1], [0.1, -0.1]]), 'row 2: diameter'),
+        (dict(parent=[-1, 0, 3]), 'row 2: orphan: its parent 3 does not exist; name a parent'),
+        (dict(parent=[-1, 0, -2]), 'row 2: orphan'),
+        (dict(parent=[-1, 0, -1]), 'row 2: 2 roots: .*only row 0'),
+        (dict(parent=[-1, 2, 1]), 'row 1: cyclic: .*break the cycle'),
+        (dict(parent=[0, 0, 1]), 'row 0: cyclic'),
+        (dict(parent=[-1.0, 0.0, 0.0]), 'parent must be 3 integers'),
+        (dict(parent=[-1, 0]), r'parent must be 3 integers, not \(2,\)'),
+        (dict(branch=['a', 'a', 'b']), 'branch must be 3 integers'),
+        (dict(branch=[0, 0, 0]), 'row 2: branch 0 is not one chain: .*branch of its own'),
+        (dict(branch=[0, 1, 0], parent=[-1, 0, 1]), 'row 2: branch 0 is not one chain'),
+        (dict(branch_names=['only one']), '1 branch names for 2 branches'),
     ],
 )
 def test_what_cannot_be_is_refused_with_place_and_cure(change, message):
-    given_input = dict(start=START, end=END, diameter=THICK, labels=["row 0", "row 1", "row 2"])
+    given_input = dict(start=START, end=END, diameter=THICK, labels=['row 0', 'row 1', 'row 2'])
     with pytest.raises(TreeError, match=message):
         tree_from_segments(**(given_input | change))

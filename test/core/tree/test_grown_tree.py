@@ -16,40 +16,40 @@ from tree_sway_ros.errors import ParameterError, SpeciesError
 
 WIND = np.full((3, 3), 4.0)
 DOORS = {
-    "make_simulator": lambda tree, **told: sway.make_simulator(tree, model="branch", **told),
-    "SwaySimulator": lambda tree, **told: SwaySimulator(tree, model="branch", **told),
-    "simulate": lambda tree, **told: sway.simulate(tree, WIND, model="branch", **told),
-    "Forest": lambda tree, **told: sway.Forest(
-        [sway.PlacedTree("one", tree)], model="branch", **told
+    'make_simulator': lambda tree, **told: sway.make_simulator(tree, model='branch', **told),
+    'SwaySimulator': lambda tree, **told: SwaySimulator(tree, model='branch', **told),
+    'simulate': lambda tree, **told: sway.simulate(tree, WIND, model='branch', **told),
+    'Forest': lambda tree, **told: sway.Forest(
+        [sway.PlacedTree('one', tree)], model='branch', **told
     ),
 }
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def opened():
-    found = sway.open_tree("benjamina")
+    found = sway.open_tree('benjamina')
     return replace(found, species=replace(found.species, modulus=2.0 * found.species.modulus))
 
 
 def test_a_tree_brings_its_species(opened):
     assert tree_and_species(opened) == (opened.tree, opened.species)
-    oak = sway.species_named("oak")
+    oak = sway.species_named('oak')
     assert tree_and_species(opened, oak) == (opened.tree, oak)
-    assert tree_and_species(opened.tree) == (opened.tree, sway.species_named("benjamina"))
+    assert tree_and_species(opened.tree) == (opened.tree, sway.species_named('benjamina'))
 
 
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize('door', DOORS)
 def test_an_opened_tree_may_be_given_as_it_is(opened, door):
     made = DOORS[door](opened)
     apart = {
-        "make_simulator": lambda: sway.make_simulator(opened.tree, opened.species, model="branch"),
-        "SwaySimulator": lambda: SwaySimulator(opened.tree, opened.species, model="branch"),
-        "simulate": lambda: sway.simulate(opened, WIND, model="branch"),
-        "Forest": lambda: sway.Forest(
-            [sway.PlacedTree("one", opened.tree, species=opened.species)], model="branch"
+        'make_simulator': lambda: sway.make_simulator(opened.tree, opened.species, model='branch'),
+        'SwaySimulator': lambda: SwaySimulator(opened.tree, opened.species, model='branch'),
+        'simulate': lambda: sway.simulate(opened, WIND, model='branch'),
+        'Forest': lambda: sway.Forest(
+            [sway.PlacedTree('one', opened.tree, species=opened.species)], model='branch'
         ),
     }[door]()
-    if door == "simulate":
+    if door == 'simulate':
         np.testing.assert_array_equal(made.tips, apart.tips)
         return
     for each in (made, apart):
@@ -57,17 +57,17 @@ def test_an_opened_tree_may_be_given_as_it_is(opened, door):
     np.testing.assert_array_equal(made.place(), apart.place())
 
 
-@pytest.mark.parametrize("door", DOORS)
-@pytest.mark.parametrize("wrong", ["benjamina", None, 3.0, sway.Settings()])
+@pytest.mark.parametrize('door', DOORS)
+@pytest.mark.parametrize('wrong', ['benjamina', None, 3.0, sway.Settings()])
 def test_what_is_no_tree_is_refused_everywhere(door, wrong):
     kind = type(wrong).__name__
-    with pytest.raises(ParameterError, match=f"tree: a {kind}, where a tree is asked for; give"):
+    with pytest.raises(ParameterError, match=f'tree: a {kind}, where a tree is asked for; give'):
         DOORS[door](wrong)
 
 
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize('door', DOORS)
 def test_what_are_no_settings_is_refused_everywhere(opened, door):
-    with pytest.raises(ParameterError, match="settings: a Species, where Settings are asked for"):
+    with pytest.raises(ParameterError, match='settings: a Species, where Settings are asked for'):
         DOORS[door](opened, settings=opened.species)
     with pytest.raises(ParameterError, match="unknown setting 'n_mode'; did you mean 'n_modes'"):
         DOORS[door](opened, n_mode=3)
@@ -75,10 +75,10 @@ def test_what_are_no_settings_is_refused_everywhere(opened, door):
 
 def test_settings_in_the_place_of_the_species_are_told(opened):
     for door in (sway.make_simulator, SwaySimulator):
-        with pytest.raises(ParameterError, match=r"species: a Settings, .* as settings="):
+        with pytest.raises(ParameterError, match=r'species: a Settings, .* as settings='):
             door(opened, sway.Settings())
-    with pytest.raises(ParameterError, match="species: a str, where a Species is asked for"):
-        sway.PlacedTree("one", opened, species="oak")
+    with pytest.raises(ParameterError, match='species: a str, where a Species is asked for'):
+        sway.PlacedTree('one', opened, species='oak')
 
 
 def test_a_species_in_the_place_of_its_key_is_told(opened):
@@ -88,12 +88,12 @@ def test_a_species_in_the_place_of_its_key_is_told(opened):
 
 
 def test_a_forest_asks_for_placed_trees(opened):
-    with pytest.raises(ParameterError, match=r"trees\[0\]: a TreeFile, where a PlacedTree is"):
+    with pytest.raises(ParameterError, match=r'trees\[0\]: a TreeFile, where a PlacedTree is'):
         sway.Forest([opened])
 
 
 def test_an_opened_tree_is_calibrated_and_written(opened, tmp_path):
-    assert sway.calibrate(opened, None, 2.0).species.key == "benjamina"
-    sway.write_tree(tmp_path / "tree.yaml", opened)
-    again = sway.open_tree(tmp_path / "tree.yaml")
+    assert sway.calibrate(opened, None, 2.0).species.key == 'benjamina'
+    sway.write_tree(tmp_path / 'tree.yaml', opened)
+    again = sway.open_tree(tmp_path / 'tree.yaml')
     assert again.species.modulus == opened.species.modulus

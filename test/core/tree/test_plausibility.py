@@ -6,23 +6,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway_ros.core.growth.grow import grow
 from tree_sway_ros.core.tree.plausibility import doubt_of_sway, doubts, refuse_nonsense
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError, TreeError
 
-OAK = species_named("oak")
+OAK = species_named('oak')
 
 
 def oak(height: float = 12.0) -> Tree:
-    return grow("oak", height, rng=np.random.default_rng(0))
+    return grow('oak', height, rng=np.random.default_rng(0))
 
 
 def in_units(tree: Tree, length: float = 1.0, diameter: float = 1.0) -> Tree:
@@ -35,30 +35,30 @@ def in_units(tree: Tree, length: float = 1.0, diameter: float = 1.0) -> Tree:
     )
 
 
-@pytest.mark.parametrize("name", BUILTIN_TREES)
+@pytest.mark.parametrize('name', BUILTIN_TREES)
 def test_nothing_is_odd_about_the_trees_of_the_package(name: str) -> None:
     tree = builtin_tree(name)
     refuse_nonsense(tree, species_named(tree.species))
     assert doubts(tree, species_named(tree.species)) == ()
 
 
-@pytest.mark.parametrize("key", species_keys())
+@pytest.mark.parametrize('key', species_keys())
 def test_nothing_is_odd_about_grown_trees(key: str) -> None:
     wood = species_named(key)
-    for height in (0.4, 3.0) if wood.habit == "pot" else (1.5, 12.0, 45.0):
+    for height in (0.4, 3.0) if wood.habit == 'pot' else (1.5, 12.0, 45.0):
         tree = grow(key, height, rng=np.random.default_rng(1))
         refuse_nonsense(tree, wood)
         assert doubts(tree, wood) == ()
 
 
 @pytest.mark.parametrize(
-    ("wood", "cure"),
+    ('wood', 'cure'),
     [
-        ({"modulus": 9.4}, "9.4 GPa are --modulus 9.4e\\+09"),
-        ({"modulus": 9400.0}, "9400 MPa are --modulus 9.4e\\+09"),
-        ({"density": 0.95}, "0.95 g/cm\\^3 are --density 950"),
-        ({"modulus": 9.4e18}, "give 1e\\+07 to 5e\\+11 Pa"),
-        ({"density": float("nan")}, "give 40 to 10000 kg"),
+        ({'modulus': 9.4}, '9.4 GPa are --modulus 9.4e\\+09'),
+        ({'modulus': 9400.0}, '9400 MPa are --modulus 9.4e\\+09'),
+        ({'density': 0.95}, '0.95 g/cm\\^3 are --density 950'),
+        ({'modulus': 9.4e18}, 'give 1e\\+07 to 5e\\+11 Pa'),
+        ({'density': float('nan')}, 'give 40 to 10000 kg'),
     ],
 )
 def test_wood_in_another_unit_is_refused(wood: dict[str, float], cure: str) -> None:
@@ -67,14 +67,14 @@ def test_wood_in_another_unit_is_refused(wood: dict[str, float], cure: str) -> N
 
 
 @pytest.mark.parametrize(
-    ("length", "diameter", "cure"),
+    ('length', 'diameter', 'cure'),
     [
-        (1.0, 1000.0, "diameters are in mm: add --option diameter_unit=0.001$"),
-        (1.0, 100.0, "diameters are in cm: add --option diameter_unit=0.01$"),
-        (100.0, 1.0, "positions are in cm: add --option length_unit=0.01$"),
-        (1000.0, 1.0, "positions are in mm: add --option length_unit=0.001$"),
-        (100.0, 100.0, "in cm: add --option length_unit=0.01 --option diameter_unit=0.01$"),
-        (1000.0, 1000.0, "in mm: add --option length_unit=0.001 --option diameter_unit=0.001$"),
+        (1.0, 1000.0, 'diameters are in mm: add --option diameter_unit=0.001$'),
+        (1.0, 100.0, 'diameters are in cm: add --option diameter_unit=0.01$'),
+        (100.0, 1.0, 'positions are in cm: add --option length_unit=0.01$'),
+        (1000.0, 1.0, 'positions are in mm: add --option length_unit=0.001$'),
+        (100.0, 100.0, 'in cm: add --option length_unit=0.01 --option diameter_unit=0.01$'),
+        (1000.0, 1000.0, 'in mm: add --option length_unit=0.001 --option diameter_unit=0.001$'),
     ],
 )
 def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cure: str) -> None:
@@ -84,10 +84,13 @@ def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cur
 
 
 @pytest.mark.parametrize(
-    ("change", "doubt"),
+    ('change', 'doubt'),
     [
-        ({"modulus": 1e9}, "a modulus of 1 GPa, where green wood has 3 to 20 GPa: check --modulus"),
-        ({"density": 300.0}, "a density of 300 kg/m^3, where green wood has 400 to 1300"),
+        (
+            {'modulus': 1e9},
+            'a modulus of 1 GPa, where green wood has 3 to 20 GPa: check --modulus',
+        ),
+        ({'density': 300.0}, 'a density of 300 kg/m^3, where green wood has 400 to 1300'),
     ],
 )
 def test_odd_wood_is_told(change: dict[str, float], doubt: str) -> None:
@@ -102,31 +105,31 @@ def test_a_tree_whose_file_has_y_up_is_told_to_lie() -> None:
     lying = replace(lying, start=lying.start[:, [0, 2, 1]], end=lying.end[:, [0, 2, 1]])
     refuse_nonsense(lying, OAK)
     (told,) = doubts(lying, OAK)
-    assert told.startswith("it leans ")
-    assert told.endswith("add --option up=y")
+    assert told.startswith('it leans ')
+    assert told.endswith('add --option up=y')
 
 
 def test_odd_sizes_are_told() -> None:
-    assert "thick" in doubts(in_units(oak(), diameter=8.0), OAK)[0]
-    assert "thin" in doubts(in_units(oak(), diameter=0.1), OAK)[0]
-    assert doubts(in_units(oak(), 12.0, 12.0), OAK)[0].startswith("a height of 144 m")
+    assert 'thick' in doubts(in_units(oak(), diameter=8.0), OAK)[0]
+    assert 'thin' in doubts(in_units(oak(), diameter=0.1), OAK)[0]
+    assert doubts(in_units(oak(), 12.0, 12.0), OAK)[0].startswith('a height of 144 m')
     small = doubts(in_units(oak(), 0.001, 0.001), OAK)
-    assert small[0].startswith("a height of 0.012 m")
+    assert small[0].startswith('a height of 0.012 m')
 
 
 def test_a_sway_of_no_tree_of_its_size_is_told() -> None:
     tree = oak()
     usual = 0.0766 + 3.1219 * 100.0 * tree.base_diameter[0] / tree.height**2
-    assert doubt_of_sway(tree, 3.0 * usual) == doubt_of_sway(tree, usual / 3.0) == ""
+    assert doubt_of_sway(tree, 3.0 * usual) == doubt_of_sway(tree, usual / 3.0) == ''
     for frequency in (10.0 * usual, 0.1 * usual):
-        assert f"{frequency:.3g} Hz, where trees of its size" in doubt_of_sway(tree, frequency)
+        assert f'{frequency:.3g} Hz, where trees of its size' in doubt_of_sway(tree, frequency)
 
 
 @given(length=st.floats(1e-4, 1e4), diameter=st.floats(1e-4, 1e4), modulus=st.floats(1e-2, 1e14))
 def test_whatever_is_given_is_refused_or_told_in_sentences(
     length: float, diameter: float, modulus: float
 ) -> None:
-    tree = in_units(builtin_tree("goldcrest"), length, diameter)
+    tree = in_units(builtin_tree('goldcrest'), length, diameter)
     wood = replace(OAK, modulus=modulus)
     try:
         refuse_nonsense(tree, wood)

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.rotation import rotated
 from tree_sway_ros.core.tree.rest_frame import quaternions_from_x

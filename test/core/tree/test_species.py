@@ -12,7 +12,7 @@ from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import SpeciesError
 
 
-@pytest.mark.parametrize("key", species_keys())
+@pytest.mark.parametrize('key', species_keys())
 def test_every_wood_is_green_wood(key):
     wood = species_named(key)
     assert wood.key == key
@@ -37,21 +37,21 @@ def test_an_unknown_species_is_refused_with_those_that_exist():
     with pytest.raises(
         SpeciesError, match=r"unknown species 'mahogany'; use one of: ash, .*walnut"
     ):
-        species_named("mahogany")
+        species_named('mahogany')
 
 
 def test_guesses_are_marked():
     guesses = {key for key in species_keys() if species_named(key).is_estimate}
-    assert guesses == {"benjamina", "goldcrest", "broadleaf"}
+    assert guesses == {'benjamina', 'goldcrest', 'broadleaf'}
 
 
 def test_a_species_cannot_be_changed_by_accident():
     with pytest.raises(dataclasses.FrozenInstanceError):
-        species_named("oak").modulus = 1.0
+        species_named('oak').modulus = 1.0
 
 
 def test_without_leaves_a_tree_does_not_streamline():
-    oak = species_named("oak")
+    oak = species_named('oak')
     assert oak.drag_law(in_leaf=True) == (oak.drag_coefficient, oak.drag_exponent)
     assert oak.drag_law(in_leaf=False) == (oak.bare_drag_coefficient, 0.0)
 

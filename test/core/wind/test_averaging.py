@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Means of the wind over steps; dropouts, stalls and clocks: what a live stream does to them."""
 
-import math
 from itertools import pairwise
+import math
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.errors import ParameterError
@@ -23,7 +23,14 @@ def smooth(t):
 
 
 def run(
-    average, duration, *, source=smooth, period=PERIOD, latency=0.0, hears=lambda t: True, since=0.0
+    average,
+    duration,
+    *,
+    source=smooth,
+    period=PERIOD,
+    latency=0.0,
+    hears=lambda t: True,
+    since=0.0,
 ):
     """Feed samples as they arrive to a 60 Hz solver; return ends of the steps and means."""
     means, ends, k = [], [], 0
@@ -62,7 +69,7 @@ def test_a_sensor_slower_than_the_timeout_is_known_from_its_second_sample():
 
 
 def test_hold_is_the_mean_of_a_staircase():
-    average = WindAverage("hold")
+    average = WindAverage('hold')
     average.add(0.0, (1.0, 0.0, 0.0))
     average.add(0.05, (3.0, 0.0, 0.0))
     np.testing.assert_allclose(average.mean(0.04, 0.08), (2.5, 0.0, 0.0))
@@ -74,10 +81,10 @@ def test_linear_has_no_staircase_and_hold_has():
         _, means = run(WindAverage(interpolation), 5.0)
         return np.abs(np.diff(means[60:], n=2, axis=0)).max()
 
-    assert roughness("linear") < 0.25 * roughness("hold")
+    assert roughness('linear') < 0.25 * roughness('hold')
 
 
-@pytest.mark.parametrize("latency", [0.003, 0.03, 0.2, 1.5])
+@pytest.mark.parametrize('latency', [0.003, 0.03, 0.2, 1.5])
 def test_samples_that_arrive_late_only_delay_the_curve(latency):
     average = WindAverage()
     ends, means = run(average, 6.0, latency=latency)
@@ -87,8 +94,10 @@ def test_samples_that_arrive_late_only_delay_the_curve(latency):
         for delay in np.linspace(latency - FRAME, latency + FRAME, 21)
     ]
     assert min(errors) < 0.02
-    assert np.abs(np.diff(means[120:], axis=0)).max() < 1.2 * 4.1 * FRAME  # no faster than the wind
-    assert average.state(6.0) == "live"
+    assert (
+        np.abs(np.diff(means[120:], axis=0)).max() < 1.2 * 4.1 * FRAME
+    )  # no faster than the wind
+    assert average.state(6.0) == 'live'
 
 
 def test_jitter_of_stamps_makes_no_jumps():
@@ -105,8 +114,8 @@ def test_jitter_of_stamps_makes_no_jumps():
     assert np.abs(np.diff(means[120:], axis=0)).max() < 0.2
 
 
-@pytest.mark.parametrize("interpolation", ["linear", "hold"])
-@pytest.mark.parametrize("period", [0.01, 0.05, 1.0, 1.9])
+@pytest.mark.parametrize('interpolation', ['linear', 'hold'])
+@pytest.mark.parametrize('period', [0.01, 0.05, 1.0, 1.9])
 def test_the_mean_of_a_constant_is_the_constant(interpolation, period):
     constant = np.array([3.0, -2.0, 0.5])
     average = WindAverage(interpolation)
@@ -119,7 +128,7 @@ def test_the_mean_of_a_constant_is_the_constant(interpolation, period):
     st.floats(-0.2, 1.0),
     st.floats(1e-3, 0.5),
     st.floats(1e-3, 6.0),
-    st.sampled_from(["linear", "hold"]),
+    st.sampled_from(['linear', 'hold']),
 )
 def test_means_are_additive(samples, start, first, second, interpolation):
     average = WindAverage(interpolation)
@@ -135,7 +144,7 @@ def test_means_are_additive(samples, start, first, second, interpolation):
 @given(
     st.lists(st.tuples(st.floats(0.01, 4.0), WIND), min_size=1, max_size=15),
     st.floats(0.1, 5.0),
-    st.sampled_from(["linear", "hold"]),
+    st.sampled_from(['linear', 'hold']),
 )
 def test_mirrored_and_scaled_wind_gives_mirrored_and_scaled_means(samples, k, interpolation):
     plain, mirrored = WindAverage(interpolation), WindAverage(interpolation)
@@ -151,7 +160,7 @@ def test_mirrored_and_scaled_wind_gives_mirrored_and_scaled_means(samples, k, in
 
 @given(
     st.lists(st.tuples(st.floats(0.0, 3.0), WIND, st.booleans()), max_size=30),
-    st.sampled_from(["linear", "hold"]),
+    st.sampled_from(['linear', 'hold']),
 )
 def test_the_mean_stays_within_the_largest_sample(samples, interpolation):
     average = WindAverage(interpolation)
@@ -175,7 +184,7 @@ STREAMS = st.lists(
 @given(
     STREAMS,
     st.floats(-40.0, 40.0),
-    st.sampled_from(["linear", "hold"]),
+    st.sampled_from(['linear', 'hold']),
     st.floats(-3.0, 1.0),
 )
 def test_the_mean_stays_in_the_convex_hull_of_samples_and_calm(samples, low, interpolation, late):
@@ -232,11 +241,11 @@ def test_its_state_may_be_asked_while_another_thread_feeds_it():
         def _newest(self, value):
             self.looks = 0
 
-    assert Forgetting().state(5.0) == "decaying"
+    assert Forgetting().state(5.0) == 'decaying'
 
 
 class TestRefusals:
-    @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+    @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
     def test_not_finite_leaves_no_trace(self, bad):
         average, untouched = WindAverage(), WindAverage()
         for a in (average, untouched):
@@ -253,27 +262,29 @@ class TestRefusals:
         assert not average.add(0.9, (2.0, 0.0, 0.0))
         assert average.refused == 2
 
-    @pytest.mark.parametrize("step", [(1.0, 0.9), (math.nan, 1.0), (0.0, math.inf)])
+    @pytest.mark.parametrize('step', [(1.0, 0.9), (math.nan, 1.0), (0.0, math.inf)])
     def test_a_step_that_cannot_be(self, step):
-        with pytest.raises(ParameterError, match="no step from"):
+        with pytest.raises(ParameterError, match='no step from'):
             WindAverage().mean(*step)
 
     def test_a_step_of_no_length_gives_the_value(self):
         average = WindAverage()
         run(average, 1.0)
-        np.testing.assert_allclose(average.mean(0.97, 0.97), average.mean(0.97 - 1e-7, 0.97 + 1e-7))
+        np.testing.assert_allclose(
+            average.mean(0.97, 0.97), average.mean(0.97 - 1e-7, 0.97 + 1e-7)
+        )
 
     @pytest.mark.parametrize(
-        "options",
-        [{"timeout": 0.0}, {"decay": -1.0}, {"blend": math.nan}, {"capacity": 2}],
+        'options',
+        [{'timeout': 0.0}, {'decay': -1.0}, {'blend': math.nan}, {'capacity': 2}],
     )
     def test_parameters_out_of_range(self, options):
-        with pytest.raises(ParameterError, match=f"{next(iter(options))}: .* out of range"):
+        with pytest.raises(ParameterError, match=f'{next(iter(options))}: .* out of range'):
             WindAverage(**options)
 
     def test_unknown_interpolation(self):
         with pytest.raises(ParameterError, match=r"'cubic'.*linear, hold"):
-            WindAverage("cubic")
+            WindAverage('cubic')
 
 
 def test_memory_is_bounded():
@@ -288,10 +299,10 @@ class TestDropouts:
         average = WindAverage()
         _, means = run(average, 1.0, hears=lambda t: False)
         assert not means.any()
-        assert average.state(1.0) == "none"
+        assert average.state(1.0) == 'none'
 
-    @pytest.mark.parametrize("length", [0.1, 0.5, 1.0, 2.0])
-    @pytest.mark.parametrize("interpolation", ["linear", "hold"])
+    @pytest.mark.parametrize('length', [0.1, 0.5, 1.0, 2.0])
+    @pytest.mark.parametrize('interpolation', ['linear', 'hold'])
     def test_a_short_one_is_held_without_a_visible_step(self, length, interpolation):
         average = WindAverage(interpolation)
         ends, means = run(
@@ -300,7 +311,7 @@ class TestDropouts:
         gap = (ends > 4.0 + 3 * PERIOD) & (ends < 4.0 + length)
         np.testing.assert_allclose(means[gap], np.tile(smooth(4.0), (gap.sum(), 1)), atol=1e-6)
         lost = np.abs(smooth(4.0) - smooth(4.0 + length)).max()
-        usual = 4.1 * FRAME if interpolation == "linear" else 4.1 * PERIOD
+        usual = 4.1 * FRAME if interpolation == 'linear' else 4.1 * PERIOD
         limit = usual + lost * FRAME / min(length, 0.5)
         assert np.abs(np.diff(means[30:], axis=0)).max() < 1.1 * limit
 
@@ -319,23 +330,23 @@ class TestDropouts:
 
     def test_the_states_of_a_dropout_in_order(self):
         average = WindAverage()
-        assert average.state(0.0) == "none"
+        assert average.state(0.0) == 'none'
         run(average, 1.0, hears=lambda t: t < 0.99)
         states = [average.state(t) for t in np.arange(1.0, 40.0, 0.01)]
         order = list(dict.fromkeys(states))
-        assert order == ["live", "holding", "decaying", "stale"]
+        assert order == ['live', 'holding', 'decaying', 'stale']
         seconds = {state: states.count(state) / 100 for state in order}
-        assert seconds["holding"] == pytest.approx(2.0 - 2 * PERIOD, abs=0.03)
-        assert seconds["decaying"] == pytest.approx(15.0, abs=0.03)
+        assert seconds['holding'] == pytest.approx(2.0 - 2 * PERIOD, abs=0.03)
+        assert seconds['decaying'] == pytest.approx(15.0, abs=0.03)
 
     def test_a_slow_sensor_is_stale_only_after_three_periods(self):
         average = WindAverage()
         run(average, 10.5, period=2.0, hears=lambda t: t <= 10.0)
-        assert average.state(15.9) == "holding"
-        assert average.state(16.1) == "decaying"
+        assert average.state(15.9) == 'holding'
+        assert average.state(16.1) == 'decaying'
 
-    @pytest.mark.parametrize("length", [2.5, 5.0, 60.0])
-    @pytest.mark.parametrize("interpolation", ["linear", "hold"])
+    @pytest.mark.parametrize('length', [2.5, 5.0, 60.0])
+    @pytest.mark.parametrize('interpolation', ['linear', 'hold'])
     def test_the_first_sample_after_a_long_one_is_blended(self, length, interpolation):
         average = WindAverage(interpolation)
         _, means = run(
@@ -356,7 +367,7 @@ class TestDropouts:
         assert np.abs(np.diff(means[:, 0])).max() <= 9.0 * FRAME / 0.5 + 1e-9
         assert means[-1, 0] == pytest.approx(9.0)
 
-    @pytest.mark.parametrize("stall", [0.3, 1.0, 1.8, 3.0, 8.0])
+    @pytest.mark.parametrize('stall', [0.3, 1.0, 1.8, 3.0, 8.0])
     def test_a_stalled_network_that_delivers_all_at_once_makes_no_jump(self, stall):
         average = WindAverage()
         means, k = [], 0
@@ -372,7 +383,7 @@ class TestDropouts:
         )
         limit = 4.1 * FRAME / 0.75 + lost * FRAME / min(stall, 0.5)
         assert np.abs(np.diff(means[30:], axis=0)).max() < limit
-        assert average.state(20.0) == "live"
+        assert average.state(20.0) == 'live'
 
     def test_it_resumes_after_a_dropout_and_follows_again(self):
         ends, means = run(WindAverage(), 14.0, hears=lambda t: not 2.0 < t < 9.0)
@@ -396,7 +407,7 @@ class TestClocks:
         average = WindAverage()
         average.mean(900.0, 900.1)
         assert not average.mean(0.0, 0.1).any()
-        assert average.state(0.1) == "none"
+        assert average.state(0.1) == 'none'
 
     def test_set_forward_it_is_as_if_no_time_had_passed(self):
         average = WindAverage()
@@ -404,7 +415,7 @@ class TestClocks:
         _, after = run(average, 5.0, since=4000.0)
         means = np.concatenate([before[60:], after])
         assert np.abs(np.diff(means, axis=0)).max() < 0.3  # the fade of 0.5 s, and the wind itself
-        assert average.state(4005.0) == "live"
+        assert average.state(4005.0) == 'live'
 
     def test_set_forward_in_a_dropout_it_does_not_drop_to_calm_at_once(self):
         average = WindAverage()

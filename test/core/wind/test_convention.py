@@ -3,13 +3,13 @@
 import math
 import warnings
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.wind.convention import CALM_SPEED, WindConvention, velocity_of_bearing
+from tree_sway_ros.core.wind.convention import CALM_SPEED, velocity_of_bearing, WindConvention
 from tree_sway_ros.errors import ParameterError
 
 speeds = st.floats(-40.0, 40.0)
@@ -23,14 +23,14 @@ def axes_of(quaternion):
 
 def test_a_westerly_blows_to_the_east_from_every_kind_of_source():
     east = (5.0, 0.0, 0.0)
-    np.testing.assert_allclose(WindConvention("to").vector(5.0, 0.0, 0.0), east)
-    np.testing.assert_allclose(WindConvention("from").vector(-5.0, 0.0, 0.0), east)
+    np.testing.assert_allclose(WindConvention('to').vector(5.0, 0.0, 0.0), east)
+    np.testing.assert_allclose(WindConvention('from').vector(-5.0, 0.0, 0.0), east)
     np.testing.assert_allclose(velocity_of_bearing(5.0, 1.5 * math.pi), east, atol=1e-14)
-    np.testing.assert_allclose(velocity_of_bearing(5.0, 0.5 * math.pi, "to"), east, atol=1e-14)
+    np.testing.assert_allclose(velocity_of_bearing(5.0, 0.5 * math.pi, 'to'), east, atol=1e-14)
 
 
 @pytest.mark.parametrize(
-    ("bearing", "blows_to"),
+    ('bearing', 'blows_to'),
     [
         (0.0, (0, -1, 0)),
         (90.0, (-1, 0, 0)),
@@ -44,7 +44,7 @@ def test_meteorological_bearings(bearing, blows_to):
     np.testing.assert_allclose(wind, blows_to, atol=1e-14)
 
 
-@pytest.mark.parametrize(("scale", "kmh"), [(0.514444, 1.852), (0.277778, 1.0)])
+@pytest.mark.parametrize(('scale', 'kmh'), [(0.514444, 1.852), (0.277778, 1.0)])
 def test_units(scale, kmh):
     wind = WindConvention(speed_scale=scale).vector(10.0, 0.0, 0.0)
     assert wind[0] == pytest.approx(10.0 * kmh / 3.6, rel=1e-5)
@@ -65,7 +65,7 @@ def test_the_vertical_is_projected_out_but_kept_in_the_velocity():
 
 @given(u=speeds, v=speeds, w=speeds, yaw=angles, normal=normals)
 def test_the_vector_lies_in_the_plane_and_projecting_twice_changes_nothing(u, v, w, yaw, normal):
-    convention = WindConvention("from", 0.5, yaw, normal)
+    convention = WindConvention('from', 0.5, yaw, normal)
     wind = convention.vector(u, v, w)
     assert abs(wind @ convention.normal) < 1e-13 * 40
     np.testing.assert_allclose(convention.project(wind), wind, atol=1e-13 * 40)
@@ -73,11 +73,11 @@ def test_the_vector_lies_in_the_plane_and_projecting_twice_changes_nothing(u, v,
 
 @given(u=speeds, v=speeds, w=speeds, yaw=angles, normal=normals, k=st.floats(0.1, 10.0))
 def test_linear_and_mirrored_by_the_other_convention(u, v, w, yaw, normal, k):
-    to, other = WindConvention("to", k, yaw, normal), WindConvention("from", k, yaw, normal)
+    to, other = WindConvention('to', k, yaw, normal), WindConvention('from', k, yaw, normal)
     wind = to.vector(u, v, w)
     np.testing.assert_allclose(other.vector(u, v, w), -wind, atol=1e-10)
     np.testing.assert_allclose(other.vector(-u, -v, -w), wind, atol=1e-10)
-    unit = WindConvention("to", 1.0, yaw, normal)
+    unit = WindConvention('to', 1.0, yaw, normal)
     np.testing.assert_allclose(k * unit.vector(u, v, w), wind, atol=1e-10)
 
 
@@ -118,26 +118,26 @@ def test_calm_on_a_plane_across_east_takes_north():
     np.testing.assert_allclose(axes_of(quaternion)[0], (0, 1, 0), atol=1e-15)
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
 def test_a_bad_number_comes_out_as_not_finite_and_without_a_warning(bad):
     convention = WindConvention(yaw_offset=0.3)
     with warnings.catch_warnings():
-        warnings.simplefilter("error")
+        warnings.simplefilter('error')
         assert not np.isfinite(convention.vector(1.0, bad, 0.0)).all()
         assert not np.isfinite(convention.velocity(1.0, 0.0, bad)).all()
 
 
 @pytest.mark.parametrize(
-    ("options", "match"),
+    ('options', 'match'),
     [
-        ({"direction_convention": "towards"}, "unknown convention 'towards'.*'to'.*'from'"),
-        ({"speed_scale": 0.0}, "speed_scale"),
-        ({"speed_scale": -1.0}, "speed_scale"),
-        ({"speed_scale": math.nan}, "speed_scale"),
-        ({"yaw_offset": math.inf}, "yaw_offset"),
-        ({"plane_normal": (0.0, 0.0, 0.0)}, "plane_normal.*no direction"),
-        ({"plane_normal": (0.0, math.nan, 1.0)}, "plane_normal"),
-        ({"plane_normal": (0.0, 1.0)}, "plane_normal"),
+        ({'direction_convention': 'towards'}, "unknown convention 'towards'.*'to'.*'from'"),
+        ({'speed_scale': 0.0}, 'speed_scale'),
+        ({'speed_scale': -1.0}, 'speed_scale'),
+        ({'speed_scale': math.nan}, 'speed_scale'),
+        ({'yaw_offset': math.inf}, 'yaw_offset'),
+        ({'plane_normal': (0.0, 0.0, 0.0)}, 'plane_normal.*no direction'),
+        ({'plane_normal': (0.0, math.nan, 1.0)}, 'plane_normal'),
+        ({'plane_normal': (0.0, 1.0)}, 'plane_normal'),
     ],
 )
 def test_what_cannot_be_read_is_refused(options, match):
@@ -151,9 +151,9 @@ def test_a_normal_of_any_length_will_do():
 
 
 def test_describe_says_it_in_one_line():
-    assert WindConvention().describe() == "reading wind as: blows TO, ENU, m/s"
-    text = WindConvention("from", 0.514444, math.radians(10.0), (0.0, 1.0, 0.0)).describe()
+    assert WindConvention().describe() == 'reading wind as: blows TO, ENU, m/s'
+    text = WindConvention('from', 0.514444, math.radians(10.0), (0.0, 1.0, 0.0)).describe()
     assert text == (
-        "reading wind as: comes FROM, ENU, 0.514444 m/s a unit, turned by 10 degrees, "
-        "on the plane across (0, 1, 0)"
+        'reading wind as: comes FROM, ENU, 0.514444 m/s a unit, turned by 10 degrees, '
+        'on the plane across (0, 1, 0)'
     )

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.wind.crown_wind import (
+    crown_delays,
+    CrownWind,
     LONGEST_DELAY,
     N_DELAYS,
-    CrownWind,
-    crown_delays,
     shared_power,
 )
 from tree_sway_ros.errors import ParameterError
@@ -76,7 +76,7 @@ def test_the_power_that_limbs_share_is_that_of_their_winds():
     assert shared_power(coherence, spread, speed, np.zeros(1))[:, 0] == pytest.approx([1.0, 0.0])
 
 
-@pytest.mark.parametrize("dt", [0.004, 1 / 60, 0.11])
+@pytest.mark.parametrize('dt', [0.004, 1 / 60, 0.11])
 def test_means_stay_within_the_samples_at_any_step(dt):
     rng = np.random.default_rng(5)
     wind = rng.uniform(-9.0, 9.0, (400, 3))
@@ -121,7 +121,7 @@ def test_a_stem_alone_has_no_delay():
     assert found.share[0] == 1.0
 
 
-@pytest.mark.parametrize("coherence", [-0.1, 1.1, np.nan])
+@pytest.mark.parametrize('coherence', [-0.1, 1.1, np.nan])
 def test_a_share_that_is_none_is_refused(coherence):
-    with pytest.raises(ParameterError, match="crown_coherence"):
+    with pytest.raises(ParameterError, match='crown_coherence'):
         CrownWind(1.0, coherence)

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.wind.curve import WindCurve
 
@@ -33,7 +33,7 @@ def exact_mean(times, values, start, end, is_stepped):
     grid = np.unique(np.concatenate([[start, end], times[(times > start) & (times < end)]]))
     width = np.diff(grid)[:, np.newaxis]
     if is_stepped:
-        index = np.maximum(np.searchsorted(times, grid[:-1], side="right") - 1, 0)
+        index = np.maximum(np.searchsorted(times, grid[:-1], side='right') - 1, 0)
         return (width * values[index]).sum(axis=0) / (end - start)
     at = np.stack([np.interp(grid, times, column) for column in values.T], axis=1)
     return (0.5 * width * (at[1:] + at[:-1])).sum(axis=0) / (end - start)

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 import math
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
-from tree_sway_ros.core.wind.gate import LARGEST_LEAD, SECOND, Reason, WindGate
+from tree_sway_ros.core.wind.gate import LARGEST_LEAD, Reason, SECOND, WindGate
 from tree_sway_ros.core.wind.simulated.gust_event import gust
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.errors import ParameterError
@@ -42,7 +42,7 @@ def record_with_spikes_and_gusts(seed, mean_speed):
     time = np.arange(n) / 20.0
     for start in 10.0 + 45.0 * np.arange(40):
         duration, amplitude = rng.uniform(1.5, 6.0), rng.uniform(4.0, 12.0)
-        wind[:, 0] += gust("one_minus_cos", time, amplitude, duration, start)
+        wind[:, 0] += gust('one_minus_cos', time, amplitude, duration, start)
     at = 20 * rng.choice(n // 20, 180, replace=False) + rng.integers(0, 10, 180)
     direction = rng.normal(size=(180, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -52,7 +52,7 @@ def record_with_spikes_and_gusts(seed, mean_speed):
     return wind, is_spike
 
 
-@pytest.mark.parametrize("mean_speed", [2.0, 5.0, 8.0])
+@pytest.mark.parametrize('mean_speed', [2.0, 5.0, 8.0])
 def test_half_an_hour_all_spikes_caught_and_no_gust_refused(mean_speed):
     wind, is_spike = record_with_spikes_and_gusts(1, mean_speed)
     gate = WindGate()
@@ -70,8 +70,8 @@ def test_a_rate_alone_refuses_good_samples_of_a_fast_sensor_in_a_strong_wind():
     assert offer_all(WindGate(), wind).all()
 
 
-@pytest.mark.parametrize("rate", [1.0, 4.0, 20.0, 100.0])
-@pytest.mark.parametrize("mean_speed", [3.0, 20.0])
+@pytest.mark.parametrize('rate', [1.0, 4.0, 20.0, 100.0])
+@pytest.mark.parametrize('mean_speed', [3.0, 20.0])
 def test_plain_turbulence_is_never_refused(rate, mean_speed):
     rng = np.random.default_rng(2)
     wind = simulate_turbulence(mean_speed, rate=rate, duration=60.0, rng=rng)
@@ -79,7 +79,7 @@ def test_plain_turbulence_is_never_refused(rate, mean_speed):
 
 
 @pytest.mark.parametrize(
-    ("bad", "reason"),
+    ('bad', 'reason'),
     [
         ((math.nan, 0.0, 0.0), Reason.NOT_FINITE),
         ((0.0, math.inf, 0.0), Reason.NOT_FINITE),
@@ -106,7 +106,7 @@ def test_a_fault_is_refused_counted_and_leaves_no_trace(bad, reason):
         assert offer(gate, 1.0 + i * PERIOD, wind) == offer(untouched, 1.0 + i * PERIOD, wind)
 
 
-@pytest.mark.parametrize("change", [8.0, 12.0, 30.0])
+@pytest.mark.parametrize('change', [8.0, 12.0, 30.0])
 def test_a_true_step_passes_after_half_a_second_at_most(change):
     gate = warmed_up()
     accepted = offer_all_from(gate, 1.0, [(3.0 + change, 0.0, 0.0)] * 30)
@@ -239,8 +239,8 @@ class TestStamps:
                 last = verdict.time
         assert gate.counts.accepted + gate.counts.refused == len(samples)
 
-    @pytest.mark.parametrize("lead", [0.001, 0.08, 0.2, 0.45, 0.5, 30.0])
-    @pytest.mark.parametrize("latency", [0.0, 0.003, 0.12])
+    @pytest.mark.parametrize('lead', [0.001, 0.08, 0.2, 0.45, 0.5, 30.0])
+    @pytest.mark.parametrize('latency', [0.0, 0.003, 0.12])
     def test_a_stamp_ahead_blocks_no_good_one_after_it(self, lead, latency):
         """Every eighth stamp is ahead; the others keep their own times."""
         gate = WindGate()
@@ -263,7 +263,7 @@ class TestStamps:
             assert offer(gate, stamp, (3.0 + 0.01 * i, 0.0, 0.0), arrival).time == ns(stamp)
         assert gate.counts.ahead_stamp == 0
 
-    @pytest.mark.parametrize("lead", [0.03, 0.055, 0.1])
+    @pytest.mark.parametrize('lead', [0.03, 0.055, 0.1])
     def test_two_senders_at_one_rate_block_each_other_never(self, lead):
         gate = WindGate()
         for i in range(400):
@@ -325,22 +325,22 @@ def test_reset_forgets_samples_and_keeps_counts():
 
 
 @pytest.mark.parametrize(
-    "options",
+    'options',
     [
-        {"max_speed": 0.0},
-        {"max_speed": math.nan},
-        {"max_rate": -1.0},
-        {"longest_refusal": -0.1},
-        {"frozen_after": 0.0},
-        {"jump_floor": -1.0},
-        {"jump_fraction": math.inf},
+        {'max_speed': 0.0},
+        {'max_speed': math.nan},
+        {'max_rate': -1.0},
+        {'longest_refusal': -0.1},
+        {'frozen_after': 0.0},
+        {'jump_floor': -1.0},
+        {'jump_fraction': math.inf},
     ],
 )
 def test_parameters_out_of_range_are_refused(options):
-    with pytest.raises(ParameterError, match=f"{next(iter(options))}: .* is out of range"):
+    with pytest.raises(ParameterError, match=f'{next(iter(options))}: .* is out of range'):
         WindGate(**options)
 
 
 def test_what_is_no_vector_is_refused_by_an_error():
-    with pytest.raises(ParameterError, match="not three numbers"):
+    with pytest.raises(ParameterError, match='not three numbers'):
         offer(WindGate(), 1.0, (1.0, 2.0))

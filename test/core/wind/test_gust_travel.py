@@ -6,12 +6,12 @@ from __future__ import annotations
 
 import tracemalloc
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
-from tree_sway_ros.core.wind.gust_travel import LARGEST_STRETCH, SLOWEST_GUST, GustHistory
+from tree_sway_ros.core.wind.gust_travel import GustHistory, LARGEST_STRETCH, SLOWEST_GUST
 from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
 from tree_sway_ros.errors import ParameterError
 
@@ -70,7 +70,7 @@ def test_the_anemometers_place_counts():
     assert history.delay[0] == pytest.approx(5.0)
 
 
-@pytest.mark.parametrize("heading", [0.0, 1.0, 2.5, -2.0])
+@pytest.mark.parametrize('heading', [0.0, 1.0, 2.5, -2.0])
 def test_without_an_anemometer_the_first_place_feels_the_wind_at_once(heading):
     toward = np.array([np.cos(heading), np.sin(heading), 0.0])
     places = np.array([-20.0, 0.0, 50.0])[:, None] * toward
@@ -165,7 +165,7 @@ def test_days_of_wind_cost_no_precision():
     assert np.abs(history._run).max() < 128 * 8.1
 
 
-@pytest.mark.parametrize("rate", [20, 69, 200, 500, 1000, 4000])
+@pytest.mark.parametrize('rate', [20, 69, 200, 500, 1000, 4000])
 def test_the_history_is_a_minute_long_at_any_rate(rate):
     """A tree 50 s downwind feels the gust when it comes, whatever the rate of the steps."""
     dt = 1.0 / rate
@@ -203,10 +203,10 @@ def test_a_step_allocates_nothing():
     before = tracemalloc.take_snapshot()
     for _ in range(500):
         history.push(wind, DT)
-    grown = tracemalloc.take_snapshot().compare_to(before, "filename")
+    grown = tracemalloc.take_snapshot().compare_to(before, 'filename')
     tracemalloc.stop()
     assert (
-        sum(each.size_diff for each in grown if "gust_travel" in each.traceback[0].filename) < 1000
+        sum(each.size_diff for each in grown if 'gust_travel' in each.traceback[0].filename) < 1000
     )
 
 
@@ -218,8 +218,14 @@ def test_reset_forgets():
 
 
 @pytest.mark.parametrize(
-    ("wind", "dt"),
-    [((np.nan, 0, 0), DT), ((np.inf, 0, 0), DT), ((1, 0, 0), 0.0), ((1, 0, 0), -1.0), ((1, 0), DT)],
+    ('wind', 'dt'),
+    [
+        ((np.nan, 0, 0), DT),
+        ((np.inf, 0, 0), DT),
+        ((1, 0, 0), 0.0),
+        ((1, 0, 0), -1.0),
+        ((1, 0), DT),
+    ],
 )
 def test_what_would_poison_the_history_is_refused(wind, dt):
     history = GustHistory([[10.0, 0.0, 0.0]], np.zeros(3))
@@ -229,14 +235,14 @@ def test_what_would_poison_the_history_is_refused(wind, dt):
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    'wrong',
     [
-        {"places": [[np.nan, 0, 0]]},
-        {"convection_ratio": 0.0},
-        {"averaging_time": 0.0},
-        {"capacity": 1},
+        {'places': [[np.nan, 0, 0]]},
+        {'convection_ratio': 0.0},
+        {'averaging_time': 0.0},
+        {'capacity': 1},
     ],
 )
 def test_a_history_that_cannot_be_is_refused(wrong):
     with pytest.raises(ParameterError):
-        GustHistory(**({"places": [[0.0, 0.0, 0.0]]} | wrong))
+        GustHistory(**({'places': [[0.0, 0.0, 0.0]]} | wrong))

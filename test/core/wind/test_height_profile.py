@@ -13,7 +13,7 @@ from tree_sway_ros.errors import ParameterError
 HEIGHTS = np.array([0.5, 1.0, 5.0, 10.0, 30.0])
 
 
-@pytest.mark.parametrize("kind", ["none", "power", "log"])
+@pytest.mark.parametrize('kind', ['none', 'power', 'log'])
 def test_at_the_anemometer_it_is_the_wind_measured(kind):
     profile = WindProfile(kind, anemometer_height=4.0, ground=-1.0)
     assert profile.over_anemometer(np.array([3.0])) == pytest.approx(1.0)
@@ -24,19 +24,19 @@ def test_no_profile_is_the_same_everywhere():
 
 
 def test_doubling_the_height_multiplies_the_power_law():
-    profile = WindProfile("power", exponent=0.25)
+    profile = WindProfile('power', exponent=0.25)
     one, twice = profile.over_anemometer(HEIGHTS), profile.over_anemometer(2 * HEIGHTS)
     assert twice / one == pytest.approx(2.0**0.25)
 
 
 def test_doubling_the_height_adds_to_the_log_law():
-    profile = WindProfile("log", roughness=0.1)
+    profile = WindProfile('log', roughness=0.1)
     one, twice = profile.over_anemometer(HEIGHTS), profile.over_anemometer(2 * HEIGHTS)
     assert twice - one == pytest.approx(np.log(2.0) / np.log(100.0))
     assert profile.over_anemometer(np.array([0.1, 0.01])) == pytest.approx(0.0)
 
 
-@pytest.mark.parametrize("kind", ["power", "log"])
+@pytest.mark.parametrize('kind', ['power', 'log'])
 def test_below_ground_there_is_no_wind(kind):
     profile = WindProfile(kind, ground=2.0)
     assert profile.over_anemometer(np.array([-1.0, 1.9, 2.0])).tolist() == [0.0, 0.0, 0.0]
@@ -44,13 +44,13 @@ def test_below_ground_there_is_no_wind(kind):
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ('given', 'message'),
     [
-        (dict(kind="cubic"), "unknown wind profile 'cubic'; use one of: none, power, log"),
-        (dict(anemometer_height=0.0), "anemometer height 0.0 m"),
-        (dict(anemometer_height=float("nan")), "anemometer height nan m"),
-        (dict(kind="log", roughness=0.0), "roughness length 0.0 m"),
-        (dict(kind="log", roughness=12.0), "below the anemometer"),
+        (dict(kind='cubic'), "unknown wind profile 'cubic'; use one of: none, power, log"),
+        (dict(anemometer_height=0.0), 'anemometer height 0.0 m'),
+        (dict(anemometer_height=float('nan')), 'anemometer height nan m'),
+        (dict(kind='log', roughness=0.0), 'roughness length 0.0 m'),
+        (dict(kind='log', roughness=12.0), 'below the anemometer'),
     ],
 )
 def test_what_has_no_wind_is_refused(given, message):

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.wind.convention import WindConvention
@@ -20,7 +20,7 @@ KNOTS = 1852.0 / 3600.0
 
 
 def test_a_sample_is_read_judged_and_projected():
-    intake = WindIntake(WindConvention("from", speed_scale=KNOTS, plane_normal=(0.0, 1.0, 0.0)))
+    intake = WindIntake(WindConvention('from', speed_scale=KNOTS, plane_normal=(0.0, 1.0, 0.0)))
     good = intake.offer(5 * SECOND, (10.0, 4.0, 2.0))
     assert good is not None
     assert good.time == 5 * SECOND
@@ -40,7 +40,7 @@ def test_velocities_are_taken_as_they_are():
     assert good is not None
     assert good.velocity == pytest.approx([30.0, -120.0, 40.0])
     assert intake.offer(2 * SECOND, (150.1, 0.0, 0.0)) is None
-    assert intake.offer(3 * SECOND, (float("nan"), 0.0, 0.0)) is None
+    assert intake.offer(3 * SECOND, (float('nan'), 0.0, 0.0)) is None
 
 
 def test_one_limit_behind_every_door():
@@ -49,15 +49,15 @@ def test_one_limit_behind_every_door():
     assert not is_wind(above, 0.0, 0.0)
     WindGate(max_speed=FASTEST_WIND)
     Settings(max_wind=FASTEST_WIND)
-    with pytest.raises(ParameterError, match="max_speed"):
+    with pytest.raises(ParameterError, match='max_speed'):
         WindGate(max_speed=above)
-    with pytest.raises(ParameterError, match="max_wind"):
+    with pytest.raises(ParameterError, match='max_wind'):
         Settings(max_wind=above)
 
 
 @given(
     st.tuples(*[st.floats(-100.0, 100.0)] * 3),
-    st.sampled_from(["to", "from"]),
+    st.sampled_from(['to', 'from']),
     st.floats(0.1, 10.0),
     st.floats(-3.0, 3.0),
 )

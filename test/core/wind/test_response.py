@@ -12,7 +12,7 @@ from tree_sway_ros.core.wind.response import ResponseWatch
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway_ros.files.wind.wind_file import read_wind
 
-RECORDS = Path(__file__).parents[3] / ".." / "shared" / "data" / "wind"
+RECORDS = Path(__file__).parents[3] / '..' / 'shared' / 'data' / 'wind'
 SEIZED = 5.0
 """Time constant of a bearing that hardly turns [s]."""
 
@@ -33,10 +33,10 @@ def found(time, wind):
     return gate.counts.sluggish, gate.is_sluggish
 
 
-@pytest.mark.parametrize("name", ["sonic_20hz_1245.toa5.dat", "sailing_mwv.nmea.log"])
+@pytest.mark.parametrize('name', ['sonic_20hz_1245.toa5.dat', 'sailing_mwv.nmea.log'])
 def test_a_record_raises_no_alarm_and_its_copy_behind_a_filter_does(name):
     if not (RECORDS / name).is_file():
-        pytest.skip(f"no recorded wind at {RECORDS}")
+        pytest.skip(f'no recorded wind at {RECORDS}')
     record = read_wind(str(RECORDS / name))
     time, wind = record.time, record.velocity
     assert found(time, wind) == (0, False)
@@ -45,8 +45,8 @@ def test_a_record_raises_no_alarm_and_its_copy_behind_a_filter_does(name):
     assert is_sluggish
 
 
-@pytest.mark.parametrize("rate", [20.0, 4.0, 1.0])
-@pytest.mark.parametrize("speed", [3.0, 8.0, 15.0])
+@pytest.mark.parametrize('rate', [20.0, 4.0, 1.0])
+@pytest.mark.parametrize('speed', [3.0, 8.0, 15.0])
 def test_simulated_wind_raises_none_at_any_rate(speed, rate):
     rng = np.random.default_rng(5)
     wind = simulate_turbulence(speed, rate=rate, duration=600.0, rng=rng)

@@ -44,7 +44,7 @@ def test_jitter_averages_out():
     assert np.std(periods[100:]) < 0.004
 
 
-@pytest.mark.parametrize(("before", "after"), [(0.05, 1.0), (10.0, 0.05), (0.01, 0.1)])
+@pytest.mark.parametrize(('before', 'after'), [(0.05, 1.0), (10.0, 0.05), (0.01, 0.1)])
 def test_a_new_rate_is_learned_within_some_tens_of_samples(before, after):
     timing = SensorTiming(2.0)
     timing.note_interval(before)

@@ -21,36 +21,36 @@ from tree_sway_ros.files.export.tree_mesh import leaf_mesh, wood_mesh
 
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 KINDS = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
-WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+WIDTHS = {'SCALAR': 1, 'VEC3': 3, 'VEC4': 4, 'MAT4': 16}
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def simulator():
-    tree = builtin_tree("benjamina", 0)
-    return make_simulator(tree, species_named(tree.species), model="modes")
+    tree = builtin_tree('benjamina', 0)
+    return make_simulator(tree, species_named(tree.species), model='modes')
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def leaves(simulator):
     return leaf_clusters(simulator.tree, np.random.default_rng(0), count=50)
 
 
 def parsed(glb):
     """Document and arrays of a binary file, by the specification alone."""
-    magic, version, length, size, kind = struct.unpack_from("<4sIII4s", glb)
-    assert (magic, version, length, kind) == (b"glTF", 2, len(glb), b"JSON")
+    magic, version, length, size, kind = struct.unpack_from('<4sIII4s', glb)
+    assert (magic, version, length, kind) == (b'glTF', 2, len(glb), b'JSON')
     document = json.loads(glb[20 : 20 + size])
     begin = 20 + size + 8
     assert begin % 4 == 0
     arrays = []
-    for accessor in document["accessors"]:
-        view = document["bufferViews"][accessor["bufferView"]]
-        assert view["byteOffset"] % 4 == 0
-        width = WIDTHS[accessor["type"]]
-        array = np.frombuffer(glb, KINDS[accessor["componentType"]], accessor["count"] * width,
-                              begin + view["byteOffset"])  # fmt: skip
+    for accessor in document['accessors']:
+        view = document['bufferViews'][accessor['bufferView']]
+        assert view['byteOffset'] % 4 == 0
+        width = WIDTHS[accessor['type']]
+        array = np.frombuffer(glb, KINDS[accessor['componentType']], accessor['count'] * width,
+                              begin + view['byteOffset'])  # fmt: skip
         arrays.append(array.reshape(-1, width) if width > 1 else array)
-        for name, least in (("min", np.min), ("max", np.max)):
+        for name, least in (('min', np.min), ('max', np.max)):
             if name in accessor:
                 np.testing.assert_array_equal(
                     accessor[name], np.atleast_1d(least(arrays[-1], axis=0))
@@ -60,44 +60,44 @@ def parsed(glb):
 
 def skinned_vertices(document, arrays, primitive):
     """Where a viewer draws the vertices of a skinned mesh, whatever the nodes have been set to."""
-    skin, nodes = document["skins"][0], document["nodes"]
-    (root,) = [node for node in nodes if "children" in node]
-    assert root["children"] == skin["joints"]
-    inverse = arrays[skin["inverseBindMatrices"]].reshape(-1, 4, 4).transpose(0, 2, 1)
-    matrices = np.tile(np.eye(4), (len(skin["joints"]), 1, 1))
-    for matrix, joint in zip(matrices, skin["joints"], strict=True):
-        turn = Rotation.from_quat(root["rotation"])
-        matrix[:3, :3] = (turn * Rotation.from_quat(nodes[joint]["rotation"])).as_matrix()
-        matrix[:3, 3] = turn.apply(nodes[joint]["translation"])
+    skin, nodes = document['skins'][0], document['nodes']
+    (root,) = [node for node in nodes if 'children' in node]
+    assert root['children'] == skin['joints']
+    inverse = arrays[skin['inverseBindMatrices']].reshape(-1, 4, 4).transpose(0, 2, 1)
+    matrices = np.tile(np.eye(4), (len(skin['joints']), 1, 1))
+    for matrix, joint in zip(matrices, skin['joints'], strict=True):
+        turn = Rotation.from_quat(root['rotation'])
+        matrix[:3, :3] = (turn * Rotation.from_quat(nodes[joint]['rotation'])).as_matrix()
+        matrix[:3, 3] = turn.apply(nodes[joint]['translation'])
     matrices = matrices @ inverse
-    attributes = {name: arrays[k] for name, k in primitive["attributes"].items()}
-    weights = attributes["WEIGHTS_0"] / 255.0
-    blended = np.einsum("vk,vkij->vij", weights, matrices[attributes["JOINTS_0"]])
-    points = np.hstack([attributes["POSITION"], np.ones((len(attributes["POSITION"]), 1))])
-    return np.einsum("vij,vj->vi", blended, points)[:, :3]
+    attributes = {name: arrays[k] for name, k in primitive['attributes'].items()}
+    weights = attributes['WEIGHTS_0'] / 255.0
+    blended = np.einsum('vk,vkij->vij', weights, matrices[attributes['JOINTS_0']])
+    points = np.hstack([attributes['POSITION'], np.ones((len(attributes['POSITION']), 1))])
+    return np.einsum('vij,vj->vi', blended, points)[:, :3]
 
 
 def test_nodes_are_driven_by_the_poses_of_the_segments(simulator, leaves):
     tree = simulator.tree
     document, arrays = parsed(skinned_tree(tree, leaves).glb())
-    (mesh,) = document["meshes"]
-    assert len(mesh["primitives"]) == 2  # two draw calls, whatever the number of segments
-    nodes = document["nodes"]
-    assert [nodes[k]["name"] for k in document["skins"][0]["joints"]] == list(tree.segment_names)
+    (mesh,) = document['meshes']
+    assert len(mesh['primitives']) == 2  # two draw calls, whatever the number of segments
+    nodes = document['nodes']
+    assert [nodes[k]['name'] for k in document['skins'][0]['joints']] == list(tree.segment_names)
     simulator.reset()
     for wind in (0.0, 12.0):
         for _ in range(60):
             simulator.step([wind, 0.3 * wind, 0.0], 1 / 60)
         poses = simulator.place().copy()
-        gaps = [np.abs(nodes[k]["translation"] - poses[i, :3]).max() +
-                np.abs(nodes[k]["rotation"] - poses[i, 3:]).max()
-                for i, k in enumerate(document["skins"][0]["joints"])]  # fmt: skip
+        gaps = [np.abs(nodes[k]['translation'] - poses[i, :3]).max() +
+                np.abs(nodes[k]['rotation'] - poses[i, 3:]).max()
+                for i, k in enumerate(document['skins'][0]['joints'])]  # fmt: skip
         # At rest the nodes are the poses; else they are set to them, as an engine does.
         assert (max(gaps) < 1e-9) == (wind == 0.0)
-        for i, k in enumerate(document["skins"][0]["joints"]):
-            nodes[k]["translation"], nodes[k]["rotation"] = poses[i, :3], poses[i, 3:]
+        for i, k in enumerate(document['skins'][0]['joints']):
+            nodes[k]['translation'], nodes[k]['rotation'] = poses[i, :3], poses[i, 3:]
         for primitive, ours in zip(
-            mesh["primitives"], (wood_mesh(tree), leaf_mesh(leaves)), strict=True
+            mesh['primitives'], (wood_mesh(tree), leaf_mesh(leaves)), strict=True
         ):
             drawn = skinned_vertices(document, arrays, primitive)
             np.testing.assert_allclose(drawn, ours.placed(poses) @ Y_UP.T, atol=2e-6)
@@ -105,24 +105,24 @@ def test_nodes_are_driven_by_the_poses_of_the_segments(simulator, leaves):
 
 
 def test_other_programs_read_it(tmp_path, simulator, leaves):
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
-    for suffix in (".glb", ".gltf"):
-        write_tree(tmp_path / f"tree{suffix}", simulator.tree, leaves=leaves)
-        scene = trimesh.load(tmp_path / f"tree{suffix}")
+    trimesh = pytest.importorskip('trimesh', reason='trimesh is not installed')
+    for suffix in ('.glb', '.gltf'):
+        write_tree(tmp_path / f'tree{suffix}', simulator.tree, leaves=leaves)
+        scene = trimesh.load(tmp_path / f'tree{suffix}')
         assert len(scene.geometry) == 2
         assert scene.extents[1] == pytest.approx(simulator.tree.height, rel=0.1)
-        assert {"bark", "leaves"} == {g.visual.material.name for g in scene.geometry.values()}
+        assert {'bark', 'leaves'} == {g.visual.material.name for g in scene.geometry.values()}
 
 
 def test_pygltflib_reads_it(tmp_path, simulator):
-    pygltflib = pytest.importorskip("pygltflib", reason="pygltflib is not installed")
-    write_tree(tmp_path / "tree.glb", simulator.tree)
-    document = pygltflib.GLTF2().load(tmp_path / "tree.glb")
+    pygltflib = pytest.importorskip('pygltflib', reason='pygltflib is not installed')
+    write_tree(tmp_path / 'tree.glb', simulator.tree)
+    document = pygltflib.GLTF2().load(tmp_path / 'tree.glb')
     assert len(document.skins[0].joints) == simulator.tree.n_segments
     assert document.meshes[0].primitives[0].attributes.NORMAL is not None
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def morphing(simulator, leaves):
     document, form = morphing_tree(simulator, leaves)
     return *parsed(document.glb()), form
@@ -130,21 +130,21 @@ def morphing(simulator, leaves):
 
 def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
     document, arrays, form = morphing
-    (mesh,) = document["meshes"]
-    assert mesh["extras"]["targetNames"] == list(form.names)
-    assert 16 <= len(form.names) == len(mesh["weights"]) <= 32
+    (mesh,) = document['meshes']
+    assert mesh['extras']['targetNames'] == list(form.names)
+    assert 16 <= len(form.names) == len(mesh['weights']) <= 32
     assert 0.0 < form.rms < 0.1 * form.motion_rms
     # The error once more, in the file itself, at the weights of its own animation.
-    (animation,) = document["animations"]
-    sampler = animation["samplers"][0]
+    (animation,) = document['animations']
+    sampler = animation['samplers'][0]
     times, weights = (
-        arrays[sampler["input"]],
-        arrays[sampler["output"]].reshape(-1, len(form.names)),
+        arrays[sampler['input']],
+        arrays[sampler['output']].reshape(-1, len(form.names)),
     )
     assert len(times) == len(weights) > 100
-    primitive = mesh["primitives"][0]
-    rest = arrays[primitive["attributes"]["POSITION"]].astype(float)
-    changes = np.array([arrays[t["POSITION"]] for t in primitive["targets"]], dtype=float)
+    primitive = mesh['primitives'][0]
+    rest = arrays[primitive['attributes']['POSITION']].astype(float)
+    changes = np.array([arrays[t['POSITION']] for t in primitive['targets']], dtype=float)
     ours = wood_mesh(simulator.tree)
     simulator.reset()
     wind = gltf_tree.simulate_turbulence(
@@ -154,7 +154,7 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
     for number, each in enumerate(wind):
         simulator.step(each, 1 / 60)
         if number % 240 == 0:
-            drawn = rest + np.einsum("m,mvj->vj", weights[number // 4], changes)
+            drawn = rest + np.einsum('m,mvj->vj', weights[number // 4], changes)
             gaps.append(np.linalg.norm(drawn - ours.placed(simulator.place()), axis=1))
     simulator.reset()
     assert np.max(gaps) <= form.greatest + 1e-5
@@ -163,26 +163,26 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
 
 def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
     document, arrays, _ = morphing
-    extras = document["meshes"][0]["extras"]
+    extras = document['meshes'][0]['extras']
     basis = gltf_tree.state_basis(simulator)
-    assert extras["basis"] == basis.digest
+    assert extras['basis'] == basis.digest
     coordinates = np.zeros(basis.n_coordinates)
-    coordinates[2] = 0.01 * extras["unit"][2]
+    coordinates[2] = 0.01 * extras['unit'][2]
     poses = simulator.place_rotations(basis.rotations(coordinates)).copy()
-    primitive = document["meshes"][0]["primitives"][0]
-    rest = arrays[primitive["attributes"]["POSITION"]]
-    change = 0.01 * arrays[primitive["targets"][2]["POSITION"]]
+    primitive = document['meshes'][0]['primitives'][0]
+    rest = arrays[primitive['attributes']['POSITION']]
+    change = 0.01 * arrays[primitive['targets'][2]['POSITION']]
     moved = wood_mesh(simulator.tree).placed(poses) - rest
     assert np.linalg.norm(moved - change) < 0.05 * np.linalg.norm(moved) + 1e-4
 
 
 def test_more_segments_than_joints(simulator, monkeypatch):
-    monkeypatch.setattr(gltf_tree, "_MAX_JOINTS", 10)
-    with pytest.raises(FormatError, match="997 segments, more than the 10 joints of a skin"):
+    monkeypatch.setattr(gltf_tree, '_MAX_JOINTS', 10)
+    with pytest.raises(FormatError, match='997 segments, more than the 10 joints of a skin'):
         skinned_tree(simulator.tree)
 
 
 def test_written_whole(tmp_path, simulator):
-    path = tmp_path / "tree.gltf"
+    path = tmp_path / 'tree.gltf'
     write_gltf(path, skinned_tree(simulator.tree))
-    assert json.loads(path.read_text())["buffers"][0]["uri"].startswith("data:application/octet")
+    assert json.loads(path.read_text())['buffers'][0]['uri'].startswith('data:application/octet')

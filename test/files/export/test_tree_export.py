@@ -11,55 +11,55 @@ from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.export.tree_mesh import SIDES
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[1] / 'data'
 SOURCES = [
-    *sorted(p.name for p in DATA.glob("fork.*")), "forest.treefile.txt", "seedling.yaml",
-    "segments.csv",
+    *sorted(p.name for p in DATA.glob('fork.*')), 'forest.treefile.txt', 'seedling.yaml',
+    'segments.csv',
 ]  # fmt: skip
 
 
 @pytest.fixture
 def tree():
-    return read_tree(DATA / "fork.archi.csv").tree
+    return read_tree(DATA / 'fork.archi.csv').tree
 
 
-@pytest.mark.parametrize("name", SOURCES)
+@pytest.mark.parametrize('name', SOURCES)
 def test_import_export_import_is_the_identity(tmp_path, name):
     for number, first in enumerate(read_trees(DATA / name)):
-        path = tmp_path / f"{number}.yaml"
+        path = tmp_path / f'{number}.yaml'
         write_tree(path, first.tree, first.species)
         again = read_tree(path)
         assert again.species == first.species
         for key, value in vars(first.tree).items():
-            if key != "source_index":
+            if key != 'source_index':
                 np.testing.assert_array_equal(getattr(again.tree, key), value, err_msg=key)
 
 
 def test_obj_has_an_object_per_segment(tmp_path, tree):
-    write_tree(tmp_path / "tree.obj", tree)
-    lines = (tmp_path / "tree.obj").read_text().splitlines()
-    assert [line[2:] for line in lines if line.startswith("o ")] == list(tree.segment_names)
-    points = np.array([line.split()[1:] for line in lines if line.startswith("v ")], dtype=float)
+    write_tree(tmp_path / 'tree.obj', tree)
+    lines = (tmp_path / 'tree.obj').read_text().splitlines()
+    assert [line[2:] for line in lines if line.startswith('o ')] == list(tree.segment_names)
+    points = np.array([line.split()[1:] for line in lines if line.startswith('v ')], dtype=float)
     assert len(points) == 2 * SIDES * tree.n_segments
     assert points[:, 2].max() == pytest.approx(tree.height, abs=0.05)
-    faces = np.array([line.split()[1:] for line in lines if line.startswith("f ")], dtype=int)
+    faces = np.array([line.split()[1:] for line in lines if line.startswith('f ')], dtype=int)
     assert (faces.min(), faces.max()) == (1, len(points))
     corners = points[faces - 1]
-    volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+    volume = np.einsum('ij,ij->i', corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
     polygon = SIDES / (2.0 * np.pi) * np.sin(2.0 * np.pi / SIDES)
     assert volume == pytest.approx(polygon * tree.volume.sum(), rel=1e-6)
 
 
 def test_errors(tmp_path, tree):
     with pytest.raises(FormatError, match=r"cannot write '.stl'; use .yaml, .yml, .obj"):
-        write_tree(tmp_path / "tree.stl", tree)
-    with pytest.raises(FormatError, match="cannot be written: No such file"):
-        write_tree(tmp_path / "none" / "tree.obj", tree)
+        write_tree(tmp_path / 'tree.stl', tree)
+    with pytest.raises(FormatError, match='cannot be written: No such file'):
+        write_tree(tmp_path / 'none' / 'tree.obj', tree)
 
 
 def test_a_failure_keeps_the_file_that_was_there(tmp_path, tree):
-    path = tmp_path / "tree.yaml"
-    path.write_text("mine")
+    path = tmp_path / 'tree.yaml'
+    path.write_text('mine')
     with pytest.raises(SpeciesError):
-        write_tree(path, replace(tree, species="elm"))
-    assert path.read_text() == "mine"
+        write_tree(path, replace(tree, species='elm'))
+    assert path.read_text() == 'mine'

@@ -11,22 +11,22 @@ from tree_sway_ros.core.leaves.foliage import leaf_clusters
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.files.export.tree_mesh import SIDES, leaf_mesh, wood_mesh
+from tree_sway_ros.files.export.tree_mesh import leaf_mesh, SIDES, wood_mesh
 from tree_sway_ros.files.trees.tree_file import read_tree
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[1] / 'data'
 
 
 @pytest.fixture
 def tree():
-    return read_tree(DATA / "fork.archi.csv").tree
+    return read_tree(DATA / 'fork.archi.csv').tree
 
 
-@pytest.mark.parametrize("name", ["benjamina", "goldcrest"])
+@pytest.mark.parametrize('name', ['benjamina', 'goldcrest'])
 def test_rest_poses_are_the_solvers(name):
     """Not only the direction of each segment: its roll too, or a driven mesh is twisted."""
     tree = builtin_tree(name, 0)
-    simulator = make_simulator(tree, species_named(tree.species), model="modes")
+    simulator = make_simulator(tree, species_named(tree.species), model='modes')
     np.testing.assert_allclose(tree.rest_poses, simulator.place(), atol=1e-12)
 
 
@@ -45,7 +45,7 @@ def test_cones_are_closed_and_face_outward(tree):
     edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     assert {tuple(edge) for edge in edges} == {tuple(edge[::-1]) for edge in edges}
     a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
+    volume = np.einsum('ij,ij->i', a, np.cross(b, c)).sum() / 6.0
     polygon = SIDES / (2.0 * np.pi) * np.sin(2.0 * np.pi / SIDES)
     assert volume == pytest.approx(polygon * tree.volume.sum(), rel=1e-12)
 
@@ -56,7 +56,7 @@ def test_normals_are_across_the_surface(tree):
     a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     across /= np.linalg.norm(across, axis=1)[:, None]
-    agreement = np.einsum("ij,ikj->ik", across, mesh.normals[mesh.triangles])
+    agreement = np.einsum('ij,ikj->ik', across, mesh.normals[mesh.triangles])
     assert agreement.min() > np.cos(np.pi / SIDES) - 1e-6
 
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
@@ -16,12 +16,12 @@ from tree_sway_ros.files.export.tree_export import write_tree
 from tree_sway_ros.files.export.yaml_writing import yaml_of_tree
 from tree_sway_ros.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[1] / 'data'
 
 
 def assert_same_tree(one: Tree, other: Tree) -> None:
     for key in vars(one):
-        if key != "source_index":
+        if key != 'source_index':
             np.testing.assert_array_equal(getattr(one, key), getattr(other, key), err_msg=key)
 
 
@@ -38,7 +38,7 @@ def random_tree(seed: int, n: int = 30, joined: bool = False) -> Tree:
     )
 
 
-@pytest.mark.parametrize("joined", [False, True])
+@pytest.mark.parametrize('joined', [False, True])
 @settings(deadline=None, max_examples=30)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_reading_back_is_the_identity(joined, seed):
@@ -57,17 +57,17 @@ def test_any_name_survives(name):
 
 
 def test_written_file_reads_back(tmp_path):
-    first = read_yaml_tree(DATA / "seedling.yaml")
-    write_tree(tmp_path / "again.yaml", first.tree, first.species)
-    again = read_yaml_tree(tmp_path / "again.yaml")
+    first = read_yaml_tree(DATA / 'seedling.yaml')
+    write_tree(tmp_path / 'again.yaml', first.tree, first.species)
+    again = read_yaml_tree(tmp_path / 'again.yaml')
     assert_same_tree(again.tree, first.tree)
     assert again.species == first.species
 
 
 def test_a_calibrated_tree_keeps_its_wood():
-    tree = replace(random_tree(1), species="benjamina")
-    table = species_named("benjamina")
-    assert "wood" not in yaml_of_tree(tree)
+    tree = replace(random_tree(1), species='benjamina')
+    table = species_named('benjamina')
+    assert 'wood' not in yaml_of_tree(tree)
     for calibrated in (
         replace(table, modulus=7.123456789012345e9, is_estimate=False),
         replace(table, density=912.5, damping_bare=0.031, drag_exponent=0.7),
@@ -78,4 +78,4 @@ def test_a_calibrated_tree_keeps_its_wood():
 
 def test_unknown_species_is_not_written():
     with pytest.raises(SpeciesError, match="unknown species 'baobab'"):
-        yaml_of_tree(replace(random_tree(1), species="baobab"))
+        yaml_of_tree(replace(random_tree(1), species='baobab'))

@@ -9,17 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("rosbags", reason="rosbags is not installed")
+pytest.importorskip('rosbags', reason='rosbags is not installed')
 
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import get_typestore, Stores
 
 from tree_sway_ros.errors import FormatError, ParameterError
 from tree_sway_ros.files.recording.bag_writer import BagWriter
 from tree_sway_ros.files.recording.state_record import (
     DESCRIPTION_TYPE,
-    STATE_TYPE,
     read_state_record,
     restamped,
+    STATE_TYPE,
 )
 
 TYPES = get_typestore(Stores.ROS2_JAZZY)
@@ -28,11 +28,11 @@ SECOND = 1_000_000_000
 
 def state(stamp: int, value: float) -> bytes:
     types = TYPES.types
-    time = types["builtin_interfaces/msg/Time"](*divmod(stamp, SECOND))
-    header = types["std_msgs/msg/Header"](stamp=time, frame_id="map")
+    time = types['builtin_interfaces/msg/Time'](*divmod(stamp, SECOND))
+    header = types['std_msgs/msg/Header'](stamp=time, frame_id='map')
 
     message = types[STATE_TYPE](
-        header=header, name=["c0"], position=np.array([value]), velocity=np.zeros(0),
+        header=header, name=['c0'], position=np.array([value]), velocity=np.zeros(0),
         effort=np.zeros(0),
     )  # fmt: skip
     return bytes(TYPES.serialize_cdr(message, STATE_TYPE))
@@ -45,17 +45,17 @@ def description(text: str = '{"state":{}}') -> bytes:
 
 def recorded(path: Path, format: str, text: str = '{"state":{}}') -> Path:
     with BagWriter(path, format) as bag:
-        bag.add("/oak/tree_description", DESCRIPTION_TYPE, latched=True)
-        bag.add("/oak/tree_state", STATE_TYPE, depth=10)
-        bag.write("/oak/tree_description", 0, description(text))
+        bag.add('/oak/tree_description', DESCRIPTION_TYPE, latched=True)
+        bag.add('/oak/tree_state', STATE_TYPE, depth=10)
+        bag.write('/oak/tree_description', 0, description(text))
         for at, k in enumerate((0, 1, 3, 2, 4)):  # one comes out of order
-            bag.write("/oak/tree_state", at, state(10 * SECOND + k * 100_000_000, float(k)))
+            bag.write('/oak/tree_state', at, state(10 * SECOND + k * 100_000_000, float(k)))
     return path
 
 
-@pytest.mark.parametrize("format", ["mcap", "sqlite3"])
+@pytest.mark.parametrize('format', ['mcap', 'sqlite3'])
 def test_a_state_comes_back_as_it_was_sent(tmp_path: Path, format: str) -> None:
-    record = read_state_record(recorded(tmp_path / "bag", format))
+    record = read_state_record(recorded(tmp_path / 'bag', format))
     assert record.time.tolist() == pytest.approx([0.0, 0.1, 0.3, 0.4])
     assert (record.epoch, record.refused) == (10.0, 1)
     assert record.states[2] == state(10 * SECOND + 300_000_000, 3.0)
@@ -63,8 +63,8 @@ def test_a_state_comes_back_as_it_was_sent(tmp_path: Path, format: str) -> None:
 
 
 def test_the_description_is_kept_for_who_comes_late(tmp_path: Path) -> None:
-    metadata = (recorded(tmp_path / "bag", "mcap") / "metadata.yaml").read_text(encoding="utf-8")
-    assert "durability: transient_local" in metadata
+    metadata = (recorded(tmp_path / 'bag', 'mcap') / 'metadata.yaml').read_text(encoding='utf-8')
+    assert 'durability: transient_local' in metadata
 
 
 def test_a_stamp_is_changed_and_nothing_else() -> None:
@@ -72,17 +72,17 @@ def test_a_stamp_is_changed_and_nothing_else() -> None:
 
 
 def test_what_cannot_be_played_or_written_is_refused(tmp_path: Path) -> None:
-    untold = recorded(tmp_path / "untold", "mcap", "{}")
-    with pytest.raises(FormatError, match="record both"):
+    untold = recorded(tmp_path / 'untold', 'mcap', '{}')
+    with pytest.raises(FormatError, match='record both'):
         read_state_record(untold)
-    with pytest.raises(FormatError, match="record both"):
-        read_state_record(recorded(tmp_path / "other", "mcap"), "elm/tree_state")
-    with pytest.raises(FormatError, match="no such bag"):
-        read_state_record(tmp_path / "none")
-    (tmp_path / "wrong.mcap").write_bytes(b"\x89MCAP0\r\n" + bytes(40))
-    with pytest.raises(FormatError, match="not a bag that can be read"):
-        read_state_record(tmp_path / "wrong.mcap")
-    with pytest.raises(FormatError, match="there already"):
+    with pytest.raises(FormatError, match='record both'):
+        read_state_record(recorded(tmp_path / 'other', 'mcap'), 'elm/tree_state')
+    with pytest.raises(FormatError, match='no such bag'):
+        read_state_record(tmp_path / 'none')
+    (tmp_path / 'wrong.mcap').write_bytes(b'\x89MCAP0\r\n' + bytes(40))
+    with pytest.raises(FormatError, match='not a bag that can be read'):
+        read_state_record(tmp_path / 'wrong.mcap')
+    with pytest.raises(FormatError, match='there already'):
         BagWriter(untold)
-    with pytest.raises(ParameterError, match="use mcap or sqlite3"):
-        BagWriter(tmp_path / "new", "csv")
+    with pytest.raises(ParameterError, match='use mcap or sqlite3'):
+        BagWriter(tmp_path / 'new', 'csv')

@@ -14,18 +14,18 @@ from tree_sway_ros.files.stands.shard import dealt
 from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
 
-ROWS = [(4.0 * i, 3.0 * (i % 3), ("pine", "oak")[i % 2], 1.5 + 0.1 * i) for i in range(7)]
+ROWS = [(4.0 * i, 3.0 * (i % 3), ('pine', 'oak')[i % 2], 1.5 + 0.1 * i) for i in range(7)]
 
 
 @pytest.fixture
 def stand(tmp_path):
-    path = tmp_path / "stand.csv"
-    lines = [",".join(map(str, row)) for row in ROWS]
-    path.write_text("\n".join(["x,y,species,height", *lines]) + "\n")
+    path = tmp_path / 'stand.csv'
+    lines = [','.join(map(str, row)) for row in ROWS]
+    path.write_text('\n'.join(['x,y,species,height', *lines]) + '\n')
     return open_scene(str(path))
 
 
-@pytest.mark.parametrize("shards", [1, 2, 3, 7])
+@pytest.mark.parametrize('shards', [1, 2, 3, 7])
 def test_every_tree_is_in_one_shard_in_the_order_of_the_file(stand, shards):
     parts = [dealt(stand, shard, shards) for shard in range(shards)]
     assert [each.name for part in parts for each in part.trees] == [e.name for e in stand.trees]
@@ -59,7 +59,8 @@ def test_a_stand_that_is_moved_sways_where_it_is(stand):
 
 
 @pytest.mark.parametrize(
-    ("shard", "shards", "what"), [(2, 2, "shard 2 of 2"), (0, 8, "8 shards of 7"), (1, 1, "1 of 1")]
+    ('shard', 'shards', 'what'),
+    [(2, 2, 'shard 2 of 2'), (0, 8, '8 shards of 7'), (1, 1, '1 of 1')],
 )
 def test_a_shard_that_there_is_not_is_refused(stand, shard, shards, what):
     with pytest.raises(ParameterError, match=what):
@@ -67,5 +68,5 @@ def test_a_shard_that_there_is_not_is_refused(stand, shard, shards, what):
 
 
 def test_one_tree_cannot_be_dealt():
-    with pytest.raises(ParameterError, match="one tree"):
-        dealt(open_scene("benjamina"), 0, 2)
+    with pytest.raises(ParameterError, match='one tree'):
+        dealt(open_scene('benjamina'), 0, 2)

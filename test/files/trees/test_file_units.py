@@ -12,11 +12,11 @@ import pytest
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.source import open_tree
 
-DATA = Path(__file__).parents[1] / "data"
-HEADER = "segment,parent,x0,y0,z0,x1,y1,z1,d0,d1"
+DATA = Path(__file__).parents[1] / 'data'
+HEADER = 'segment,parent,x0,y0,z0,x1,y1,z1,d0,d1'
 
 
-def table(tmp_path: Path, length: float, diameter: float, up: str = "z") -> Path:
+def table(tmp_path: Path, length: float, diameter: float, up: str = 'z') -> Path:
     """A stem of 6 m and a twig, as a file in these units has them."""
     rows = [HEADER]
     for start, end, d, parent in (
@@ -24,33 +24,33 @@ def table(tmp_path: Path, length: float, diameter: float, up: str = "z") -> Path
         ((0.0, 0.0, 3.0), (0.0, 0.1, 6.0), 0.09, 0),
         ((0.0, 0.0, 3.0), (0.5, 0.0, 3.5), 0.01, 0),
     ):
-        nodes = [(x, z, -y) if up == "y" else (x, y, z) for x, y, z in (start, end)]
+        nodes = [(x, z, -y) if up == 'y' else (x, y, z) for x, y, z in (start, end)]
         cells = [len(rows) - 1.0, parent, *(length * c for node in nodes for c in node)]
         cells += [diameter * d, diameter * d]
-        rows.append(",".join(f"{cell:g}" for cell in cells))
-    path = tmp_path / "tree.csv"
-    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+        rows.append(','.join(f'{cell:g}' for cell in cells))
+    path = tmp_path / 'tree.csv'
+    path.write_text('\n'.join(rows) + '\n', encoding='utf-8')
     return path
 
 
 @pytest.mark.parametrize(
-    ("length", "diameter", "up", "options"),
+    ('length', 'diameter', 'up', 'options'),
     [
-        (100.0, 1.0, "z", {"length_unit": 0.01}),
-        (1.0, 1000.0, "z", {"diameter_unit": 0.001}),
-        (1000.0, 1000.0, "z", {"length_unit": 0.001, "diameter_unit": 0.001}),
-        (1.0, 1.0, "y", {"up": "y"}),
+        (100.0, 1.0, 'z', {'length_unit': 0.01}),
+        (1.0, 1000.0, 'z', {'diameter_unit': 0.001}),
+        (1000.0, 1000.0, 'z', {'length_unit': 0.001, 'diameter_unit': 0.001}),
+        (1.0, 1.0, 'y', {'up': 'y'}),
     ],
 )
 def test_the_option_that_the_error_names_mends_it(tmp_path, length, diameter, up, options):
     path = table(tmp_path, length, diameter, up)
-    if up == "z":
+    if up == 'z':
         with pytest.raises(TreeError) as refused:
             open_tree(path)
         for name, value in options.items():
-            assert f"--option {name}={value:g}" in refused.value.cure
+            assert f'--option {name}={value:g}' in refused.value.cure
     else:
-        assert any("--option up=y" in doubt for doubt in open_tree(path).warnings)
+        assert any('--option up=y' in doubt for doubt in open_tree(path).warnings)
     mended, meant = open_tree(path, **options), open_tree(table(tmp_path, 1.0, 1.0))
     np.testing.assert_allclose(mended.tree.end, meant.tree.end, atol=1e-12)
     np.testing.assert_allclose(mended.tree.base_diameter, meant.tree.base_diameter)
@@ -58,20 +58,20 @@ def test_the_option_that_the_error_names_mends_it(tmp_path, length, diameter, up
 
 
 def test_units_that_cannot_be_are_refused(tmp_path):
-    with pytest.raises(ParameterError, match=r"length_unit is 0 m; give 0\.01 for cm"):
+    with pytest.raises(ParameterError, match=r'length_unit is 0 m; give 0\.01 for cm'):
         open_tree(table(tmp_path, 1.0, 1.0), length_unit=0.0)
     with pytest.raises(ParameterError, match="up is 'x'"):
-        open_tree(table(tmp_path, 1.0, 1.0), up="x")
+        open_tree(table(tmp_path, 1.0, 1.0), up='x')
 
 
 def test_cylinders_are_scaled_before_anything_is_done_to_them():
-    plain = open_tree(DATA / "forest.treefile.txt", tree=1)
-    scaled = open_tree(DATA / "forest.treefile.txt", tree=1, length_unit=0.5, diameter_unit=0.5)
+    plain = open_tree(DATA / 'forest.treefile.txt', tree=1)
+    scaled = open_tree(DATA / 'forest.treefile.txt', tree=1, length_unit=0.5, diameter_unit=0.5)
     np.testing.assert_allclose(scaled.tree.end, 0.5 * plain.tree.end, atol=1e-12)
     np.testing.assert_allclose(scaled.tree.tip_diameter, 0.5 * plain.tree.tip_diameter)
     np.testing.assert_allclose(scaled.origin, 0.5 * np.array(plain.origin))
 
 
 def test_a_twig_of_three_metres_is_refused():
-    with pytest.raises(ParameterError, match=r"twig_diameter is 3 m; give 0 to 0\.1 m"):
-        open_tree(DATA / "forest.treefile.txt", tree=1, twig_diameter=3.0)
+    with pytest.raises(ParameterError, match=r'twig_diameter is 3 m; give 0 to 0\.1 m'):
+        open_tree(DATA / 'forest.treefile.txt', tree=1, twig_diameter=3.0)

@@ -22,12 +22,12 @@ def turned(points, x, y, z, yaw):
 
 
 def test_nowhere_else_is_the_same():
-    source = open_tree("goldcrest")
+    source = open_tree('goldcrest')
     assert placed_scene(source) is source
 
 
 def test_a_tree_is_moved_and_turned_about_the_origin_of_its_file():
-    source = open_tree("goldcrest")
+    source = open_tree('goldcrest')
     there = placed_scene(source, x=3.0, y=-2.0, z=0.5, yaw=1.2).tree
     np.testing.assert_allclose(there.end, turned(source.tree.end, 3.0, -2.0, 0.5, 1.2), atol=1e-12)
     np.testing.assert_allclose(there.length, source.tree.length, rtol=1e-12)
@@ -35,7 +35,7 @@ def test_a_tree_is_moved_and_turned_about_the_origin_of_its_file():
 
 
 def test_a_forest_is_moved_as_one(tmp_path):
-    path = tmp_path / "glade.yaml"
+    path = tmp_path / 'glade.yaml'
     path.write_text(FOREST)
     source = open_scene(path)
     there = placed_scene(source, x=10.0, z=1.0, yaw=math.pi / 2)

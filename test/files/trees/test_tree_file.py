@@ -7,68 +7,68 @@ import pytest
 from tree_sway_ros.errors import FormatError, ParameterError, SpeciesError, TreeError
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[1] / 'data'
 
 
 def test_content_decides_and_suffix_breaks_ties(tmp_path):
-    for suffix in (".yaml", ".txt", ".csv", ""):
-        copy = tmp_path / f"tree{suffix}"
-        copy.write_bytes((DATA / "seedling.yaml").read_bytes())
+    for suffix in ('.yaml', '.txt', '.csv', ''):
+        copy = tmp_path / f'tree{suffix}'
+        copy.write_bytes((DATA / 'seedling.yaml').read_bytes())
         assert read_tree(copy).tree.n_branches == 4
-    copy = tmp_path / "table.yaml"
-    copy.write_bytes((DATA / "segments.csv").read_bytes())
+    copy = tmp_path / 'table.yaml'
+    copy.write_bytes((DATA / 'segments.csv').read_bytes())
     assert read_tree(copy).tree.n_segments == 3
 
 
 def test_format_by_name():
-    assert read_tree(DATA / "segments.csv", format="csv").tree.n_branches == 2
+    assert read_tree(DATA / 'segments.csv', format='csv').tree.n_branches == 2
     with pytest.raises(
         ParameterError, match="unknown tree format 'dwg'; use archi, simpleforest, mtg, csv"
     ):
-        read_tree(DATA / "segments.csv", format="dwg")
+        read_tree(DATA / 'segments.csv', format='dwg')
     with pytest.raises(FormatError):
-        read_tree(DATA / "segments.csv", format="yaml")
+        read_tree(DATA / 'segments.csv', format='yaml')
 
 
 def test_options_are_checked():
-    assert read_tree(DATA / "segments.csv", species="oak").species.key == "oak"
+    assert read_tree(DATA / 'segments.csv', species='oak').species.key == 'oak'
     with pytest.raises(ParameterError, match="no option 'specie'; it has: species"):
-        read_tree(DATA / "segments.csv", specie="oak")
+        read_tree(DATA / 'segments.csv', specie='oak')
     with pytest.raises(SpeciesError):
-        read_tree(DATA / "segments.csv", species="baobab")
+        read_tree(DATA / 'segments.csv', species='baobab')
 
 
 def test_unknown_content(tmp_path):
-    (tmp_path / "x.bin").write_bytes(b"\x00\x01\x02")
+    (tmp_path / 'x.bin').write_bytes(b'\x00\x01\x02')
     with pytest.raises(
-        FormatError, match="no known tree format; give one of archi, simpleforest, mtg"
+        FormatError, match='no known tree format; give one of archi, simpleforest, mtg'
     ):
-        read_trees(tmp_path / "x.bin")
-    with pytest.raises(FormatError, match="no such file; check the path"):
-        read_trees(tmp_path / "none.csv")
+        read_trees(tmp_path / 'x.bin')
+    with pytest.raises(FormatError, match='no such file; check the path'):
+        read_trees(tmp_path / 'none.csv')
 
 
 def test_table_of_segments():
-    tree = read_tree(DATA / "segments.csv").tree
+    tree = read_tree(DATA / 'segments.csv').tree
     assert list(tree.segment_parent) == [-1, 0, 0]
     assert list(tree.base_diameter) == [0.10, 0.08, 0.03]
     assert tree.height == 2.0
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "kind", "message"),
+    ('old', 'new', 'kind', 'message'),
     [
-        ("20,10,1", "11,10,1", FormatError, ":4: segment 11: number 11 stands twice"),
-        ("20,10,1", "20,99,1", TreeError, ":4: segment 20: orphan: its parent 99"),
-        ("20,10,1", "20,10.5,1", FormatError, ":4: parent is 10.5, not a whole number"),
-        ("20,10,1", "20,20,1", TreeError, ":4: segment 20: cyclic"),
-        ("0.03,0.01", "0.03", FormatError, ":4: 10 cells, none for 'd1'"),
-        ("0.03,0.01", "0.03,nan", FormatError, ":4: d1 is 'nan', not a finite number"),
-        ("d0,d1", "e0,e1", FormatError, ":1: no column 'd0' among segment, parent"),
+        ('20,10,1', '11,10,1', FormatError, ':4: segment 11: number 11 stands twice'),
+        ('20,10,1', '20,99,1', TreeError, ':4: segment 20: orphan: its parent 99'),
+        ('20,10,1', '20,10.5,1', FormatError, ':4: parent is 10.5, not a whole number'),
+        ('20,10,1', '20,20,1', TreeError, ':4: segment 20: cyclic'),
+        ('0.03,0.01', '0.03', FormatError, ":4: 10 cells, none for 'd1'"),
+        ('0.03,0.01', '0.03,nan', FormatError, ":4: d1 is 'nan', not a finite number"),
+        ('d0,d1', 'e0,e1', FormatError, ":1: no column 'd0' among segment, parent"),
     ],
 )  # fmt: skip
 def test_errors_of_a_table(tmp_path, old, new, kind, message):
-    copy = tmp_path / "broken.csv"
-    copy.write_text((DATA / "segments.csv").read_text().replace(old, new))
+    copy = tmp_path / 'broken.csv'
+    copy.write_text((DATA / 'segments.csv').read_text().replace(old, new))
     with pytest.raises(kind, match=message):
-        read_tree(copy, format="csv")
+        read_tree(copy, format='csv')

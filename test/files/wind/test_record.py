@@ -1,16 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.wind.record import WindRows, increasing
+from tree_sway_ros.files.wind.record import increasing, WindRows
 
 
 def rows_of(times, speed=1.0):
-    rows = WindRows("file")
+    rows = WindRows('file')
     for number, time in enumerate(times, start=1):
         rows.add(number, time, (speed, 0.0, 0.0))
     return rows
@@ -20,7 +20,7 @@ def test_one_wrong_stamp_costs_one_sample():
     record = rows_of([0.0, 1.0, 900.0, 2.0, 3.0, -5.0, 4.0]).record()
     np.testing.assert_array_equal(record.time, [0, 1, 2, 3, 4])
     assert record.refused == 2
-    assert record.first_refused == "line 3: its time is out of order"
+    assert record.first_refused == 'line 3: its time is out of order'
 
 
 @settings(deadline=None)
@@ -37,18 +37,18 @@ def test_what_is_kept_increases_and_nothing_more_could_be(times):
 def test_impossible_speed_and_time_are_refused():
     rows = rows_of([0.0, 1.0])
     rows.add(7, 2.0, (0.0, 151.0, 0.0))
-    rows.add(8, float("nan"), (0.0, 1.0, 0.0))
-    rows.refuse(3, "broken")
+    rows.add(8, float('nan'), (0.0, 1.0, 0.0))
+    rows.refuse(3, 'broken')
     record = rows.record()
     assert (len(record.time), record.refused) == (2, 3)
-    assert record.first_refused == "line 3: broken"
+    assert record.first_refused == 'line 3: broken'
 
 
 def test_no_good_row():
-    rows = WindRows("file")
-    rows.refuse(5, "NAN")
+    rows = WindRows('file')
+    rows.refuse(5, 'NAN')
     with pytest.raises(
-        FormatError, match="file: no good row of wind, 1 refused; first line 5: NAN"
+        FormatError, match='file: no good row of wind, 1 refused; first line 5: NAN'
     ):
         rows.record()
 
@@ -56,5 +56,5 @@ def test_no_good_row():
 def test_time_starts_at_zero_and_arrays_are_read_only():
     record = rows_of([10.0, 10.5, 11.0]).record(epoch=100.0)
     assert (record.time[0], record.duration, record.period, record.epoch) == (0.0, 1.0, 0.5, 110.0)
-    with pytest.raises(ValueError, match="read-only"):
+    with pytest.raises(ValueError, match='read-only'):
         record.velocity[0, 0] = 1.0

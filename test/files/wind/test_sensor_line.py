@@ -12,17 +12,34 @@ from tree_sway_ros.files.wind.sensor_line import SensorLine
 from tree_sway_ros.files.wind.sonic_ascii import parse_sonic
 
 GOOD = [
-    "$IIMWV,270.0,T,10.0,M,A*0C",
-    "$WIMWD,270.0,T,265.0,M,19.438,N,10.0,M*58",
-    "$IIVWR,045.0,L,12.6,N,6.5,M,23.3,K*52",
-    "$IIVWT,030.0,R,10.1,N,5.2,M,18.7,K*4C",
-    "\x02Q,270,010.00,M,00,\x0318",
-    "\x02A,+003.00,+004.00,+001.00,M,+345.01,+022.36,00,\x0300",
-    "S  02.50 D 270 U -2.5 V 00.0 W 00.10 T 21.3 H 40.2",
+    '$IIMWV,270.0,T,10.0,M,A*0C',
+    '$WIMWD,270.0,T,265.0,M,19.438,N,10.0,M*58',
+    '$IIVWR,045.0,L,12.6,N,6.5,M,23.3,K*52',
+    '$IIVWT,030.0,R,10.1,N,5.2,M,18.7,K*4C',
+    '\x02Q,270,010.00,M,00,\x0318',
+    '\x02A,+003.00,+004.00,+001.00,M,+345.01,+022.36,00,\x0300',
+    'S  02.50 D 270 U -2.5 V 00.0 W 00.10 T 21.3 H 40.2',
 ]
 PIECES = [
-    *("", ",", "*", "$", "\x02", "\x03", "\x00", "\ud800", "é", "nan", "inf", "1e308", "-1e308"),
-    *("-0", "9" * 400, "R", "T", "L", "N", "M", "A", "V", "00", " ", "\r\n", "U", "D", "*ZZ", "*1"),
+    *('', ',', '*', '$', '\x02', '\x03', '\x00', '\ud800', 'é', 'nan', 'inf', '1e308', '-1e308'),
+    *(
+        '-0',
+        '9' * 400,
+        'R',
+        'T',
+        'L',
+        'N',
+        'M',
+        'A',
+        'V',
+        '00',
+        ' ',
+        '\r\n',
+        'U',
+        'D',
+        '*ZZ',
+        '*1',
+    ),
 ]
 
 
@@ -34,9 +51,9 @@ def fuzzed(rng: random.Random) -> str:
         if kind < 0.4:
             line = line[:at] + rng.choice(PIECES) + line[at:]
         elif kind < 0.7:
-            fields = line.split(",")
+            fields = line.split(',')
             fields[rng.randrange(len(fields))] = rng.choice(PIECES)
-            line = ",".join(fields)
+            line = ','.join(fields)
         elif kind < 0.85:
             line = line[:at] + line[until:]
         else:
@@ -58,7 +75,7 @@ def fuzz(n_lines: int, seed: int) -> tuple[int, int]:
                 assert 0 < len(said.refusal) < 200
                 refused += 1
             else:
-                assert said.refusal == ""
+                assert said.refusal == ''
                 assert all(math.isfinite(value) for value in said.velocity)
                 taken += 1
     return taken, refused

@@ -13,40 +13,40 @@ from tree_sway_ros.files.wind.wind_file import read_wind
 
 
 def gill(body: str) -> str:
-    return f"\x02{body}\x03{checksum_of(body)}\r\n"
+    return f'\x02{body}\x03{checksum_of(body)}\r\n'
 
 
 @pytest.mark.parametrize(
-    ("body", "checksum"),
+    ('body', 'checksum'),
     [
-        ("Q,229,002.74,M,00,", "16"),
-        ("A,+000.04,-000.02,M,+345.01,+022.36,00,", "25"),
-        ("A,121,000.08,M,+344.66,+021.76,00,", "06"),
+        ('Q,229,002.74,M,00,', '16'),
+        ('A,+000.04,-000.02,M,+345.01,+022.36,00,', '25'),
+        ('A,121,000.08,M,+344.66,+021.76,00,', '06'),
     ],
 )
 def test_the_examples_of_the_manuals_have_a_right_checksum(body, checksum):
-    assert parse_sonic(f"\x02{body}\x03{checksum}").refusal == ""
-    assert parse_sonic(f"\x02{body}\x0377").refusal == "wrong checksum"
+    assert parse_sonic(f'\x02{body}\x03{checksum}').refusal == ''
+    assert parse_sonic(f'\x02{body}\x0377').refusal == 'wrong checksum'
 
 
 @pytest.mark.parametrize(
-    ("line", "velocity"),
+    ('line', 'velocity'),
     [
-        (gill("Q,270,010.00,M,00,"), (10, 0, 0)),  # from the west, to the east
-        (gill("Q,000,010.00,N,00,"), (0, -10 * 1852 / 3600, 0)),
-        (gill("Q,,000.04,M,60,"), (0, -0.04, 0)),  # calm, without a direction
-        (gill("Q,090.5,003.000,-000.500,M,+345.01,+022.36,00,"), (-2.99989, 0.02618, -0.5)),
-        (gill("A,+003.00,-004.00,M,00,"), (4, 3, 0)),  # to the north, and from west to east
-        (gill("A,+003.00,+004.00,+001.00,M,+345.01,+022.36,00,+23.13C,"), (-4, 3, 1)),
-        ("Q,180,060.00,F,00,", (0, 0.3048, 0)),
-        ("S  02.50 D 270 U -2.5 V 00.0 W 00.10 T 21.3 H 40.2", (2.5, 0, 0.1)),
-        ("S 5.0, D 180, W 3.0, T 21", (0, 4, 3)),
-        ("S2 4.0 D 000 DV 2", (0, -4, 0)),
+        (gill('Q,270,010.00,M,00,'), (10, 0, 0)),  # from the west, to the east
+        (gill('Q,000,010.00,N,00,'), (0, -10 * 1852 / 3600, 0)),
+        (gill('Q,,000.04,M,60,'), (0, -0.04, 0)),  # calm, without a direction
+        (gill('Q,090.5,003.000,-000.500,M,+345.01,+022.36,00,'), (-2.99989, 0.02618, -0.5)),
+        (gill('A,+003.00,-004.00,M,00,'), (4, 3, 0)),  # to the north, and from west to east
+        (gill('A,+003.00,+004.00,+001.00,M,+345.01,+022.36,00,+23.13C,'), (-4, 3, 1)),
+        ('Q,180,060.00,F,00,', (0, 0.3048, 0)),
+        ('S  02.50 D 270 U -2.5 V 00.0 W 00.10 T 21.3 H 40.2', (2.5, 0, 0.1)),
+        ('S 5.0, D 180, W 3.0, T 21', (0, 4, 3)),
+        ('S2 4.0 D 000 DV 2', (0, -4, 0)),
     ],
 )
 def test_what_is_said(line, velocity):
     said = parse_sonic(line)
-    assert said.refusal == ""
+    assert said.refusal == ''
     np.testing.assert_allclose(said.velocity, velocity, atol=1e-4)
     x, y, z = said.velocity
     turned = parse_sonic(line, heading=pi / 2)  # the marker points to the east
@@ -54,24 +54,24 @@ def test_what_is_said(line, velocity):
 
 
 @pytest.mark.parametrize(
-    ("line", "refusal"),
+    ('line', 'refusal'),
     [
-        (gill("Q,270,010.00,M,00,").replace("270", "271"), "wrong checksum"),
-        (gill("Q,270,010.00,M,04,"), "status is '04', not 00"),
-        (gill("Q,270,010.00,M,"), "status is '', not 00"),
-        (gill("Q,270,010.00,X,00,"), "no unit of M, N, P, K or F"),
-        (gill("Q,,010.00,M,00,"), "direction ''"),
-        (gill("Q,400,010.00,M,00,"), "direction '400'"),
-        (gill("Q,270,-10.00,M,00,"), "speed '-10.00'"),
-        (gill("A,001.59,1,M,00,"), "neither components nor a direction: 001.59,1"),
-        (gill("A,+001.59,,M,00,"), "neither components nor a direction: +001.59,"),
-        ("Q,270,010.00,M,00," + " " * 2000, "a line of 2018 characters"),
-        ("S -99.9 D 270 U -99.9 V -99.9 W -99.9", "a speed below 0"),
-        ("S 2.5 D 999 W 0", "direction 999"),
-        ("S 2.5 U 2 V 1 W 0", "no direction D"),
-        ("S 2.5 D x W 0", "D is no number"),
-        ("S 2.5 D 90 U 20 V 0 W 0", "components of 20 m/s at a speed of 2.5"),
-        ("D 90 T 20", "no speed S, S2, or U and V"),
+        (gill('Q,270,010.00,M,00,').replace('270', '271'), 'wrong checksum'),
+        (gill('Q,270,010.00,M,04,'), "status is '04', not 00"),
+        (gill('Q,270,010.00,M,'), "status is '', not 00"),
+        (gill('Q,270,010.00,X,00,'), 'no unit of M, N, P, K or F'),
+        (gill('Q,,010.00,M,00,'), "direction ''"),
+        (gill('Q,400,010.00,M,00,'), "direction '400'"),
+        (gill('Q,270,-10.00,M,00,'), "speed '-10.00'"),
+        (gill('A,001.59,1,M,00,'), 'neither components nor a direction: 001.59,1'),
+        (gill('A,+001.59,,M,00,'), 'neither components nor a direction: +001.59,'),
+        ('Q,270,010.00,M,00,' + ' ' * 2000, 'a line of 2018 characters'),
+        ('S -99.9 D 270 U -99.9 V -99.9 W -99.9', 'a speed below 0'),
+        ('S 2.5 D 999 W 0', 'direction 999'),
+        ('S 2.5 U 2 V 1 W 0', 'no direction D'),
+        ('S 2.5 D x W 0', 'D is no number'),
+        ('S 2.5 D 90 U 20 V 0 W 0', 'components of 20 m/s at a speed of 2.5'),
+        ('D 90 T 20', 'no speed S, S2, or U and V'),
     ],
 )
 def test_what_is_refused(line, refusal):
@@ -79,32 +79,32 @@ def test_what_is_refused(line, refusal):
     assert (said.velocity, said.refusal) == (None, refusal)
 
 
-@pytest.mark.parametrize("line", ["", "\x02", "hello", "T 21.3 H 40", "$IIMWV,1,R,2,N,A", "1,2,3"])
+@pytest.mark.parametrize('line', ['', '\x02', 'hello', 'T 21.3 H 40', '$IIMWV,1,R,2,N,A', '1,2,3'])
 def test_what_is_not_about_the_wind(line):
     assert parse_sonic(line) is None
 
 
 def test_a_checksum_can_be_needed():
-    assert parse_sonic("Q,270,010.00,M,00,", need_checksum=True).refusal == "no checksum"
-    assert parse_sonic(gill("Q,270,010.00,M,00,"), need_checksum=True).refusal == ""
+    assert parse_sonic('Q,270,010.00,M,00,', need_checksum=True).refusal == 'no checksum'
+    assert parse_sonic(gill('Q,270,010.00,M,00,'), need_checksum=True).refusal == ''
 
 
 @pytest.mark.parametrize(
-    "lines",
+    'lines',
     [
-        [gill("Q,270,005.00,M,00,"), gill("Q,270,005.00,M,04,"), gill("Q,280,006.00,M,00,")],
-        ["S 5.0 D 270 W 0.0\n", "S 5.0 D 999 W 0.0\n", "S 6.0 D 280 W 0.0\n"],
+        [gill('Q,270,005.00,M,00,'), gill('Q,270,005.00,M,04,'), gill('Q,280,006.00,M,00,')],
+        ['S 5.0 D 270 W 0.0\n', 'S 5.0 D 999 W 0.0\n', 'S 6.0 D 280 W 0.0\n'],
     ],
-    ids=["gill", "trisonica"],
+    ids=['gill', 'trisonica'],
 )
 def test_a_log(tmp_path: Path, lines):
-    (tmp_path / "sonic.txt").write_text("start\n" + "".join(lines), newline="")
-    record = read_wind(tmp_path / "sonic.txt", rate=4.0)
+    (tmp_path / 'sonic.txt').write_text('start\n' + ''.join(lines), newline='')
+    record = read_wind(tmp_path / 'sonic.txt', rate=4.0)
     np.testing.assert_allclose(record.time, [0.0, 0.5])
     np.testing.assert_allclose(np.linalg.norm(record.velocity, axis=1), [5, 6])
     assert record.refused == 1
-    with pytest.raises(ParameterError, match="rate is 0 Hz"):
-        read_sonic_wind(tmp_path / "sonic.txt", rate=0.0)
-    (tmp_path / "sonic.txt").write_text("start\n")
-    with pytest.raises(FormatError, match="no sentence gill or trisonica"):
-        read_sonic_wind(tmp_path / "sonic.txt")
+    with pytest.raises(ParameterError, match='rate is 0 Hz'):
+        read_sonic_wind(tmp_path / 'sonic.txt', rate=0.0)
+    (tmp_path / 'sonic.txt').write_text('start\n')
+    with pytest.raises(FormatError, match='no sentence gill or trisonica'):
+        read_sonic_wind(tmp_path / 'sonic.txt')

@@ -11,8 +11,8 @@ mujoco``)::
 Writes ``forked_tips.npz`` beside this file: `wind` (t, 3) in [m/s], one mean a frame of 1/60 s;
 tips (t / 2, 40, 3) in [m] at every other frame, `same` with the springs of the articulated
 reference and `beam` with all of them scaled to the beam's static sway; `agreement` of the latter
-with the beam model (first frequency, static sway); and `step_error`, tip error over tip motion when
-the step is doubled.
+with the beam model (first frequency, static sway); and `step_error`, tip error over tip motion
+when the step is doubled.
 
 """
 
@@ -26,7 +26,7 @@ from tree_sway_ros.study.example_trees import forked_tree
 from tree_sway_ros.study.tip_error import tip_error
 
 FRAME, STEPS = 1.0 / 60.0, 32
-SPECIES = Species("forked", "no twist", 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)
+SPECIES = Species('forked', 'no twist', 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)
 DAMPING = 0.05
 
 
@@ -60,15 +60,15 @@ def main():
     doubled = record(model, wind, STEPS // 2)
     error = tip_error(tree, doubled, beam)
     np.savez_compressed(
-        Path(__file__).with_name("forked_tips.npz"),
+        Path(__file__).with_name('forked_tips.npz'),
         wind=wind,
         same=same.astype(np.float32),
         beam=beam.astype(np.float32),
         agreement=agreement,
         step_error=error,
     )
-    print(f"agreement with the beam {agreement}, error of a doubled step {error:.2e}")
+    print(f'agreement with the beam {agreement}, error of a doubled step {error:.2e}')
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -18,15 +18,15 @@ from tree_sway_ros.study.example_trees import forked_tree
 from tree_sway_ros.study.tip_error import record_tips, tip_error
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05
-SPECIES = Species("forked", "no twist", 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)
+SPECIES = Species('forked', 'no twist', 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def golden():
-    return np.load(Path(__file__).with_name("forked_tips.npz"))
+    return np.load(Path(__file__).with_name('forked_tips.npz'))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def tree():
     return forked_tree(0.5, 0.6)
 
@@ -37,8 +37,8 @@ def error_of(model, tree, wind, truth, substeps=1):
 
 
 def test_golden_data_is_converged_and_agrees_with_the_beam(golden):
-    assert golden["step_error"] < 1e-3
-    assert golden["agreement"] == pytest.approx([1.0, 1.0], abs=0.01)
+    assert golden['step_error'] < 1e-3
+    assert golden['agreement'] == pytest.approx([1.0, 1.0], abs=0.01)
 
 
 def test_articulated_tree_is_the_same_mechanism(golden, tree):
@@ -50,32 +50,32 @@ def test_articulated_tree_is_the_same_mechanism(golden, tree):
         air_density=AIR_DENSITY,
         drag_coefficient=1.2,
     )
-    assert error_of(model, tree, golden["wind"], golden["same"], substeps=2) < 5e-3
+    assert error_of(model, tree, golden['wind'], golden['same'], substeps=2) < 5e-3
 
 
-@pytest.mark.parametrize("model", ["modes", "coupled"])
+@pytest.mark.parametrize('model', ['modes', 'coupled'])
 def test_reduced_tree_errs_by_less_than_a_twentieth(golden, tree, model):
     model = SwaySimulator(
         tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
     )
-    assert error_of(model, tree, golden["wind"], golden["beam"]) < 0.05
+    assert error_of(model, tree, golden['wind'], golden['beam']) < 0.05
 
 
 def test_uncoupled_branches_are_caught(golden, tree):
     model = SwaySimulator(
-        tree, SPECIES, model="branch", damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
+        tree, SPECIES, model='branch', damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
     )
-    assert error_of(model, tree, golden["wind"], golden["beam"]) > 0.5
+    assert error_of(model, tree, golden['wind'], golden['beam']) > 0.5
 
 
 def test_live_engine_repeats_the_golden_tips(golden, tree):
-    pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
     from tree_sway_ros.study.compare.with_mujoco import mujoco_tips
 
     frames = 6
     model = MujocoTree(tree, SPECIES, DAMPING)
-    tips = mujoco_tips(model, golden["wind"][:frames], 16)[1::2]
+    tips = mujoco_tips(model, golden['wind'][:frames], 16)[1::2]
     # Half the golden data's steps.
-    assert tip_error(tree, tips, golden["beam"][: frames // 2].astype(np.float64)) < 0.02
-    assert model.agreement() == pytest.approx(golden["agreement"], rel=1e-6)
+    assert tip_error(tree, tips, golden['beam'][: frames // 2].astype(np.float64)) < 0.02
+    assert model.agreement() == pytest.approx(golden['agreement'], rel=1e-6)

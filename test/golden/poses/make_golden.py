@@ -8,8 +8,8 @@ Make the golden poses: every built-in tree, bare, in 60 s of simulated wind, in 
     from the stored one
 
 The digest of all frames is the same bit for bit only on one kind of processor with one version of
-numba; a restructuring is checked by it, on one machine, before and after. What the test compares on
-any machine are the sampled poses in golden.npz, within rounding.
+numba; a restructuring is checked by it, on one machine, before and after. What the test compares
+on any machine are the sampled poses in golden.npz, within rounding.
 
 """
 
@@ -17,17 +17,17 @@ from __future__ import annotations
 
 import hashlib
 import json
-import sys
 from pathlib import Path
+import sys
 
 import numpy as np
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 
 FOLDER = Path(__file__).resolve().parent
-MODELS = ("branch", "subtree", "modes", "coupled")
+MODELS = ('branch', 'subtree', 'modes', 'coupled')
 RATE, SECONDS = 60, 60
 EVERY = 600
 """Steps from one sampled frame to the next."""
@@ -56,18 +56,18 @@ def main() -> int:
     digests, sampled = {}, {}
     for tree_name in BUILTIN_TREES:
         for model in MODELS:
-            name = f"{tree_name}_{model}"
+            name = f'{tree_name}_{model}'
             digests[name], sampled[name] = run(tree_name, model)
             print(name, digests[name], flush=True)
-    if "--check" in sys.argv[1:]:
-        stored = json.loads((FOLDER / "digests.json").read_text(encoding="utf-8"))
+    if '--check' in sys.argv[1:]:
+        stored = json.loads((FOLDER / 'digests.json').read_text(encoding='utf-8'))
         differing = [name for name in digests if digests[name] != stored.get(name)]
-        print("differing: " + (", ".join(differing) or "none"))
+        print('differing: ' + (', '.join(differing) or 'none'))
         return int(bool(differing))
-    (FOLDER / "digests.json").write_text(json.dumps(digests, indent=2) + "\n", encoding="utf-8")
-    np.savez_compressed(FOLDER / "golden.npz", **sampled)
+    (FOLDER / 'digests.json').write_text(json.dumps(digests, indent=2) + '\n', encoding='utf-8')
+    np.savez_compressed(FOLDER / 'golden.npz', **sampled)
     return 0
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     sys.exit(main())

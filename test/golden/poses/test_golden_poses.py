@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 
 FOLDER = Path(__file__).resolve().parent
-MAKER = importlib.util.spec_from_file_location("make_golden", FOLDER / "make_golden.py")
+MAKER = importlib.util.spec_from_file_location('make_golden', FOLDER / 'make_golden.py')
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def maker():
     module = importlib.util.module_from_spec(MAKER)
     MAKER.loader.exec_module(module)
     return module
 
 
-@pytest.mark.parametrize("tree_name", ["goldcrest", "broadleaf"])
-@pytest.mark.parametrize("model", ["branch", "subtree", "modes", "coupled"])
+@pytest.mark.parametrize('tree_name', ['goldcrest', 'broadleaf'])
+@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled'])
 def test_ten_seconds_of_wind_end_where_they_did(maker, tree_name, model):
-    golden = np.load(FOLDER / "golden.npz")[f"{tree_name}_{model}"]
+    golden = np.load(FOLDER / 'golden.npz')[f'{tree_name}_{model}']
     _, found = maker.run(tree_name, model, seconds=10)
     assert len(found) == 1
     assert np.abs(found[0] - golden[0]).max() < 1e-9

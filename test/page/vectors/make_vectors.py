@@ -7,8 +7,8 @@ Make the test vectors that Python and JavaScript both read: a description, frame
 
 The scene is small but has all that placing knows: enriched branches with further shapes and
 twists, a tree whose twigs move with their parents as one body, deep bending, two kinds, of one of
-which a second tree stands turned and scaled. The poses are placed by the solver from key rotations,
-not by a decoder of frames.
+which a second tree stands turned and scaled. The poses are placed by the solver from key
+rotations, not by a decoder of frames.
 
 """
 
@@ -31,15 +31,15 @@ from tree_sway_ros.core.tree.building import tree_from_segments
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.page.description import describe_scene
-from tree_sway_ros.page.protocol import PAUSED, Frame, decode_description, encode_frame, quantised
+from tree_sway_ros.page.protocol import decode_description, encode_frame, Frame, PAUSED, quantised
 
 HERE = Path(__file__).parent
 N_COORDINATES = 5
-SETTINGS = Settings(model="coupled", enrich="all")
+SETTINGS = Settings(model='coupled', enrich='all')
 TREES = (
-    ("left", 0, (0.0, 0.0, 0.0, 0.0, 1.0)),
-    ("right", 1, (1.5, 0.0, 0.0, 0.0, 1.0)),
-    ("turned", 0, (-2.0, 1.0, 0.25, 2.2, 1.4)),
+    ('left', 0, (0.0, 0.0, 0.0, 0.0, 1.0)),
+    ('right', 1, (1.5, 0.0, 0.0, 0.0, 1.0)),
+    ('turned', 0, (-2.0, 1.0, 0.25, 2.2, 1.4)),
 )
 """Name, kind and place of each tree."""
 
@@ -70,7 +70,7 @@ def small_tree(name: str, x: float) -> Tree:
 
 def simulators() -> list[SwaySimulator]:
     """A tree that moves all over, and one whose twig is frozen."""
-    first, second = small_tree("left", 0.0), small_tree("right", 1.5)
+    first, second = small_tree('left', 0.0), small_tree('right', 1.5)
     species = species_named(first.species)
     frozen = np.array([name == second.branch_names[-1] for name in second.branch_names])
     part = PartlyFrozenTree(CalibratedTree(second, species, SETTINGS), frozen)
@@ -96,7 +96,7 @@ def main() -> None:
     rng = np.random.default_rng(7)
     kinds = []
     for simulator in simulators():
-        size = int(simulator.joints["n_coordinates"].sum()), N_COORDINATES
+        size = int(simulator.joints['n_coordinates'].sum()), N_COORDINATES
         basis = SimpleNamespace(
             matrix=rng.normal(0.0, 0.1, size).astype(np.float32),
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
@@ -108,9 +108,9 @@ def main() -> None:
         kinds[kind].places.append(place)
     leaves = leaf_clusters(kinds[0].simulator.tree, np.random.default_rng(0), count=6)
     names = [name for name, _, _ in TREES]
-    data = describe_scene("forest", kinds, names, leaves=[leaves, None])  # type: ignore[arg-type]
+    data = describe_scene('forest', kinds, names, leaves=[leaves, None])  # type: ignore[arg-type]
     description = decode_description(data)
-    (HERE / "description.bin").write_bytes(data)
+    (HERE / 'description.bin').write_bytes(data)
     scale = np.concatenate([kinds[kind].basis.scale for _, kind, _ in TREES]).astype(np.float64)
     expected = []
     for number, size in enumerate((0.0, 0.3, 0.9, 3.0)):
@@ -120,7 +120,7 @@ def main() -> None:
         flags = PAUSED if number == 1 else 0
         stamp = 1_700_000_000_000_000_000 + 16_666_667 * number
         frame = Frame(description.short_identity, 2**32 - 2 + number, stamp, flags, wind, steps)
-        (HERE / f"frame{number}.bin").write_bytes(encode_frame(frame))
+        (HERE / f'frame{number}.bin').write_bytes(encode_frame(frame))
         told = steps * (scale / 32767)
         poses = [
             placed(kinds[kind], part, place)
@@ -128,17 +128,17 @@ def main() -> None:
         ]
         expected.append(
             {
-                "sequence": (2**32 - 2 + number) % 2**32,
-                "stamp_ns": str(stamp),
-                "flags": flags,
-                "wind": wind.tolist(),
-                "coordinates": np.round(told, 9).tolist(),
-                "poses": np.round(np.vstack(poses), 7).tolist(),
+                'sequence': (2**32 - 2 + number) % 2**32,
+                'stamp_ns': str(stamp),
+                'flags': flags,
+                'wind': wind.tolist(),
+                'coordinates': np.round(told, 9).tolist(),
+                'poses': np.round(np.vstack(poses), 7).tolist(),
             }
         )
-    content = {"identity": description.identity, "frames": expected}
-    (HERE / "expected.json").write_text(json.dumps(content, indent=None) + "\n", encoding="utf-8")
+    content = {'identity': description.identity, 'frames': expected}
+    (HERE / 'expected.json').write_text(json.dumps(content, indent=None) + '\n', encoding='utf-8')
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

@@ -51,30 +51,30 @@ def hear():
 
 @pytest.fixture
 def server():
-    with socket.create_server(("127.0.0.1", 0)) as made:
+    with socket.create_server(('127.0.0.1', 0)) as made:
         made.settimeout(10.0)
         yield made
 
 
 def test_a_link_that_breaks_is_taken_up_again(hear, server):
-    heard = hear(Address("tcp", *server.getsockname()))
-    for line in ("one", "two"):
+    heard = hear(Address('tcp', *server.getsockname()))
+    for line in ('one', 'two'):
         connection, _ = server.accept()
-        connection.sendall(f"{line}\r\n".encode())
+        connection.sendall(f'{line}\r\n'.encode())
         heard.until(lambda line=line: line in heard.lines)
         connection.close()
-    heard.until(lambda: any("closed by the other side" in text for text in heard.said))
-    assert heard.lines == ["one", "two"]
+    heard.until(lambda: any('closed by the other side' in text for text in heard.said))
+    assert heard.lines == ['one', 'two']
     assert heard.source.links >= 2
 
 
 def test_a_link_that_falls_silent_is_made_anew(hear, server):
-    heard = hear(Address("tcp", *server.getsockname()), silence=0.1)
+    heard = hear(Address('tcp', *server.getsockname()), silence=0.1)
     first, _ = server.accept()
     second, _ = server.accept()
-    second.sendall(b"again\n")
-    heard.until(lambda: heard.lines == ["again"])
-    assert any("nothing for 0.1 s" in text for text in heard.said)
+    second.sendall(b'again\n')
+    heard.until(lambda: heard.lines == ['again'])
+    assert any('nothing for 0.1 s' in text for text in heard.said)
     first.close()
     second.close()
 
@@ -85,12 +85,14 @@ def test_it_ends_though_a_chunk_comes_with_the_end(monkeypatch):
     async def late(source):
         source._gain()
         await told.wait()
-        source._loop.call_soon(cancel)  # meets the chunk: `wait_for` returns it and cancels nothing
-        yield b"late\n"
+        source._loop.call_soon(
+            cancel
+        )  # meets the chunk: `wait_for` returns it and cancels nothing
+        yield b'late\n'
         await asyncio.sleep(3600.0)
 
-    monkeypatch.setitem(line_source._READERS, "tcp", late)
-    heard = Heard(Address("tcp", "nowhere", 1))
+    monkeypatch.setitem(line_source._READERS, 'tcp', late)
+    heard = Heard(Address('tcp', 'nowhere', 1))
     heard.until(lambda: heard.source.is_up)
     cancel, heard.source._cancel = heard.source._cancel, told.set
     heard.source.stop()
@@ -100,30 +102,30 @@ def test_it_ends_though_a_chunk_comes_with_the_end(monkeypatch):
 def test_nobody_there_is_said_once_and_tried_again(hear, server):
     address = server.getsockname()
     server.close()
-    heard = hear(Address("tcp", *address))
+    heard = hear(Address('tcp', *address))
     heard.until(lambda: heard.said)
     with socket.create_server(address) as again:
         again.settimeout(10.0)
         connection, _ = again.accept()
-        connection.sendall(b"hello\n")
-        heard.until(lambda: heard.lines == ["hello"])
+        connection.sendall(b'hello\n')
+        heard.until(lambda: heard.lines == ['hello'])
         connection.close()
-    assert sum("Connect" in text for text in heard.said) == 1
+    assert sum('Connect' in text for text in heard.said) == 1
 
 
 def test_datagrams_are_lines(hear):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
+        probe.bind(('127.0.0.1', 0))
         address = probe.getsockname()
-    heard = hear(Address("udp", *address))
+    heard = hear(Address('udp', *address))
     heard.until(lambda: heard.source.is_up)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-        sender.sendto(b"$WIMWD,1", address)
-        sender.sendto(b"a\r\nb\r\n", address)
-    heard.until(lambda: heard.lines == ["$WIMWD,1", "a", "b"])
+        sender.sendto(b'$WIMWD,1', address)
+        sender.sendto(b'a\r\nb\r\n', address)
+    heard.until(lambda: heard.lines == ['$WIMWD,1', 'a', 'b'])
 
 
 def test_a_serial_port_needs_pyserial(monkeypatch):
-    monkeypatch.setitem(sys.modules, "serial", None)
-    with pytest.raises(MissingDependencyError, match="pip install pyserial"):
-        LineSource(Address("serial", "/dev/ttyUSB0", 4800), print, print)
+    monkeypatch.setitem(sys.modules, 'serial', None)
+    with pytest.raises(MissingDependencyError, match='pip install pyserial'):
+        LineSource(Address('serial', '/dev/ttyUSB0', 4800), print, print)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-pytest.importorskip("rclpy")
+pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
 from rcl_interfaces.msg import ParameterType  # noqa: E402
@@ -16,12 +16,12 @@ from tree_sway_ros.ros.parameters.declaration import ParameterValues  # noqa: E4
 from tree_sway_ros.ros.parameters.parameter import Parameter  # noqa: E402
 
 TABLE = (
-    Parameter("rate", 60.0, "Rate.", "Hz", 1.0, 1000.0),
-    Parameter("delay", 0.1, "Delay.", "s", 0.0, 2.0, live=True),
-    Parameter("every", 1, "Every.", "", 1, 10, live=True),
-    Parameter("normal", (0.0, 0.0, 1.0), "Normal.", "", -1.0, 1.0, live=True),
-    Parameter("kind", "to", "Kind.", choices=("to", "from")),
-    Parameter("on", False, "On.", live=True),
+    Parameter('rate', 60.0, 'Rate.', 'Hz', 1.0, 1000.0),
+    Parameter('delay', 0.1, 'Delay.', 's', 0.0, 2.0, live=True),
+    Parameter('every', 1, 'Every.', '', 1, 10, live=True),
+    Parameter('normal', (0.0, 0.0, 1.0), 'Normal.', '', -1.0, 1.0, live=True),
+    Parameter('kind', 'to', 'Kind.', choices=('to', 'from')),
+    Parameter('on', False, 'On.', live=True),
 )
 
 
@@ -31,7 +31,7 @@ def declare(context):
 
     def make(on_change=None, is_own=lambda name: True, **overrides):
         node = Node(
-            "some",
+            'some',
             context=context,
             automatically_declare_parameters_from_overrides=True,
             parameter_overrides=[RosParameter(k, value=v) for k, v in overrides.items()],
@@ -51,29 +51,29 @@ def change(node, name, value):
 
 def test_defaults_and_overrides(declare):
     node, values = declare(rate=40, normal=[0, 1, 0])
-    assert values["rate"] == 40.0
-    assert type(values["rate"]) is float
-    assert values["normal"] == (0.0, 1.0, 0.0)
-    assert values("delay", "kind") == {"delay": 0.1, "kind": "to"}
-    assert node.get_parameter("every").value == 1
+    assert values['rate'] == 40.0
+    assert type(values['rate']) is float
+    assert values['normal'] == (0.0, 1.0, 0.0)
+    assert values('delay', 'kind') == {'delay': 0.1, 'kind': 'to'}
+    assert node.get_parameter('every').value == 1
 
 
 def test_descriptors_tell_unit_and_range(declare):
     node, _ = declare()
-    rate, every = node.describe_parameter("rate"), node.describe_parameter("every")
-    assert rate.description == "Rate. [Hz]"
-    assert "read at start only" in rate.additional_constraints
+    rate, every = node.describe_parameter('rate'), node.describe_parameter('every')
+    assert rate.description == 'Rate. [Hz]'
+    assert 'read at start only' in rate.additional_constraints
     assert rate.floating_point_range[0].to_value == 1000.0
     assert every.integer_range[0].from_value == 1
     assert every.type == ParameterType.PARAMETER_INTEGER
 
 
 @pytest.mark.parametrize(
-    ("overrides", "message"),
+    ('overrides', 'message'),
     [
-        ({"rats": 1.0}, "did you mean 'rate'"),
-        ({"rate": 0.5}, "1 .. 1000"),
-        ({"kind": "fro"}, "from"),
+        ({'rats': 1.0}, "did you mean 'rate'"),
+        ({'rate': 0.5}, '1 .. 1000'),
+        ({'kind': 'fro'}, 'from'),
     ],
 )
 def test_a_bad_start_is_refused(declare, overrides, message):
@@ -84,21 +84,21 @@ def test_a_bad_start_is_refused(declare, overrides, message):
 def test_a_live_change_is_taken_and_told(declare):
     told = []
     node, values = declare(told.append)
-    assert change(node, "delay", 1).successful
-    assert values["delay"] == 1.0
-    assert told == [{"delay": 1.0}]
+    assert change(node, 'delay', 1).successful
+    assert values['delay'] == 1.0
+    assert told == [{'delay': 1.0}]
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "reason"),
+    ('name', 'value', 'reason'),
     [
-        ("delay", 3.0, "out of range"),
-        ("delay", 3, "out of range"),
-        ("delay", "soon", "not a number"),
-        ("delay", None, "not a number"),
-        ("every", 1.5, "not a whole number"),
-        ("rate", 30.0, "read-only parameter: rate"),
-        ("normal", [0.0, 1.0], "not 3 numbers"),
+        ('delay', 3.0, 'out of range'),
+        ('delay', 3, 'out of range'),
+        ('delay', 'soon', 'not a number'),
+        ('delay', None, 'not a number'),
+        ('every', 1.5, 'not a whole number'),
+        ('rate', 30.0, 'read-only parameter: rate'),
+        ('normal', [0.0, 1.0], 'not 3 numbers'),
     ],
 )
 def test_a_bad_change_is_refused_with_the_reason(declare, name, value, reason):
@@ -115,7 +115,7 @@ def test_a_bad_change_is_refused_with_the_reason(declare, name, value, reason):
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("delay", 1), ("every", 2.0), ("on", 1), ("on", "True")]
+    ('name', 'value'), [('delay', 1), ('every', 2.0), ('on', 1), ('on', 'True')]
 )
 def test_a_value_keeps_its_kind_in_ros_too(declare, name, value):
     """A double that was set to 1 is still a double: the next 1.5 is taken."""
@@ -124,27 +124,27 @@ def test_a_value_keeps_its_kind_in_ros_too(declare, name, value):
     assert change(node, name, value).successful
     assert node.get_parameter(name).type_ == kind
     assert type(values[name]) is type(node.get_parameter(name).value)
-    assert change(node, "delay", 1.5).successful
+    assert change(node, 'delay', 1.5).successful
 
 
 def test_what_is_read_at_the_start_is_read_only(declare):
     node, _ = declare()
-    assert node.describe_parameter("rate").read_only
-    assert not node.describe_parameter("delay").read_only
+    assert node.describe_parameter('rate').read_only
+    assert not node.describe_parameter('delay').read_only
 
 
-@pytest.mark.parametrize("overrides", [{"rats": 1.0}, {"rate": 0.5}, {"kind": 3}])
+@pytest.mark.parametrize('overrides', [{'rats': 1.0}, {'rate': 0.5}, {'kind': 3}])
 def test_what_was_set_for_every_node_kills_none(declare, overrides):
     node, values = declare(is_own=lambda name: False, **overrides)
-    assert values["rate"] == 60.0
-    assert values["kind"] == "to"
-    assert not node.has_parameter("rats")
+    assert values['rate'] == 60.0
+    assert values['kind'] == 'to'
+    assert not node.has_parameter('rats')
 
 
 def test_the_quality_of_service_of_a_topic_can_be_told(context):
     overrides = {
-        "qos_overrides./wind/filtered.publisher.depth": 3,
-        "qos_overrides./wind.subscription.reliability": "reliable",
+        'qos_overrides./wind/filtered.publisher.depth': 3,
+        'qos_overrides./wind.subscription.reliability': 'reliable',
     }
     node = WindNode(
         context=context,
@@ -152,6 +152,6 @@ def test_the_quality_of_service_of_a_topic_can_be_told(context):
         use_global_arguments=False,
     )
     by_name = {each.topic_name: each for each in (*node.publishers, *node.subscriptions)}
-    assert by_name["/wind/filtered"].qos_profile.depth == 3
-    assert by_name["/wind"].qos_profile.reliability == ReliabilityPolicy.RELIABLE
+    assert by_name['/wind/filtered'].qos_profile.depth == 3
+    assert by_name['/wind'].qos_profile.reliability == ReliabilityPolicy.RELIABLE
     node.close()

@@ -19,10 +19,10 @@ with Ending():
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_process_deep_in_native_code_ends_in_time_and_well(number):
-    process = subprocess.Popen([sys.executable, "-c", DEAF], stdout=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "ready\n"
+    process = subprocess.Popen([sys.executable, '-c', DEAF], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == 'ready\n'
     begin = time.monotonic()
     process.send_signal(number)
     assert process.wait(30.0) == 0
@@ -43,8 +43,8 @@ with Ending() as ending:
 
 
 def test_a_process_that_holds_the_interpreter_ends_in_time():
-    process = subprocess.Popen([sys.executable, "-c", HOLDING], stdout=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "ready\n"
+    process = subprocess.Popen([sys.executable, '-c', HOLDING], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == 'ready\n'
     begin = time.monotonic()
     process.send_signal(signal.SIGTERM)
     process.wait(30.0)
@@ -56,7 +56,7 @@ def test_it_breaks_in_until_there_is_a_loop_that_looks():
     hook = sys.unraisablehook
     with Ending() as ending:
         signal.raise_signal(signal.SIGTERM)
-        pytest.fail("it goes on")
+        pytest.fail('it goes on')
     assert ending.is_asked
     sys.unraisablehook = hook
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
@@ -77,12 +77,12 @@ def test_what_is_broken_off_may_complain_of_anything():
         try:
             signal.raise_signal(signal.SIGTERM)
         except KeyboardInterrupt:
-            raise RuntimeError("no compiled object yet") from None
+            raise RuntimeError('no compiled object yet') from None
     signal.signal(signal.SIGTERM, before)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.unraisablehook = hook
-    with pytest.raises(RuntimeError, match="a bug"), Ending():
-        raise RuntimeError("a bug")
+    with pytest.raises(RuntimeError, match='a bug'), Ending():
+        raise RuntimeError('a bug')
 
 
 def test_without_a_signal_the_handlers_are_as_before():

@@ -6,19 +6,19 @@ from tree_sway_ros.ros.process.topics import (
     CLOCK,
     DIAGNOSTICS,
     MARKERS,
+    message_class,
+    qos_profile,
     SEGMENT_POSES,
     TF,
     TF_STATIC,
     TOPICS,
     TREE_DESCRIPTION,
     WIND,
-    message_class,
-    qos_profile,
 )
 
 
 def test_names_are_relative_but_those_that_ros_fixes():
-    absolute = {topic.name for topic in TOPICS if topic.name.startswith("/")}
+    absolute = {topic.name for topic in TOPICS if topic.name.startswith('/')}
     assert absolute == {DIAGNOSTICS.name, CLOCK.name, TF.name, TF_STATIC.name}
 
 
@@ -40,9 +40,9 @@ def test_the_description_waits_for_late_joiners():
 
 @pytest.mark.ros
 @pytest.mark.parametrize(
-    "topic", [t for t in TOPICS if "tf2" not in t.type_name], ids=lambda t: t.name
+    'topic', [t for t in TOPICS if 'tf2' not in t.type_name], ids=lambda t: t.name
 )
 def test_types_and_qos_exist(topic):
-    pytest.importorskip("rclpy")
-    assert message_class(topic).__name__ == topic.type_name.rsplit("/", 1)[-1]
+    pytest.importorskip('rclpy')
+    assert message_class(topic).__name__ == topic.type_name.rsplit('/', 1)[-1]
     assert qos_profile(topic).depth == topic.depth

@@ -2,20 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-pytest.importorskip("rclpy")
+pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402
 
-from tree_sway_ros.core.wind.gate import SECOND, GateCounts, WindGate  # noqa: E402
+from tree_sway_ros.core.wind.gate import GateCounts, SECOND, WindGate  # noqa: E402
 from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
 from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
 from tree_sway_ros.ros.reports.diagnostics import (  # noqa: E402
     OK,
     STALE,
-    WARN,
     Status,
     status_array,
+    WARN,
 )
 from tree_sway_ros.ros.reports.sway_report import SwayReport  # noqa: E402
 from tree_sway_ros.ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
@@ -37,20 +37,20 @@ class Clock:
 @pytest.fixture
 def clock(monkeypatch):
     made = Clock()
-    monkeypatch.setattr(wind_report, "time", made)
+    monkeypatch.setattr(wind_report, 'time', made)
     return made
 
 
 def test_a_status_becomes_a_message():
-    status = Status("wind", WARN, "late", {"age [s]": 1.23456789, "count": 3, "kind": "a"})
-    message = status_array([status], prefix="oak/solver", hardware="oak", stamp=Time(sec=5))
+    status = Status('wind', WARN, 'late', {'age [s]': 1.23456789, 'count': 3, 'kind': 'a'})
+    message = status_array([status], prefix='oak/solver', hardware='oak', stamp=Time(sec=5))
     (item,) = message.status
-    assert (item.level, item.name, item.message) == (b"\x01", "oak/solver: wind", "late")
-    assert item.hardware_id == "oak"
+    assert (item.level, item.name, item.message) == (b'\x01', 'oak/solver: wind', 'late')
+    assert item.hardware_id == 'oak'
     assert {pair.key: pair.value for pair in item.values} == {
-        "age [s]": "1.23457",
-        "count": "3",
-        "kind": "a",
+        'age [s]': '1.23457',
+        'count': '3',
+        'kind': 'a',
     }
     assert message.header.stamp.sec == 5
 
@@ -74,7 +74,7 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.status(TIMEOUT, gate).level == OK
 
 
-@pytest.mark.parametrize("burst", [1, 3])
+@pytest.mark.parametrize('burst', [1, 3])
 def test_a_slow_sensor_is_late_by_its_own_periods(clock, burst):
     """Also where it is a logger that sends some samples at once."""
     report, gate, timeout = WindReport(), WindGate(), 0.5
@@ -100,12 +100,12 @@ def test_dropouts_make_no_slow_sensor(clock):
 
 def test_refused_samples_are_no_wind(clock):
     report, gate = WindReport(), WindGate()
-    gate.offer(SECOND, (float("nan"), 0.0, 0.0))
+    gate.offer(SECOND, (float('nan'), 0.0, 0.0))
     report.add(False)
     status = report.status(TIMEOUT, gate)
     assert status.level == WARN
-    assert "1 samples refused" in status.message
-    assert status.values["not_finite"] == 1
+    assert '1 samples refused' in status.message
+    assert status.values['not_finite'] == 1
 
 
 def test_a_frozen_sensor_is_named(clock):
@@ -114,7 +114,7 @@ def test_a_frozen_sensor_is_named(clock):
         gate.offer(SECOND + k * SECOND // 20, (3.0, 0.0, 0.0))
         report.add(True)
     status = report.status(TIMEOUT, gate)
-    assert (status.level, status.message[:6]) == (WARN, "frozen")
+    assert (status.level, status.message[:6]) == (WARN, 'frozen')
 
 
 def test_a_sluggish_sensor_is_named_and_its_samples_are_taken(clock):
@@ -123,8 +123,8 @@ def test_a_sluggish_sensor_is_named_and_its_samples_are_taken(clock):
         assert gate.offer(SECOND + k * SECOND, (0.1 * k, 0.0, 0.0)).accepted
         report.add(True)
     status = report.status(TIMEOUT, gate)
-    assert (status.level, status.message[:8]) == (WARN, "sluggish")
-    assert status.values["sluggish"] == 1
+    assert (status.level, status.message[:8]) == (WARN, 'sluggish')
+    assert status.values['sluggish'] == 1
 
 
 def pace(skipped, silence=0.0):
@@ -136,27 +136,27 @@ def test_frames_that_are_skipped_are_a_warning_until_it_keeps_up():
     assert report._output(pace(0), 60.0, 60, False).level == OK
     late = report._output(pace(30), 60.0, 90, False)
     assert late.level == WARN
-    assert "30 frames skipped, 2.0 ms late" in late.message
+    assert '30 frames skipped, 2.0 ms late' in late.message
     assert report._output(pace(30), 60.0, 150, False).level == OK
 
 
 def test_a_stream_that_stands_is_a_warning_unless_simulated_time_does():
     report = SwayReport()
     standing = report._output(pace(0, silence=5.0), 60.0, 60, False)
-    assert (standing.level, standing.message) == (WARN, "no frame for 5.0 s")
+    assert (standing.level, standing.message) == (WARN, 'no frame for 5.0 s')
     assert report._output(pace(0, silence=5.0), 60.0, 60, True).level == OK
 
 
 @pytest.mark.parametrize(
-    ("state", "level"),
-    [("none", WARN), ("live", OK), ("holding", OK), ("decaying", WARN), ("stale", STALE)],
+    ('state', 'level'),
+    [('none', WARN), ('live', OK), ('holding', OK), ('decaying', WARN), ('stale', STALE)],
 )
 def test_every_state_of_the_wind_has_a_level(state, level):
     from tree_sway_ros.ros.reports.sway_report import _wind
 
     status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))
     assert status.level == level
-    assert (status.values["refused"], status.values["spike"]) == (3, 2)
+    assert (status.values['refused'], status.values['spike']) == (3, 2)
 
 
 def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
@@ -165,4 +165,4 @@ def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
         history.push((8.0, 0.0, 0.0), 1.0 / 60.0)
         status = sway_report._gusts(history)
         assert status.level == level
-    assert "too far downwind" in status.message
+    assert 'too far downwind' in status.message

@@ -10,25 +10,25 @@ from tree_sway_ros.ros.timing.handshake import Answers, Audience, Reach, require
 
 
 def test_topics_with_and_without_a_number():
-    assert required("wind wind/filtered /clock:2") == {"wind": 1, "wind/filtered": 1, "/clock": 2}
-    assert required("") == {}
-    for wrong in ("wind:two", ":2"):
-        with pytest.raises(ParameterError, match="names no topic and number"):
+    assert required('wind wind/filtered /clock:2') == {'wind': 1, 'wind/filtered': 1, '/clock': 2}
+    assert required('') == {}
+    for wrong in ('wind:two', ':2'):
+        with pytest.raises(ParameterError, match='names no topic and number'):
             required(wrong)
 
 
 def test_an_audience_is_there_once_all_have_listened_for_a_while(monkeypatch):
-    now, here, said = [100.0], {"wind": 1, "/clock": 1}, []
-    monkeypatch.setattr(handshake.time, "monotonic", lambda: now[0])
-    audience = Audience({"wind": 1, "/clock": 2}, here.__getitem__, said.append)
+    now, here, said = [100.0], {'wind': 1, '/clock': 1}, []
+    monkeypatch.setattr(handshake.time, 'monotonic', lambda: now[0])
+    audience = Audience({'wind': 1, '/clock': 2}, here.__getitem__, said.append)
     assert not audience.is_there()
     assert not audience.is_there()
-    assert said == ["waiting for subscribers of /clock (1 of 2)"]
-    here["/clock"] = 2
+    assert said == ['waiting for subscribers of /clock (1 of 2)']
+    here['/clock'] = 2
     assert not audience.is_there()
     now[0] += handshake.SETTLING
     assert audience.is_there()
-    here["wind"] = 0
+    here['wind'] = 0
     assert not audience.is_there()
     assert Audience({}, here.__getitem__, said.append).is_there()
 
@@ -97,7 +97,7 @@ def test_samples_that_go_ahead_are_waited_for():
     assert coming == []
 
 
-@pytest.mark.parametrize("stamps", [[], [1000], [1000, 2000]])
+@pytest.mark.parametrize('stamps', [[], [1000], [1000, 2000]])
 def test_those_before_and_after_a_gap_are_not(stamps):
     reach, taken = Reach(patience=30.0), []
     for stamp in stamps:
@@ -106,7 +106,7 @@ def test_those_before_and_after_a_gap_are_not(stamps):
     assert taken == [1]
 
 
-@pytest.mark.parametrize(("patience", "clock"), [(0.01, 0), (30.0, 2451)])
+@pytest.mark.parametrize(('patience', 'clock'), [(0.01, 0), (30.0, 2451)])
 def test_a_sample_that_never_comes_is_waited_for_once(patience, clock):
     """Until the clock goes on without it, or all patience is at its end."""
     reach, taken = Reach(patience), []

@@ -6,14 +6,14 @@ import time
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy")
+pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
 from rclpy.clock import ROSClock  # noqa: E402
 from rclpy.time import Time  # noqa: E402
 
 from tree_sway_ros.ros.timing import pacer  # noqa: E402
-from tree_sway_ros.ros.timing.pacer import LONGEST_STEP, PATIENCE, Pacer  # noqa: E402
+from tree_sway_ros.ros.timing.pacer import LONGEST_STEP, Pacer, PATIENCE  # noqa: E402
 
 DEADLINE = 10.0
 PERIOD = 20_000_000  # of 50 Hz
@@ -150,23 +150,23 @@ def test_one_tick_that_fails_is_told_and_the_next_comes(ticks):
 
     def fail():
         if next(failing):
-            raise ValueError("no")
+            raise ValueError('no')
 
     paced = ticks(rate=200.0, work=fail)
     paced.pacer.start()
     paced.wait(5)
-    assert [str(error) for error in paced.slips] == ["no", "no"]
+    assert [str(error) for error in paced.slips] == ['no', 'no']
     assert paced.errors == []
 
 
 def test_an_error_in_tick_after_tick_ends_the_thread(ticks):
     def fail():
-        raise ValueError("no")
+        raise ValueError('no')
 
     paced = ticks(rate=200.0, work=fail)
     paced.pacer.start()
     paced.pacer._thread.join(DEADLINE)
-    assert [str(error) for error in paced.errors] == ["no"]
+    assert [str(error) for error in paced.errors] == ['no']
     assert len(paced.slips) == PATIENCE - 1
 
 
@@ -177,7 +177,7 @@ class Wall:
 
     def __init__(self, monkeypatch):
         self.wall, self.steady = 10**18, 10**9
-        monkeypatch.setattr(pacer.time, "monotonic_ns", lambda: self.steady)
+        monkeypatch.setattr(pacer.time, 'monotonic_ns', lambda: self.steady)
 
     def go(self, seconds, wall=None):
         self.steady += round(seconds * 1e9)

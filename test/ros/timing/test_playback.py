@@ -3,10 +3,10 @@
 import itertools
 import threading
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.ros.timing.playback import Playback
@@ -36,7 +36,7 @@ def test_a_start_leaves_rows_out_and_moves_the_epoch():
 
 
 def test_a_start_beyond_the_end_is_refused():
-    with pytest.raises(FormatError, match="smaller start"):
+    with pytest.raises(FormatError, match='smaller start'):
         Playback(TIME, start=1.0)
 
 
@@ -80,7 +80,7 @@ def play(playback, n, speed=1000.0, **options):
             full.set()
 
     errors = []
-    options = {"may_start": lambda: True, "publish": publish} | options
+    options = {'may_start': lambda: True, 'publish': publish} | options
     thread = PlaybackThread(playback, speed, on_end=ended.set, on_error=errors.append, **options)
     thread.start()
     full.wait(10.0) if n else None
@@ -104,7 +104,7 @@ def test_without_a_clock_stamps_keep_the_wall_times_pace():
     stamps = np.array([stamp for _, stamp in published])
     np.testing.assert_allclose(np.diff(stamps)[:3], [2e6, 2e6, 4e6], atol=2)
     assert (np.diff(stamps) > 0).all()
-    assert thread.progress()["rounds"] >= 9
+    assert thread.progress()['rounds'] >= 9
 
 
 def test_it_waits_until_it_may_start():
@@ -118,7 +118,7 @@ def test_an_error_is_handed_on():
     done = threading.Event()
 
     def publish(row, stamp):
-        raise ValueError("no")
+        raise ValueError('no')
 
     errors = []
     thread = PlaybackThread(
@@ -132,4 +132,4 @@ def test_an_error_is_handed_on():
     thread.start()
     assert done.wait(10.0)
     thread.stop()
-    assert str(errors[0]) == "no"
+    assert str(errors[0]) == 'no'

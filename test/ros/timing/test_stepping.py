@@ -66,7 +66,7 @@ def test_each_period_is_a_step():
 def test_late_ticks_leave_no_trace_in_the_motion():
     poses = []
     for lateness in ([1] * 600, [4] * 150, [1, 7, 2, 20, 3, 5, 8, 4] * 12):
-        simulator = SwaySimulator(TREE, model="subtree")
+        simulator = SwaySimulator(TREE, model='subtree')
         made = stepper(simulator)
         made.warm_up()
         play(made, lateness)
@@ -90,7 +90,7 @@ def test_pausing_stops_the_motion_and_not_the_wind():
     made.is_paused = True
     play(made, [1] * 60)
     assert simulator.steps == []
-    assert made.wind_state == "live"
+    assert made.wind_state == 'live'
 
 
 def test_a_restart_forgets_wind_and_motion():
@@ -102,7 +102,7 @@ def test_a_restart_forgets_wind_and_motion():
     made.advance(START - 10**12 + PERIOD, 1, 0.0)
     assert simulator.resets == 2
     assert simulator.steps[-1][0] == 0.0
-    assert made.wind_state == "none"
+    assert made.wind_state == 'none'
 
 
 def test_no_wind_is_calm():
@@ -110,7 +110,7 @@ def test_no_wind_is_calm():
     made = stepper(simulator)
     made.advance(START + PERIOD, 1, 0.0)
     assert simulator.steps == [(0.0, pytest.approx(1 / 60, rel=1e-6))]
-    assert made.wind_state == "none"
+    assert made.wind_state == 'none'
 
 
 def test_the_wind_is_held_then_dies():
@@ -123,10 +123,10 @@ def test_the_wind_is_held_then_dies():
         states.append(made.wind_state)
         winds.append(simulator.steps[-1][0])
     assert [s for i, s in enumerate(states) if s not in states[:i]] == [
-        "live",
-        "holding",
-        "decaying",
-        "stale",
+        'live',
+        'holding',
+        'decaying',
+        'stale',
     ]
     assert abs(winds[-1]) < 1e-3
     assert np.abs(np.diff(winds)).max() < 1.0
@@ -148,7 +148,7 @@ def test_warming_up_leaves_a_tree_at_rest():
     np.testing.assert_array_equal(simulator.place(), rest)
 
 
-@pytest.mark.parametrize("every", [1, 2, 3, 7])
+@pytest.mark.parametrize('every', [1, 2, 3, 7])
 def test_the_divider_lets_one_in_so_many_pass(every):
     divider = Divider()
     due = [divider.is_due(index, every) for index in range(100, 100 + 10 * every)]

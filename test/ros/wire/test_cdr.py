@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy")
+pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402
@@ -15,7 +15,7 @@ from std_msgs.msg import String  # noqa: E402
 from tree_sway_ros.errors import TransportError  # noqa: E402
 from tree_sway_ros.ros.wire.cdr import CdrTemplate, pose_array_template  # noqa: E402
 
-FRAMES = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
+FRAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=12)
 
 
 def built(poses, frame_id, stamp):
@@ -39,35 +39,35 @@ def test_bytes_say_what_objects_say(n_poses, frame_id, stamp, seed):
     assert message == built(poses, frame_id, stamp)
 
 
-@pytest.mark.parametrize("n_poses", [0, 1, 1000])
+@pytest.mark.parametrize('n_poses', [0, 1, 1000])
 def test_a_template_is_used_again_and_again(n_poses):
-    template = pose_array_template(n_poses, "map")
+    template = pose_array_template(n_poses, 'map')
     for stamp in (1, 5_000_000_007):
         poses = np.full((n_poses, 7), float(stamp))
         template.blocks[0][:] = poses
         data = template.to_bytes(stamp)
         assert type(data) is bytes
-        assert deserialize_message(data, PoseArray) == built(poses, "map", stamp)
+        assert deserialize_message(data, PoseArray) == built(poses, 'map', stamp)
 
 
-@pytest.mark.parametrize("frame_id", ["", "a", "map", "odom", "abcdefg"])
+@pytest.mark.parametrize('frame_id', ['', 'a', 'map', 'odom', 'abcdefg'])
 def test_numbers_are_aligned_in_memory(frame_id):
     assert pose_array_template(3, frame_id).blocks[0].flags.aligned
 
 
 def test_a_new_template_is_all_zero():
-    message = deserialize_message(pose_array_template(2, "map").to_bytes(0), PoseArray)
-    assert message == built(np.zeros((2, 7)), "map", 0)
+    message = deserialize_message(pose_array_template(2, 'map').to_bytes(0), PoseArray)
+    assert message == built(np.zeros((2, 7)), 'map', 0)
 
 
 def test_a_mark_that_is_not_there_is_an_error():
-    with pytest.raises(TransportError, match="not laid out"):
-        CdrTemplate(String(data="no stamp"), 1, [])
+    with pytest.raises(TransportError, match='not laid out'):
+        CdrTemplate(String(data='no stamp'), 1, [])
 
 
 def test_a_mark_that_is_there_twice_is_an_error():
     from tree_sway_ros.ros.wire.cdr import block_mark
 
     message = PoseArray(poses=[Pose(position=Point(x=block_mark(), y=block_mark()))])
-    with pytest.raises(TransportError, match="not laid out"):
+    with pytest.raises(TransportError, match='not laid out'):
         CdrTemplate(message, 0, [(1, 7)])

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-pytest.importorskip("rclpy")
+pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
 from rclpy.serialization import deserialize_message  # noqa: E402
@@ -15,15 +15,15 @@ from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 from tree_sway_ros.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway_ros.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway_ros.core.tree.building import tree_from_segments  # noqa: E402
-from tree_sway_ros.ros.wire.markers import TreeMarkers, radius_classes, x_axes  # noqa: E402
+from tree_sway_ros.ros.wire.markers import radius_classes, TreeMarkers, x_axes  # noqa: E402
 
-TREE = builtin_tree("goldcrest")
+TREE = builtin_tree('goldcrest')
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def message():
-    poses = SwaySimulator(TREE, model="frozen").place()
-    return deserialize_message(TreeMarkers(TREE, "map", 5).to_bytes(poses, 3 * 10**9), MarkerArray)
+    poses = SwaySimulator(TREE, model='frozen').place()
+    return deserialize_message(TreeMarkers(TREE, 'map', 5).to_bytes(poses, 3 * 10**9), MarkerArray)
 
 
 def test_one_line_list_a_class_with_fixed_ids(message):
@@ -31,7 +31,7 @@ def test_one_line_list_a_class_with_fixed_ids(message):
     assert 1 < len(markers) <= 5
     assert [marker.id for marker in markers] == list(range(len(markers)))
     assert {(m.type, m.action, m.header.frame_id) for m in markers} == {
-        (Marker.LINE_LIST, Marker.ADD, "map")
+        (Marker.LINE_LIST, Marker.ADD, 'map')
     }
     assert {m.header.stamp.sec for m in markers} == {3}
 
@@ -53,7 +53,7 @@ def test_widths_fall_from_class_to_class(message):
 def test_one_radius_is_one_class():
     tree = tree_from_segments([[0, 0, 0]], [[0, 0, 1]], [0.1])
     pose = np.array([[0.0, 0.0, 0.0, 0.0, -np.sqrt(0.5), 0.0, np.sqrt(0.5)]])
-    data = TreeMarkers(tree, "map", 6).to_bytes(pose, 0)
+    data = TreeMarkers(tree, 'map', 6).to_bytes(pose, 0)
     (marker,) = deserialize_message(data, MarkerArray).markers
     assert marker.points[1].z == pytest.approx(1.0)
 

@@ -1,60 +1,60 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import json
 from dataclasses import replace
+import json
 from pathlib import Path
 
-import numpy as np
 from jsonschema import Draft202012Validator
+import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
 from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.ros.wire.tree_description import VERSION, describe, tree_hash
+from tree_sway_ros.ros.wire.tree_description import describe, tree_hash, VERSION
 
 TREE = tree_from_segments(
     [[0, 0, 0], [0, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 2], [1, 0, 1]], [0.1, 0.08, 0.03]
 )
 ROOT = Path(__file__).parents[3]
 SCHEMA = Draft202012Validator(
-    json.loads((ROOT / "doc/tree_description.schema.json").read_text(encoding="utf-8"))
+    json.loads((ROOT / 'doc/tree_description.schema.json').read_text(encoding='utf-8'))
 )
 
 
 def test_it_fits_its_schema():
-    SCHEMA.validate(json.loads(describe(TREE, "map")))
-    assert "leaves" not in json.loads(describe(TREE, "map"))
+    SCHEMA.validate(json.loads(describe(TREE, 'map')))
+    assert 'leaves' not in json.loads(describe(TREE, 'map'))
 
 
 def test_leaves_are_part_of_it():
-    told = describe(TREE, "map", leaf_clusters(TREE, np.random.default_rng(0), count=12))
+    told = describe(TREE, 'map', leaf_clusters(TREE, np.random.default_rng(0), count=12))
     SCHEMA.validate(json.loads(told))
-    assert len(json.loads(told)["leaves"]["segment"]) == 12
+    assert len(json.loads(told)['leaves']['segment']) == 12
 
 
 def test_every_tree_of_several_begins_with_a_segment_without_a_parent():
-    trees = [PlacedTree("a", TREE), PlacedTree("b", TREE, x=3.0)]
-    told = json.loads(describe(joined([each.placed() for each in trees]), "map"))
+    trees = [PlacedTree('a', TREE), PlacedTree('b', TREE, x=3.0)]
+    told = json.loads(describe(joined([each.placed() for each in trees]), 'map'))
     SCHEMA.validate(told)
-    parents, names = told["segments"]["parents"], told["segments"]["names"]
+    parents, names = told['segments']['parents'], told['segments']['names']
     roots = [name for name, parent in zip(names, parents, strict=True) if parent < 0]
-    assert [name.split("/")[0] for name in roots] == ["a", "b"]
+    assert [name.split('/')[0] for name in roots] == ['a', 'b']
     assert len(set(names)) == 2 * TREE.n_segments
 
 
 def test_it_says_what_the_tree_says():
-    told = json.loads(describe(TREE, "odom"))
-    assert (told["version"], told["frame_id"]) == (VERSION, "odom")
-    segments = told["segments"]
-    assert segments["names"] == list(TREE.segment_names)
-    assert segments["parents"] == TREE.segment_parent.tolist()
-    assert segments["branches"] == TREE.branch_of_segment.tolist()
-    np.testing.assert_allclose(segments["lengths"], TREE.length)
-    np.testing.assert_allclose(segments["base_radii"], TREE.base_diameter / 2)
-    assert told["branches"]["first_segments"] == TREE.branch_first[:-1].tolist()
+    told = json.loads(describe(TREE, 'odom'))
+    assert (told['version'], told['frame_id']) == (VERSION, 'odom')
+    segments = told['segments']
+    assert segments['names'] == list(TREE.segment_names)
+    assert segments['parents'] == TREE.segment_parent.tolist()
+    assert segments['branches'] == TREE.branch_of_segment.tolist()
+    np.testing.assert_allclose(segments['lengths'], TREE.length)
+    np.testing.assert_allclose(segments['base_radii'], TREE.base_diameter / 2)
+    assert told['branches']['first_segments'] == TREE.branch_first[:-1].tolist()
     assert all(len(column) == TREE.n_segments for column in segments.values())
 
 
 def test_another_tree_has_another_hash():
-    assert tree_hash(TREE) == json.loads(describe(TREE, "map"))["hash"]
+    assert tree_hash(TREE) == json.loads(describe(TREE, 'map'))['hash']
     assert tree_hash(replace(TREE, end=TREE.end * (1.0 + 1e-12))) != tree_hash(TREE)

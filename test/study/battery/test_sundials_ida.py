@@ -35,10 +35,10 @@ def test_its_residual_is_none_where_the_equation_holds():
 
 
 def test_it_agrees_with_our_reference():
-    pytest.importorskip("sksundae", reason="SUNDIALS is not installed (extra 'sundials')")
+    pytest.importorskip('sksundae', reason="SUNDIALS is not installed (extra 'sundials')")
     loads = sample(wind, sundials_ida.NODES, 1 / 60, 60)
     run = sundials_ida.run_ida(CHAIN, loads, 1 / 60, wind(np.zeros(1))[0])
-    reference = method_named("radau_ggl")
+    reference = method_named('radau_ggl')
     exact = integrate(
         reference,
         CHAIN,
@@ -52,6 +52,6 @@ def test_it_agrees_with_our_reference():
 
 
 def test_without_it_the_extra_is_named(monkeypatch):
-    monkeypatch.setattr(sundials_ida, "is_installed", lambda: False)
-    with pytest.raises(MissingDependencyError, match="pip install scikit-sundae"):
+    monkeypatch.setattr(sundials_ida, 'is_installed', lambda: False)
+    with pytest.raises(MissingDependencyError, match='pip install scikit-sundae'):
         sundials_ida.run_ida(CHAIN, np.zeros((1, 3, 2, 2)), 1 / 60, np.zeros((2, 2)))

@@ -30,7 +30,7 @@ def test_the_tree_is_the_one_that_is_claimed() -> None:
     assert len(np.unique(firsts, axis=0)) == tree.n_branches
 
 
-@pytest.mark.parametrize("segments", [3, 12])
+@pytest.mark.parametrize('segments', [3, 12])
 def test_the_tree_keeps_its_shape_however_it_is_cut(segments: int) -> None:
     coarse, fine = bench_tree(segments), bench_tree(6)
     assert coarse.n_segments == 121 * segments
@@ -38,7 +38,7 @@ def test_the_tree_keeps_its_shape_however_it_is_cut(segments: int) -> None:
     assert coarse.volume.sum() == pytest.approx(fine.volume.sum())
 
 
-@pytest.mark.parametrize("model", ["branch", "subtree"])
+@pytest.mark.parametrize('model', ['branch', 'subtree'])
 def test_kernels_and_twin_agree_and_are_timed(model: str) -> None:
     timing = bench_step.time_steps(bench_tree(), model, 1)
     assert timing.difference < 1e-9
@@ -53,14 +53,14 @@ def test_a_twin_that_disagrees_is_not_raced(monkeypatch: pytest.MonkeyPatch) -> 
         honest(self, rotations, origin, out)
         out += 1e-6
 
-    monkeypatch.setattr(NumpyPlacing, "place", dishonest)
-    with pytest.raises(TreeSwayError, match=r"differ by 1\.00e-06"):
-        bench_step.time_steps(bench_tree(), "subtree", 1)
+    monkeypatch.setattr(NumpyPlacing, 'place', dishonest)
+    with pytest.raises(TreeSwayError, match=r'differ by 1\.00e-06'):
+        bench_step.time_steps(bench_tree(), 'subtree', 1)
 
 
 def test_the_command_prints_what_a_program_can_read(capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["bench", "step", "--rounds", "1", "--json"]) == 0
+    assert cli.main(['bench', 'step', '--rounds', '1', '--json']) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["segments"] == 726
-    assert [row["model"] for row in found["timings"]] == ["branch", "subtree", "modes"]
-    assert all(row["ratio"] > 1.0 for row in found["timings"])
+    assert found['segments'] == 726
+    assert [row['model'] for row in found['timings']] == ['branch', 'subtree', 'modes']
+    assert all(row['ratio'] > 1.0 for row in found['timings'])

@@ -11,72 +11,72 @@ import pytest
 from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.study.bench.listener import stamp_of
-from tree_sway_ros.study.bench.measured import Measured, as_json, read_baseline, table
+from tree_sway_ros.study.bench.measured import as_json, Measured, read_baseline, table
 from tree_sway_ros.study.bench.sizes import time_sizes
 from tree_sway_ros.study.bench.stand import time_stand
 from tree_sway_ros.tools import cli
 
-ROWS = [Measured("solve", 2.0, "ms"), Measured("place", 3.0, "ms"), Measured("lost", 0.0, "-")]
+ROWS = [Measured('solve', 2.0, 'ms'), Measured('place', 3.0, 'ms'), Measured('lost', 0.0, '-')]
 
 
 def test_figures_are_read_back_and_told_as_ratios(tmp_path):
-    kept = tmp_path / "kept.json"
-    kept.write_text(as_json([Measured("solve", 4.0, "ms"), ROWS[2]]), encoding="utf-8")
+    kept = tmp_path / 'kept.json'
+    kept.write_text(as_json([Measured('solve', 4.0, 'ms'), ROWS[2]]), encoding='utf-8')
     solve, place, lost = table(ROWS, read_baseline(kept)).splitlines()
-    assert "0.50 of the baseline" in solve
-    assert "baseline" not in place + lost
+    assert '0.50 of the baseline' in solve
+    assert 'baseline' not in place + lost
 
 
-@pytest.mark.parametrize("text", ["", "{}", "[]", '{"measured": [{"name": "a"}]}', "\x00"])
+@pytest.mark.parametrize('text', ['', '{}', '[]', '{"measured": [{"name": "a"}]}', '\x00'])
 def test_a_file_without_figures_is_no_baseline(tmp_path, text):
-    kept = tmp_path / "kept.json"
-    kept.write_text(text, encoding="utf-8")
+    kept = tmp_path / 'kept.json'
+    kept.write_text(text, encoding='utf-8')
     with pytest.raises(FormatError):
         read_baseline(kept)
 
 
 def test_a_stand_is_timed(stem):
-    trees = [StandTree(f"t{i}", "stem", x=3.0 * i) for i in range(5)]
-    rows = time_stand(lambda: Stand(trees, {"stem": StandKind(stem())}), frames=3)
-    assert rows[0].name == "solve 5 trees, 30 segments"
+    trees = [StandTree(f't{i}', 'stem', x=3.0 * i) for i in range(5)]
+    rows = time_stand(lambda: Stand(trees, {'stem': StandKind(stem())}), frames=3)
+    assert rows[0].name == 'solve 5 trees, 30 segments'
     assert all(row.value > 0.0 for row in rows)
     assert rows[2].value == pytest.approx(rows[0].value + rows[1].value)
 
 
 def test_sizes_are_timed(stem, fork):
     rows = {row.name: row.value for row in time_sizes([stem(), fork()])}
-    assert rows["kernel of a step, 4 branches"] > 0.0
-    assert rows["kernel, most over least"] >= 1.0
+    assert rows['kernel of a step, 4 branches'] > 0.0
+    assert rows['kernel, most over least'] >= 1.0
 
 
 def test_the_stamp_of_a_message_is_read_from_its_bytes():
-    assert stamp_of(b"\0\1\0\0" + (7).to_bytes(4, "little") + (9).to_bytes(4, "little")) == (
+    assert stamp_of(b'\0\1\0\0' + (7).to_bytes(4, 'little') + (9).to_bytes(4, 'little')) == (
         7_000_000_009
     )
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ('arguments', 'told'),
     [
-        (["stand", "--size", "0"], "--size: 0"),
-        (["stream", "--seconds", "nan"], "--seconds: nan"),
-        (["stand", "--tree", "benjamina"], "no stand"),
-        (["sizes", "--tree", "benjamin"], "benjamina"),
-        (["sizes", "--baseline", "nowhere.json"], "nowhere.json"),
+        (['stand', '--size', '0'], '--size: 0'),
+        (['stream', '--seconds', 'nan'], '--seconds: nan'),
+        (['stand', '--tree', 'benjamina'], 'no stand'),
+        (['sizes', '--tree', 'benjamin'], 'benjamina'),
+        (['sizes', '--baseline', 'nowhere.json'], 'nowhere.json'),
     ],
 )
 def test_bad_arguments_are_refused(capsys, arguments, told):
-    assert cli.main(["bench", *arguments]) == 2
+    assert cli.main(['bench', *arguments]) == 2
     assert told in capsys.readouterr().err
 
 
 def test_figures_are_told_as_json_and_drawn(tmp_path, monkeypatch, capsys):
-    pytest.importorskip("matplotlib")
+    pytest.importorskip('matplotlib')
     from tree_sway_ros.study.bench import command
 
-    monkeypatch.setitem(command._FIGURES, "stand", lambda arguments: ROWS)
-    chart = tmp_path / "chart.png"
-    assert cli.main(["bench", "stand", "--json", "--chart", str(chart)]) == 0
+    monkeypatch.setitem(command._FIGURES, 'stand', lambda arguments: ROWS)
+    chart = tmp_path / 'chart.png'
+    assert cli.main(['bench', 'stand', '--json', '--chart', str(chart)]) == 0
     told = json.loads(capsys.readouterr().out)
-    assert [row["value"] for row in told["measured"]] == [2.0, 3.0, 0.0]
+    assert [row['value'] for row in told['measured']] == [2.0, 3.0, 0.0]
     assert chart.stat().st_size > 1000

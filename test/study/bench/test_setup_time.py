@@ -19,8 +19,8 @@ def test_every_model_is_set_up_from_nothing(monkeypatch: pytest.MonkeyPatch) -> 
         built.append((tree.n_branches, simulator.model))
         return simulator
 
-    monkeypatch.setattr(bench_setup, "SwaySimulator", noted)
-    times = bench_setup.time_setups(bench_tree(3, (4, 2)), ("branch", "modes"))
-    assert [each for each in built if each[0] == 13] == [(13, "branch"), (13, "modes")]
-    assert list(times) == ["branch", "modes"]
+    monkeypatch.setattr(bench_setup, 'SwaySimulator', noted)
+    times = bench_setup.time_setups(bench_tree(3, (4, 2)), ('branch', 'modes'))
+    assert [each for each in built if each[0] == 13] == [(13, 'branch'), (13, 'modes')]
+    assert list(times) == ['branch', 'modes']
     assert all(spent > 0.0 for spent in times.values())

@@ -13,8 +13,8 @@ from tree_sway_ros.study.campaign.plan import read_study
 @pytest.fixture
 def study(tmp_path):
     def write(text):
-        path = tmp_path / "study.yaml"
-        path.write_text(text, encoding="utf-8")
+        path = tmp_path / 'study.yaml'
+        path.write_text(text, encoding='utf-8')
         return path
 
     return write
@@ -31,33 +31,33 @@ def test_every_tree_meets_every_wind_with_every_setting(study):
     )
     assert len(cases) == (1 + 2 * 2 * 3) * 6 * 2
     assert len({case.name for case in cases}) == len(cases)
-    assert cases[0].tree == {"name": "goldcrest"}
-    assert cases[0].settings == {"model": "modes", "damping_ratio": 0.02}
+    assert cases[0].tree == {'name': 'goldcrest'}
+    assert cases[0].settings == {'model': 'modes', 'damping_ratio': 0.02}
     assert {case.seconds for case in cases} == {5}
 
 
 def test_a_case_is_named_after_the_content_of_what_it_reads(study, tmp_path):
-    wind = tmp_path / "wind.csv"
-    path = study("trees: [goldcrest]\nwinds: [{file: wind.csv}]\n")
+    wind = tmp_path / 'wind.csv'
+    path = study('trees: [goldcrest]\nwinds: [{file: wind.csv}]\n')
     names = set()
-    for content in ("time,u,v\n0,1,0\n1,2,0\n", "time,u,v\n0,1,0\n1,3,0\n"):
-        wind.write_text(content, encoding="utf-8")
+    for content in ('time,u,v\n0,1,0\n1,2,0\n', 'time,u,v\n0,1,0\n1,3,0\n'):
+        wind.write_text(content, encoding='utf-8')
         names.add(read_study(path)[0].name)
     assert len(names) == 2
     assert read_study(path)[0].name in names
 
 
 @pytest.mark.parametrize(
-    ("text", "kind", "words"),
+    ('text', 'kind', 'words'),
     [
-        ("trees: [goldcrest]\n", FormatError, "has no 'winds'"),
-        ("trees: []\nwinds: [{speed: 3}]", FormatError, "trees"),
-        ("trees: [a]\nwinds: [{speed: fast}]", FormatError, r"study\.yaml:2: winds\[0\]\.speed"),
-        ("trees: [a]\nwinds: [{speed: 3}]\nseconds: 0", FormatError, r"study\.yaml:3: seconds"),
-        ("trees: [a]\nwinds: [{speed: 3}]\nsettings: {wobble: 1}", ParameterError, "'wobble'"),
-        ("trees: [a]\nwinds: [{file: gone.csv}]", FormatError, r"gone\.csv"),
-        ("trees: [a]\nwinds: [{seeds: 2}]", FormatError, "a wind is a file or a speed"),
-        ("trees: [", FormatError, r"study\.yaml:"),
+        ('trees: [goldcrest]\n', FormatError, "has no 'winds'"),
+        ('trees: []\nwinds: [{speed: 3}]', FormatError, 'trees'),
+        ('trees: [a]\nwinds: [{speed: fast}]', FormatError, r'study\.yaml:2: winds\[0\]\.speed'),
+        ('trees: [a]\nwinds: [{speed: 3}]\nseconds: 0', FormatError, r'study\.yaml:3: seconds'),
+        ('trees: [a]\nwinds: [{speed: 3}]\nsettings: {wobble: 1}', ParameterError, "'wobble'"),
+        ('trees: [a]\nwinds: [{file: gone.csv}]', FormatError, r'gone\.csv'),
+        ('trees: [a]\nwinds: [{seeds: 2}]', FormatError, 'a wind is a file or a speed'),
+        ('trees: [', FormatError, r'study\.yaml:'),
     ],
 )
 def test_what_is_wrong_is_named(study, text, kind, words):
@@ -66,5 +66,5 @@ def test_what_is_wrong_is_named(study, text, kind, words):
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(FormatError, match=r"none\.yaml"):
-        read_study(tmp_path / "none.yaml")
+    with pytest.raises(FormatError, match=r'none\.yaml'):
+        read_study(tmp_path / 'none.yaml')

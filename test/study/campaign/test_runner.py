@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import csv
 import os
-import signal
 from pathlib import Path
+import signal
 
 import pytest
 
@@ -17,19 +17,19 @@ from tree_sway_ros.study.campaign.runner import batches, compute_to_file, result
 from tree_sway_ros.study.campaign.table import write_table
 from tree_sway_ros.tools import cli
 
-SEEDLING = Path(__file__).parents[2] / "files" / "data" / "seedling.yaml"
+SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 
 
 def cases(seeds=4, **changes):
-    given = {"settings": {"model": "branch"}, "seconds": 1.0, **changes}
-    tree = {"file": str(SEEDLING)}
-    return [Case(tree, {"speed": 4.0, "intensity": 0.2, "seed": k}, **given) for k in range(seeds)]
+    given = {'settings': {'model': 'branch'}, 'seconds': 1.0, **changes}
+    tree = {'file': str(SEEDLING)}
+    return [Case(tree, {'speed': 4.0, 'intensity': 0.2, 'seed': k}, **given) for k in range(seeds)]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def alone(tmp_path_factory):
     """Rows computed in this process, one after the other."""
-    folder = tmp_path_factory.mktemp("alone")
+    folder = tmp_path_factory.mktemp('alone')
     for case in cases():
         compute_to_file(case, folder)
     return run_study(cases(), folder)
@@ -41,8 +41,8 @@ def test_two_processes_give_the_same_numbers_bit_for_bit(alone, tmp_path):
     assert rows == alone
     assert told[0] == (0, 4)
     assert told[-1] == (4, 4)
-    assert {"frequency", "tip_largest", "base_moment_rms", "strain_largest"} <= set(rows[0])
-    assert rows[0]["tip_largest"] > 0.0
+    assert {'frequency', 'tip_largest', 'base_moment_rms', 'strain_largest'} <= set(rows[0])
+    assert rows[0]['tip_largest'] > 0.0
 
 
 def test_what_is_finished_is_not_computed_again(alone, tmp_path):
@@ -55,7 +55,7 @@ def test_what_is_finished_is_not_computed_again(alone, tmp_path):
 
 
 def test_a_tree_is_set_up_once_for_many_winds():
-    same, other = cases(8), cases(8, settings={"model": "subtree"})
+    same, other = cases(8), cases(8, settings={'model': 'subtree'})
     mixed = [case for pair in zip(same, other, strict=True) for case in pair]
     parts = batches(mixed, workers=1)
     assert sorted(map(len, parts)) == [4, 4, 4, 4]
@@ -67,18 +67,18 @@ def test_a_tree_is_set_up_once_for_many_winds():
 def workers_of(parent: int) -> list[int]:
     """Processes that a process has spawned to compute."""
     found = []
-    for path in Path("/proc").glob("[0-9]*/stat"):
+    for path in Path('/proc').glob('[0-9]*/stat'):
         try:
-            fields = path.read_text().rpartition(")")[2].split()
-            command = (path.parent / "cmdline").read_bytes()
+            fields = path.read_text().rpartition(')')[2].split()
+            command = (path.parent / 'cmdline').read_bytes()
         except OSError:
             continue
-        if int(fields[1]) == parent and b"spawn_main" in command:
+        if int(fields[1]) == parent and b'spawn_main' in command:
             found.append(int(path.parent.name))
     return found
 
 
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc to find a worker to kill")
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
 def test_a_killed_worker_loses_nothing(alone, tmp_path):
     killed = []
 
@@ -94,7 +94,7 @@ def test_a_killed_worker_loses_nothing(alone, tmp_path):
 
 
 def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
-    wrong = cases(1, settings={"model": "best"})
+    wrong = cases(1, settings={'model': 'best'})
     with pytest.raises(TreeSwayError, match="unknown model 'best'"):
         run_study([*wrong, *cases(2)], tmp_path, workers=1)
     assert all(result_path(tmp_path, case).is_file() for case in cases(2))
@@ -103,12 +103,12 @@ def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
 def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
     case = cases(1, series=True)[0]
     compute_to_file(case, tmp_path)
-    lines = (tmp_path / f"{case.name}.csv").read_text().splitlines()
+    lines = (tmp_path / f'{case.name}.csv').read_text().splitlines()
     assert len(lines) == 61
 
 
 def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path):
-    distributed = pytest.importorskip("distributed", reason="needs dask.distributed")
+    distributed = pytest.importorskip('distributed', reason='needs dask.distributed')
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
     ) as cluster:
@@ -120,33 +120,35 @@ def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_pat
             if done == 2:
                 os.kill(doomed, signal.SIGKILL)
 
-        rows = run_study(cases(6), tmp_path, scheduler=cluster.scheduler_address, progress=progress)
+        rows = run_study(
+            cases(6), tmp_path, scheduler=cluster.scheduler_address, progress=progress
+        )
     assert rows[:4] == alone
     assert len(rows) == 6
 
 
 def test_tables_are_csv_or_parquet(alone, tmp_path):
-    write_table(alone, tmp_path / "rows.csv")
-    with (tmp_path / "rows.csv").open() as file:
+    write_table(alone, tmp_path / 'rows.csv')
+    with (tmp_path / 'rows.csv').open() as file:
         read = list(csv.DictReader(file))
-    assert [float(row["tip_rms"]) for row in read] == [row["tip_rms"] for row in alone]
-    parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow")
-    write_table(alone, tmp_path / "rows.parquet")
-    assert parquet.read_table(tmp_path / "rows.parquet").to_pylist() == alone
-    with pytest.raises(FormatError, match=r"end it with \.csv or \.parquet"):
-        write_table(alone, tmp_path / "rows.xlsx")
+    assert [float(row['tip_rms']) for row in read] == [row['tip_rms'] for row in alone]
+    parquet = pytest.importorskip('pyarrow.parquet', reason='needs pyarrow')
+    write_table(alone, tmp_path / 'rows.parquet')
+    assert parquet.read_table(tmp_path / 'rows.parquet').to_pylist() == alone
+    with pytest.raises(FormatError, match=r'end it with \.csv or \.parquet'):
+        write_table(alone, tmp_path / 'rows.xlsx')
 
 
 def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, capsys):
-    study, table = tmp_path / "study.yaml", tmp_path / "study.csv"
+    study, table = tmp_path / 'study.yaml', tmp_path / 'study.csv'
     study.write_text(
-        f"trees: [{SEEDLING}]\nwinds: [{{speed: 4}}]\nsettings: {{model: branch}}\nseconds: 1\n"
+        f'trees: [{SEEDLING}]\nwinds: [{{speed: 4}}]\nsettings: {{model: branch}}\nseconds: 1\n'
     )
-    words = ["study", str(study), "-o", str(table), "--workers", "1"]
-    table.write_text("of another kind")
+    words = ['study', str(study), '-o', str(table), '--workers', '1']
+    table.write_text('of another kind')
     assert cli.main(words) == 2
-    assert "is there already; name another file, or write over it" in capsys.readouterr().err
-    assert table.read_text() == "of another kind"
-    assert cli.main([*words, "--force"]) == 0
+    assert 'is there already; name another file, or write over it' in capsys.readouterr().err
+    assert table.read_text() == 'of another kind'
+    assert cli.main([*words, '--force']) == 0
     assert cli.main(words) == 0
     assert len(table.read_text().splitlines()) == 2

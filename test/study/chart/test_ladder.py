@@ -9,10 +9,10 @@ import pytest
 
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.chart.cost import chart_cost
-from tree_sway_ros.study.chart.fidelity import LADDER, chart_fidelity
+from tree_sway_ros.study.chart.fidelity import chart_fidelity, LADDER
 from tree_sway_ros.study.example_trees import forked_tree
 
-pytest.importorskip("matplotlib", reason="pictures need matplotlib")
+pytest.importorskip('matplotlib', reason='pictures need matplotlib')
 
 
 def read(path):
@@ -26,11 +26,11 @@ def test_fidelity_falls_up_the_ladder_and_is_written(tmp_path):
     tree = forked_tree(0.65, 0.6, generations=2)
     points = chart_fidelity(tmp_path, wind=(time, velocity), duration=2.0, trees=[tree])
     error = {point.model: point.error for point in points}
-    assert list(error) == [*LADDER, "segments"]
-    assert error["branch"] > error["subtree"] > error["coupled"]
-    assert error["segments"] < 0.05
-    assert [row["model"] for row in read(tmp_path / "fidelity.csv")] == list(error)
-    assert (tmp_path / "fidelity.png").stat().st_size > 10_000
+    assert list(error) == [*LADDER, 'segments']
+    assert error['branch'] > error['subtree'] > error['coupled']
+    assert error['segments'] < 0.05
+    assert [row['model'] for row in read(tmp_path / 'fidelity.csv')] == list(error)
+    assert (tmp_path / 'fidelity.png').stat().st_size > 10_000
 
 
 def test_cost_is_written_for_every_model_and_size(tmp_path):
@@ -38,8 +38,8 @@ def test_cost_is_written_for_every_model_and_size(tmp_path):
     sizes = {(p.n_branches, p.segments_a_branch) for p in points}
     assert sizes == {(40, 6), (4, 6), (13, 6)}
     assert all(p.step > 0.0 and p.place > 0.0 for p in points)
-    assert len(read(tmp_path / "cost.csv")) == len(points) == 4 * len(sizes)
-    assert (tmp_path / "cost.png").stat().st_size > 10_000
+    assert len(read(tmp_path / 'cost.csv')) == len(points) == 4 * len(sizes)
+    assert (tmp_path / 'cost.png').stat().st_size > 10_000
 
 
 def test_frame_times_keep_models_apart():
@@ -55,6 +55,6 @@ def test_frame_times_keep_models_apart():
 
     tree = forked_tree(0.5, 0.6, generations=1)
     times = frame_times(
-        {"idle": Busy(1), "busy": Busy(20_000)}, tree, np.zeros((1, 3)), 0.1, frames=40
+        {'idle': Busy(1), 'busy': Busy(20_000)}, tree, np.zeros((1, 3)), 0.1, frames=40
     )
-    assert times["busy"].step > 10.0 * times["idle"].step
+    assert times['busy'].step > 10.0 * times['idle'].step

@@ -14,8 +14,8 @@ from tree_sway_ros.study.tip_error import tip_error
 
 
 def test_two_engines_agree_at_short_steps():
-    pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
-    pytest.importorskip("dartpy", reason="needs DART (pip install dartpy)")
+    pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
+    pytest.importorskip('dartpy', reason='needs DART (pip install dartpy)')
     from tree_sway_ros.study.compare.dart_tree import DartTree
     from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 

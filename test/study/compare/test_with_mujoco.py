@@ -9,36 +9,36 @@ import pytest
 
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.errors import MissingDependencyError
-from tree_sway_ros.study.compare.mujoco_tree import MujocoTree, mujoco_module, take_warnings
+from tree_sway_ros.study.compare.mujoco_tree import mujoco_module, MujocoTree, take_warnings
 from tree_sway_ros.study.compare.with_mujoco import compare_with_mujoco
 from tree_sway_ros.study.example_trees import forked_tree
 from tree_sway_ros.study.frame.frame import frame_model
 
-WOOD = Species("example", "example", 8.0e9, 900.0)
+WOOD = Species('example', 'example', 8.0e9, 900.0)
 
 
 def test_missing_engine_is_named_with_its_cure(monkeypatch):
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(MissingDependencyError, match="pip install mujoco"):
+    monkeypatch.setitem(sys.modules, 'mujoco', None)
+    with pytest.raises(MissingDependencyError, match='pip install mujoco'):
         mujoco_module()
 
 
 def test_both_run_on_one_tree_and_agree():
-    pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     # A stiff bush has modes that decay fast, which MuJoCo's dampers take at shorter steps only.
     tree = forked_tree(0.65, 0.6, generations=2)
     wind = np.tile([6.0, 2.0, 0.0], (20, 1))
-    found = compare_with_mujoco(tree, WOOD, wind, model="coupled", steps=64)
+    found = compare_with_mujoco(tree, WOOD, wind, model='coupled', steps=64)
     assert found.first_frequency == pytest.approx(1.0, abs=0.01)
     assert found.static_sway == pytest.approx(1.0, abs=0.01)
     assert found.step_error < 0.01
     assert found.error < 0.05
     assert found.speed_up > 0.0
-    assert "tip error over tip motion: coupled" in str(found)
+    assert 'tip error over tip motion: coupled' in str(found)
 
 
 def test_with_weight_and_twist_it_sways_as_the_frame_and_stands_in_a_calm():
-    pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     tree = forked_tree(0.65, 0.6, generations=3)
     model = MujocoTree(tree, WOOD, 0.05, match_beam=False, gravity=9.81)
     frame = frame_model(tree, WOOD.modulus, WOOD.density, 9.81, shear_ratio=WOOD.shear_ratio)
@@ -52,7 +52,7 @@ def test_with_weight_and_twist_it_sways_as_the_frame_and_stands_in_a_calm():
 
 
 def test_its_warnings_are_told_and_leave_no_log_behind(tmp_path, monkeypatch, capsys):
-    mujoco = pytest.importorskip("mujoco", reason="needs MuJoCo (pip install mujoco)")
+    mujoco = pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     monkeypatch.chdir(tmp_path)
     mujoco_module()
     take_warnings()
@@ -64,5 +64,5 @@ def test_its_warnings_are_told_and_leave_no_log_behind(tmp_path, monkeypatch, ca
     data.qvel[0] = np.nan
     mujoco.mj_step(model, data)
     (warning,) = take_warnings()
-    assert "Nan" in warning
+    assert 'Nan' in warning
     assert not list(tmp_path.iterdir())

@@ -14,12 +14,12 @@ BEND_Y, BEND_Z = [1, 5, 7, 11], [2, 4, 8, 10]
 UNIFORM = 1
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def shapes():
     return element.element_shapes(LENGTHS)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def width():
     return WIDTH[:, :1] + (WIDTH[:, 1:] - WIDTH[:, :1]) * element.POINTS
 
@@ -99,10 +99,10 @@ def test_axial_force_stiffens_as_the_textbook_says(shapes):
         )
     )
     assert k[np.ix_(BEND_Y, BEND_Y)] == pytest.approx(expected, rel=1e-12)
-    assert np.abs(k[3]).max() == 0.0, "no twist without a moment"
+    assert np.abs(k[3]).max() == 0.0, 'no twist without a moment'
 
 
-@pytest.mark.parametrize("which", [0, UNIFORM])
+@pytest.mark.parametrize('which', [0, UNIFORM])
 def test_rigid_motion_costs_nothing_and_weighs_what_the_wood_does(shapes, width, which):
     motion, h = rigid(LENGTHS[which]), LENGTHS[which]
     k = element.elastic_stiffness(shapes, LENGTHS, width, E, G)[which]

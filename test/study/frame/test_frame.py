@@ -15,7 +15,7 @@ from tree_sway_ros.study.example_trees import forked_tree, tapered_stem
 from tree_sway_ros.study.frame.frame import frame_model
 
 E, RHO, LENGTH, WIDTH = 9.0e9, 900.0, 5.0, 0.1
-TREE_121 = Path(__file__).resolve().parents[4] / "shared" / "data" / "trees" / "tree121.csv"
+TREE_121 = Path(__file__).resolve().parents[4] / 'shared' / 'data' / 'trees' / 'tree121.csv'
 
 
 def dimensionless(frequency):
@@ -38,13 +38,13 @@ def test_uniform_cantilever_has_the_textbook_roots():
 
 
 @pytest.mark.parametrize(
-    ("profile", "root"),
+    ('profile', 'root'),
     [
         (lambda x: 1.0 - x, 8.719),
         (lambda x: (1.0 - x) ** (2 / 3), 7.16),
         (lambda x: 1.0 - 0.5 * x, 4.63),
     ],
-    ids=["cone", "two thirds power", "half"],
+    ids=['cone', 'two thirds power', 'half'],
 )
 def test_tapered_stems(profile, root):
     width = WIDTH * np.maximum(profile(np.linspace(0.0, 1.0, 41)), 1e-5)
@@ -62,7 +62,7 @@ def test_stem_like_tree_sways_alike_both_ways():
     assert shapes.shape == (2, len(model.node), 3)
 
 
-@pytest.mark.parametrize(("share", "ratio"), [(0.5, 0.935), (0.9, 0.521)])
+@pytest.mark.parametrize(('share', 'ratio'), [(0.5, 0.935), (0.9, 0.521)])
 def test_weight_lowers_the_frequency_of_a_stem(share, ratio):
     stem = tapered_stem(share * greenhill(WIDTH), np.full(21, WIDTH))
     light, heavy = (frame_model(stem, E, RHO, gravity=g).frequencies(1)[0] for g in (0.0, 9.81))
@@ -121,14 +121,14 @@ def test_branch_off_its_node_rides_on_a_rigid_offset():
 
 def test_four_stepped_elements_a_segment_repeat_an_independent_beam_model():
     if not TREE_121.exists():
-        pytest.skip(f"needs {TREE_121}, test data that is not part of the repository")
-    rows = np.genfromtxt(TREE_121, delimiter=",", names=True)
+        pytest.skip(f'needs {TREE_121}, test data that is not part of the repository')
+    rows = np.genfromtxt(TREE_121, delimiter=',', names=True)
     tree = tree_from_segments(
-        np.stack([rows[k] for k in ("x0", "y0", "z0")], axis=1),
-        np.stack([rows[k] for k in ("x1", "y1", "z1")], axis=1),
-        np.stack([rows["d0"], rows["d1"]], axis=1),
-        parent=rows["parent"].astype(int),
-        branch=rows["branch"].astype(int),
+        np.stack([rows[k] for k in ('x0', 'y0', 'z0')], axis=1),
+        np.stack([rows[k] for k in ('x1', 'y1', 'z1')], axis=1),
+        np.stack([rows['d0'], rows['d1']], axis=1),
+        parent=rows['parent'].astype(int),
+        branch=rows['branch'].astype(int),
     )
     expected = [0.7154, 0.7254, 1.4084, 1.7586, 1.9168, 2.1329, 2.2987, 2.3264]
     cut = refined(tree, 4)

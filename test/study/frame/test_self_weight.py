@@ -8,7 +8,7 @@ from scipy.integrate import trapezoid
 from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.study.frame.element import POINTS
-from tree_sway_ros.study.frame.self_weight import SelfWeight, self_weight
+from tree_sway_ros.study.frame.self_weight import self_weight, SelfWeight
 
 DENSITY = 9000.0
 UP, ASIDE = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
@@ -67,7 +67,7 @@ def test_a_fork_adds_up_with_its_levers():
     assert found.moment[0] == pytest.approx(np.tile(expected, (5, 1)), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize('seed', range(3))
 def test_offset_stiffness_is_the_curvature_of_the_loads_potential(seed, differences):
     rng = np.random.default_rng(seed)
     force, offset = rng.normal(size=(1, 3)), rng.normal(size=(1, 3))

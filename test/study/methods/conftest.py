@@ -18,7 +18,7 @@ class Swaying:
     def __init__(self, n, frequency=1.0):
         self.chain, self.n = uniform_chain(n, frequency, 0.05), n
         self.first = self.wind(np.zeros(1))[0]
-        self.truth = self.run(method_named("radau_ggl"), 320 if n == 1 else 160)
+        self.truth = self.run(method_named('radau_ggl'), 320 if n == 1 else 160)
 
     def wind(self, t):
         load = np.stack([2 * np.sin(3 * t) + 1, 6 * np.cos(2 * t) - np.sin(5 * t)], -1)
@@ -35,11 +35,11 @@ class Swaying:
         return np.sqrt(np.mean((theta[::every] - truth[::fine]) ** 2))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope='session')
 def swaying():
     return Swaying(1)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope='session')
 def swaying_chain():
     return Swaying(3)

@@ -25,8 +25,8 @@ def gusts(size):
     return wind
 
 
-@pytest.mark.parametrize(("size", "degrees", "goal"), GOALS)
-@pytest.mark.parametrize("kind", [np.float64, np.float32])
+@pytest.mark.parametrize(('size', 'degrees', 'goal'), GOALS)
+@pytest.mark.parametrize('kind', [np.float64, np.float32])
 def test_motion_in_space_meets_its_goal(size, degrees, goal, kind):
     branch, wind = Branch(2.0, 0.05), gusts(size)
     truth = branch.truth(wind, 1200)
@@ -39,14 +39,22 @@ def test_motion_in_space_meets_its_goal(size, degrees, goal, kind):
 def test_the_ball_joint_keeps_its_energy():
     k = 100.0
     u, v = swing(
-        np.zeros((120, 129, 3)), 1 / 60, 1.0, 0.0, k, np.array([0.8, 0.0]), np.array([0.0, 5.0]), 64
+        np.zeros((120, 129, 3)),
+        1 / 60,
+        1.0,
+        0.0,
+        k,
+        np.array([0.8, 0.0]),
+        np.array([0.0, 5.0]),
+        64,
     )
     energy = 0.5 * (v**2).sum(1) + 0.5 * k * np.arccos(u[:, 0]) ** 2
     assert energy == pytest.approx(np.full(121, energy[0]), rel=1e-8)
 
 
 def test_static_deflection_is_keplers_equation():
-    """theta = psi - E with E + s sin E = psi, the load at the angle psi from the rest direction."""
+    """theta = psi - E with E + s sin E = psi, the load at the angle psi from the rest
+    direction."""
     branch, s = Branch(2.0, 0.3), 0.9
     for psi in (0.4, 1.2, 2.0):
         load = s * np.array([np.cos(psi), np.sin(psi) * 0.6, np.sin(psi) * 0.8])

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import pytest
 
 from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.study.methods.branch_bank import single_precision

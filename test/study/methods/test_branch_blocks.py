@@ -9,7 +9,7 @@ import pytest
 
 from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.study.methods.branch_bank import guards, step_bank
-from tree_sway_ros.study.methods.branch_blocks import LANES, BranchBlocks
+from tree_sway_ros.study.methods.branch_blocks import BranchBlocks, LANES
 
 
 def bank(n, seed=0, dt=1 / 60):
@@ -26,8 +26,8 @@ def bank(n, seed=0, dt=1 / 60):
     )
 
 
-@pytest.mark.parametrize("n", [1, LANES, 3 * LANES + 5])
-@pytest.mark.parametrize(("kind", "slack"), [(np.float64, 1e-12), (np.float32, 3e-5)])
+@pytest.mark.parametrize('n', [1, LANES, 3 * LANES + 5])
+@pytest.mark.parametrize(('kind', 'slack'), [(np.float64, 1e-12), (np.float32, 3e-5)])
 def test_blocks_step_as_the_bank_does(n, kind, slack):
     state, load, rows, guard = bank(n)
     blocks = BranchBlocks(rows, guard, kind)

@@ -13,9 +13,9 @@ from tree_sway_ros.study.methods.chain import (
     DAMPING,
     INERTIA,
     MASS,
-    STIFFNESS,
     PlanarChain,
     single_segment,
+    STIFFNESS,
     uniform_chain,
 )
 from tree_sway_ros.study.methods.multiplier_form import place
@@ -38,7 +38,7 @@ def test_mass_matrix_is_twice_the_kinetic_energy():
 
 
 @pytest.mark.parametrize(
-    ("column", "name"), [(STIFFNESS, "stiffness_matrix"), (DAMPING, "damping_matrix")]
+    ('column', 'name'), [(STIFFNESS, 'stiffness_matrix'), (DAMPING, 'damping_matrix')]
 )
 def test_joint_matrices_are_sums_over_the_joints(column, name):
     chain, angle = uneven(), np.array([0.3, -1.0, 0.2, 0.9])
@@ -61,10 +61,10 @@ def test_many_rods_near_the_cantilever():
         uniform_chain(n).frequencies[1] / uniform_chain(n).frequencies[0] - beam for n in (20, 40)
     )
     assert abs(fine) < 0.001 * beam
-    assert coarse / fine == pytest.approx(4.0, abs=0.2), "the ratio converges with the square"
+    assert coarse / fine == pytest.approx(4.0, abs=0.2), 'the ratio converges with the square'
 
 
-@pytest.mark.parametrize("n", [1, 3])
+@pytest.mark.parametrize('n', [1, 3])
 def test_undamped_free_motion_keeps_its_energy_over_any_step(n):
     chain = uniform_chain(n, 2.0, 0.0)
     row = chain.first_order_hold(0.37)
@@ -81,7 +81,7 @@ def test_undamped_free_motion_keeps_its_energy_over_any_step(n):
     assert energy(state) == pytest.approx(start, rel=1e-11)
 
 
-@pytest.mark.parametrize("n", [1, 3])
+@pytest.mark.parametrize('n', [1, 3])
 def test_the_propagator_is_a_group_and_ends_at_the_static_answer(n):
     chain = uniform_chain(n, 2.0, 0.3)
     first, last = np.linspace(1.0, 2.0, n), np.linspace(-3.0, 1.0, n)
@@ -120,11 +120,11 @@ def test_precision_is_kept():
     assert single_segment().astype(np.float32).table.dtype == np.float32
 
 
-@pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
+@pytest.mark.parametrize('value', [-1.0, np.nan, np.inf])
 def test_a_bad_number_is_refused_with_its_segment(value):
     table = uniform_chain(3).table.copy()
     table[2, STIFFNESS] = value
-    with pytest.raises(ParameterError, match="segment 2: value that is negative or not finite"):
+    with pytest.raises(ParameterError, match='segment 2: value that is negative or not finite'):
         PlanarChain(table)
 
 
@@ -132,7 +132,7 @@ def test_a_massless_link_moves_only_what_it_carries():
     link = [0.0, 0.0, 0.5, 1.0, 1.0, 0.0]
     body = [1.0, 0.1, 0.5, 1.0, 1.0, 0.0]
     assert PlanarChain(np.array([link, body])).mass_matrix[0, 0] == pytest.approx(1.0)
-    with pytest.raises(ParameterError, match="segment 1: no inertia about its node"):
+    with pytest.raises(ParameterError, match='segment 1: no inertia about its node'):
         PlanarChain(np.array([body, link]))
-    with pytest.raises(ParameterError, match="shape"):
+    with pytest.raises(ParameterError, match='shape'):
         PlanarChain(np.empty((0, 6)))

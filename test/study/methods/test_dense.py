@@ -13,7 +13,7 @@ from tree_sway_ros.study.methods.operation_count import plain
 from tree_sway_ros.study.methods.redundant import solve_regularised
 
 
-@pytest.mark.parametrize("run", [solve, plain(solve)])
+@pytest.mark.parametrize('run', [solve, plain(solve)])
 def test_solve_agrees_with_numpy(run):
     rng = np.random.default_rng(1)
     a, b = rng.normal(size=(7, 7)), rng.normal(size=(7, 2))
@@ -23,12 +23,12 @@ def test_solve_agrees_with_numpy(run):
     assert b == pytest.approx(expected, rel=1e-10)
 
 
-@pytest.mark.parametrize("entry", [0.0, np.nan])
+@pytest.mark.parametrize('entry', [0.0, np.nan])
 def test_a_singular_matrix_is_told(entry):
     assert not solve(np.full((3, 3), entry), np.ones((3, 1)))
 
 
-@pytest.mark.parametrize("scale", [1e-6, 0.3, 8.0])
+@pytest.mark.parametrize('scale', [1e-6, 0.3, 8.0])
 def test_exponential_agrees_with_scipy(scale):
     a = scale * np.random.default_rng(2).normal(size=(5, 5))
     expected = expm(a)
@@ -43,7 +43,7 @@ def test_repeated_constraints_share_the_multiplier():
     assert lam[0] == pytest.approx(lam[1])
 
 
-@pytest.mark.parametrize("run", [multiply, plain(multiply)])
+@pytest.mark.parametrize('run', [multiply, plain(multiply)])
 def test_products_agree_with_numpy_zeros_or_not(run):
     rng = np.random.default_rng(3)
     a, b = rng.normal(size=(4, 6)), rng.normal(size=(4, 3))

@@ -12,14 +12,14 @@ from tree_sway_ros.study.methods import minimal_form, multiplier_form
 from tree_sway_ros.study.methods.chain import PlanarChain, single_segment, uniform_chain
 from tree_sway_ros.study.methods.minimal import rk4
 from tree_sway_ros.study.methods.operation_count import plain
-from tree_sway_ros.study.methods.registry import METHODS, method_named
+from tree_sway_ros.study.methods.registry import method_named, METHODS
 
 THETA, OMEGA = np.array([0.3, -0.5, 0.9]), np.array([1.0, -2.0, 0.5])
 LOAD = np.array([[1.0, 2.0], [-0.5, 1.0], [0.2, 0.4]])
 LAM = np.array([1.0, -2.0, 0.3, 0.7, -1.1, 0.4])
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope='module')
 def table():
     return uniform_chain(3, 2.0, 0.05).table
 
@@ -39,7 +39,7 @@ def test_accelerations_and_reactions_agree_between_the_forms(table):
     assert lam.reshape(3, 2) == pytest.approx(reactions, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize('name', METHODS)
 def test_every_form_recovers_the_joint_reaction(name):
     chain, method, load = single_segment(), method_named(name), np.array([[1.0, 3.0]])
     state = method.start(chain, np.array([0.4]), np.array([2.0]), load, 1e-3)
@@ -47,7 +47,9 @@ def test_every_form_recovers_the_joint_reaction(name):
     a = minimal_form.acceleration(chain.table, np.array([0.4]), np.array([2.0]), load)[0]
     cos, sin = np.cos(0.4), np.sin(0.4)
     centre = c * np.array([-sin * a - cos * 4, cos * a - sin * 4])
-    assert method.reactions(chain, state, load)[0] == pytest.approx(load[0] - m * centre, rel=1e-12)
+    assert method.reactions(chain, state, load)[0] == pytest.approx(
+        load[0] - m * centre, rel=1e-12
+    )
 
 
 def test_one_segment_is_the_papers_equation():
@@ -85,7 +87,8 @@ def test_constraint_jacobians_against_differences(table):
 
 
 def test_the_two_references_agree(swaying):
-    """Radau on the multiplier form and Runge-Kutta on the angles in long double, at a twentieth."""
+    """Radau on the multiplier form and Runge-Kutta on the angles in long double, at a
+    twentieth."""
     step, steps = plain(rk4.step), 2400
     state = np.zeros((4, 1), np.longdouble)
     chain, dt = swaying.chain.astype(np.longdouble), np.longdouble(1) / steps
@@ -100,7 +103,7 @@ def test_the_chain_knows_its_modes_and_refuses_what_cannot_move():
     chain = uniform_chain(6, 2.0, 0.05)
     assert chain.frequencies[0] == pytest.approx(2 * np.pi * 2.0)
     assert chain.frequencies.shape == (6,)
-    with pytest.raises(ParameterError, match="shape"):
+    with pytest.raises(ParameterError, match='shape'):
         PlanarChain(np.zeros((2, 5)))
-    with pytest.raises(ParameterError, match="segment 0: no inertia"):
+    with pytest.raises(ParameterError, match='segment 0: no inertia'):
         PlanarChain(np.array([[0.0, 0.0, 0.5, 1.0, 1.0, 0.0]]))

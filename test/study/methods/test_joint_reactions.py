@@ -10,7 +10,7 @@ import pytest
 from tree_sway_ros.study.methods import minimal_form, multiplier_form
 from tree_sway_ros.study.methods.chain import PlanarChain, uniform_chain
 from tree_sway_ros.study.methods.minimal.held_moment import rest_moment
-from tree_sway_ros.study.methods.registry import METHODS, method_named
+from tree_sway_ros.study.methods.registry import method_named, METHODS
 from tree_sway_ros.study.methods.trajectory import integrate
 
 N = 4
@@ -20,7 +20,7 @@ TABLE = CHAIN.table
 THETA, OMEGA, LOAD = RNG.normal(size=N), RNG.normal(size=N), RNG.normal(size=(N, 2))
 # Newmark's multipliers ring from step to step for ever.
 ON_CONSTRAINT = [
-    name for name, kind in METHODS.items() if kind.form == "multiplier" and name != "newmark"
+    name for name, kind in METHODS.items() if kind.form == 'multiplier' and name != 'newmark'
 ]
 
 
@@ -39,7 +39,7 @@ def bodies(theta, omega):
     return q.reshape(N, 3), v.reshape(N, 3)
 
 
-@pytest.mark.parametrize("joint", range(N))
+@pytest.mark.parametrize('joint', range(N))
 def test_a_joint_carries_load_less_mass_times_acceleration(joint):
     def momentum(theta, omega):
         return (TABLE[joint:, :1] * bodies(theta, omega)[1][joint:, :2]).sum(axis=0)
@@ -122,7 +122,7 @@ def test_baumgartes_terms_pull_the_gap_back():
     assert second == pytest.approx(expected, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", ON_CONSTRAINT)
+@pytest.mark.parametrize('name', ON_CONSTRAINT)
 def test_settled_joints_carry_the_loads_beyond_them(name):
     chain, dt = uniform_chain(2, 1.0, 0.6), 0.004
     method, load = method_named(name), np.array([[0.3, 2.0], [-0.5, 1.0]])

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.study.methods.chain import uniform_chain
 from tree_sway_ros.study.methods.multiplier_form import (
@@ -38,7 +38,7 @@ def test_the_multipliers_are_the_smallest_that_fit():
     g = np.array([[1.0, 0.0], [2.0, 0.0], [0.0, 0.0]])
     accel, lam = solve_regularised(np.ones(2), g, np.array([5.0, 1.0]), np.zeros(3))
     assert accel == pytest.approx([0.0, 1.0], abs=1e-9)
-    assert lam == pytest.approx([1.0, 2.0, 0.0], abs=1e-6), "5 along (1, 2) / 5"
+    assert lam == pytest.approx([1.0, 2.0, 0.0], abs=1e-6), '5 along (1, 2) / 5'
 
 
 def test_a_chain_with_every_joint_said_twice_moves_as_the_chain():
@@ -55,4 +55,4 @@ def test_a_chain_with_every_joint_said_twice_moves_as_the_chain():
     rough, _ = solve_regularised(
         mass, np.vstack([g, g]), force, np.tile(bias, 2), relative=1e-3, rounds=1
     )
-    assert np.abs(rough - expected).max() > 1e-5, "the corrections do the work"
+    assert np.abs(rough - expected).max() > 1e-5, 'the corrections do the work'

@@ -10,24 +10,24 @@ import pytest
 from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
 from tree_sway_ros.core.oscillators.step_rules import stability_limit
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.study.methods.chain import DAMPING, STIFFNESS, single_segment
+from tree_sway_ros.study.methods.chain import DAMPING, single_segment, STIFFNESS
 from tree_sway_ros.study.methods.registry import method_named
 
 
-@pytest.mark.parametrize("name", REAL_TIME)
+@pytest.mark.parametrize('name', REAL_TIME)
 def test_declared_limits_are_those_of_the_rule(name):
     assert method_named(name).limit == pytest.approx(stability_limit(name), rel=1e-3)
 
 
 def test_names_that_are_no_method_or_cannot_run_live():
     with pytest.raises(ParameterError, match="unknown integrator 'euler'"):
-        method_named("euler")
-    for name in ("newmark", "radau_ggl"):
-        with pytest.raises(ParameterError, match=r"no integrator .* that the solver can run"):
+        method_named('euler')
+    for name in ('newmark', 'radau_ggl'):
+        with pytest.raises(ParameterError, match=r'no integrator .* that the solver can run'):
             method_named(name).propagator(np.ones(1), np.ones(1), np.ones(1), 0.1)
 
 
-@pytest.mark.parametrize("name", REAL_TIME)
+@pytest.mark.parametrize('name', REAL_TIME)
 def test_what_the_solver_runs_is_the_methods_own_step(name):
     """Coefficients are the derivative of the nonlinear step at rest."""
     chain, method, dt, tiny = single_segment(2.0, 0.1), method_named(name), 1 / 60, 1e-7

@@ -23,7 +23,7 @@ def noise(shape, seconds=3000.0):
     return np.fft.irfft(shape(frequency) * np.exp(1j * phase), n)
 
 
-@pytest.mark.parametrize("power", [-2.0, -4.4])
+@pytest.mark.parametrize('power', [-2.0, -4.4])
 def test_a_known_slope_is_found(power):
     signal = noise(lambda f: np.maximum(f, 0.4) ** (0.5 * power))
     assert slope_above(signal, 0.6, RATE) == pytest.approx(power, abs=0.15)
@@ -35,14 +35,14 @@ def test_one_oscillator_alone_is_steeper_than_any_tree():
 
 
 def test_the_tip_of_a_broadleaf_falls_more_steeply_than_the_strain_of_its_stem():
-    slopes = response_slopes("walnut", coherence=1.0, in_leaf=False, seconds=120.0)
+    slopes = response_slopes('walnut', coherence=1.0, in_leaf=False, seconds=120.0)
     assert 0.7 < slopes.first < 1.2
     assert np.mean(slopes.tip) < np.mean(slopes.strain) - 2.0
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("in_leaf", [False, True])
-@pytest.mark.parametrize("species", ["spruce", "pine", "birch", "walnut"])
+@pytest.mark.parametrize('in_leaf', [False, True])
+@pytest.mark.parametrize('species', ['spruce', 'pine', 'birch', 'walnut'])
 def test_the_strain_falls_as_on_real_trees_with_gusts_limb_by_limb(species, in_leaf):
     trees = [
         response_slopes(species, coherence=USUAL_COHERENCE, in_leaf=in_leaf, seed=seed)

@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.tools.stream.soak import Health, growth, health
+from tree_sway_ros.tools.stream.soak import growth, Health, health
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -28,7 +28,7 @@ def test_growth_is_the_slope_after_the_warm_up() -> None:
     assert math.isnan(growth([])[0])
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+@pytest.mark.skipif(not sys.platform.startswith('linux'), reason='reads /proc')
 def test_a_process_looks_at_itself() -> None:
     now = health(3.0)
     assert now.time == 3.0
@@ -38,13 +38,13 @@ def test_a_process_looks_at_itself() -> None:
 
 
 @pytest.mark.ros
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
-@pytest.mark.parametrize("kind", ["nodes", pytest.param("demo", marks=pytest.mark.long)])
+@pytest.mark.skipif(not sys.platform.startswith('linux'), reason='reads /proc')
+@pytest.mark.parametrize('kind', ['nodes', pytest.param('demo', marks=pytest.mark.long)])
 def test_the_chain_goes_through_all_faults(kind: str, ros_environment: dict[str, str]) -> None:
-    command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "soak", "--hours", "0.003"]
+    command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'soak', '--hours', '0.003']
     ended = subprocess.run(
-        [*command, "--every", "0.5", "--speed", "2", "--slope", "1e9"]
-        + ["--demo"] * (kind == "demo"),
+        [*command, '--every', '0.5', '--speed', '2', '--slope', '1e9']
+        + ['--demo'] * (kind == 'demo'),
         env=ros_environment,
         capture_output=True,
         text=True,
@@ -52,8 +52,8 @@ def test_the_chain_goes_through_all_faults(kind: str, ros_environment: dict[str,
         timeout=240.0,
     )
     assert ended.returncode == 0, ended.stderr
-    assert re.search(r"^poses +\d+ at", ended.stdout, re.MULTILINE)
-    assert "(wanted 120)" in ended.stdout
-    of_each = {"nodes": ["anemometer", "wind", "solver", "viewer"], "demo": ["demo"]}[kind]
-    assert re.findall(r"^memory +(\w+)", ended.stdout, re.MULTILINE) == of_each
-    assert "failed   0 callbacks; 0 restarts" in ended.stdout
+    assert re.search(r'^poses +\d+ at', ended.stdout, re.MULTILINE)
+    assert '(wanted 120)' in ended.stdout
+    of_each = {'nodes': ['anemometer', 'wind', 'solver', 'viewer'], 'demo': ['demo']}[kind]
+    assert re.findall(r'^memory +(\w+)', ended.stdout, re.MULTILINE) == of_each
+    assert 'failed   0 callbacks; 0 restarts' in ended.stdout

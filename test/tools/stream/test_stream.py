@@ -4,16 +4,16 @@
 
 from __future__ import annotations
 
+from collections import deque
 import math
 import re
 import tracemalloc
-from collections import deque
 
 import numpy as np
 import pytest
 
 from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.tools.stream.monitor import WINDOW, StreamRecord, rate_of
+from tree_sway_ros.tools.stream.monitor import rate_of, StreamRecord, WINDOW
 from tree_sway_ros.tools.stream.text import status_line, summary
 from tree_sway_ros.tools.stream.totals import Spread, StreamTotals
 from tree_sway_ros.tools.stream.watch import checked_seconds
@@ -60,7 +60,7 @@ def test_nothing_has_no_rate_and_no_latency() -> None:
     assert math.isnan(empty.latency(0.5))
     assert math.isnan(totals.latency.quantile(0.5))
     assert rate_of([1.0, 1.0]) == 0.0
-    assert summary(totals, 60.0) == "no poses"
+    assert summary(totals, 60.0) == 'no poses'
 
 
 def test_a_record_forgets_what_is_old(record: StreamRecord) -> None:
@@ -100,23 +100,23 @@ def test_a_day_of_a_stream_takes_no_more_memory_than_a_second() -> None:
 
 def test_a_line_about_now(record: StreamRecord) -> None:
     line = status_line(record, 2.0)
-    assert "wind  5.0 m/s from SW at 20.0 Hz" in line
-    assert "tip    5.0 mm" in line
-    assert "poses  59.5 Hz, latency 1.00 ms (p95 1.00)" in line
+    assert 'wind  5.0 m/s from SW at 20.0 Hz' in line
+    assert 'tip    5.0 mm' in line
+    assert 'poses  59.5 Hz, latency 1.00 ms (p95 1.00)' in line
     record.tip.clear()
     record.wind.clear()
-    assert "wind none yet" in status_line(record, 2.0)
-    assert "tip" not in status_line(record, 2.0)
+    assert 'wind none yet' in status_line(record, 2.0)
+    assert 'tip' not in status_line(record, 2.0)
 
 
 @pytest.mark.parametrize(
-    ("to", "name"),
+    ('to', 'name'),
     [
-        ((1, 0), "W"),
-        ((0, 1), "S"),
-        ((-1, 0), "E"),
-        ((0, -1), "N"),
-        ((1, -1), "NW"),
+        ((1, 0), 'W'),
+        ((0, 1), 'S'),
+        ((-1, 0), 'E'),
+        ((0, -1), 'N'),
+        ((1, -1), 'NW'),
         ((0, 0.01), None),
     ],
 )
@@ -124,24 +124,24 @@ def test_winds_are_named_by_where_they_come_from(
     record: StreamRecord, to: tuple[float, float], name: str | None
 ) -> None:
     record.wind.append(np.array([*to, 0.0]))
-    assert (f"from {name} at" if name else "calm at") in " ".join(status_line(record, 0.0).split())
+    assert (f'from {name} at' if name else 'calm at') in ' '.join(status_line(record, 0.0).split())
 
 
 def test_a_summary_says_it_all(totals: StreamTotals) -> None:
     text = summary(totals, 60.0)
-    assert "poses    120 at 59.50 Hz (wanted 60), 1 missing" in text
-    assert re.search(r"latency  p50 (0.99|1.0\d), p95 (0.99|1.0\d), max 1.00 ms", text)
-    assert "mean 5.00, max 5.00 m/s, from SW" in text
-    assert "mean +3.0 east, +0.0 north, +4.0 up" in text
+    assert 'poses    120 at 59.50 Hz (wanted 60), 1 missing' in text
+    assert re.search(r'latency  p50 (0.99|1.0\d), p95 (0.99|1.0\d), max 1.00 ms', text)
+    assert 'mean 5.00, max 5.00 m/s, from SW' in text
+    assert 'mean +3.0 east, +0.0 north, +4.0 up' in text
     whole = StreamTotals()
     for stamp in STAMPS[:50]:
         whole.add_poses(stamp, stamp)
-    assert "none missing" in summary(whole, 60.0)
+    assert 'none missing' in summary(whole, 60.0)
 
 
 def test_a_time_to_watch() -> None:
     assert checked_seconds(None) == math.inf
     assert checked_seconds(2.5) == 2.5
     for wrong in (0.0, -1.0, math.nan):
-        with pytest.raises(ParameterError, match="no time to run"):
+        with pytest.raises(ParameterError, match='no time to run'):
             checked_seconds(wrong)

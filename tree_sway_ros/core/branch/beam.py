@@ -9,8 +9,8 @@ segment. Integrals are taken on those points, so the result does not depend on h
 is cut; and as what a child hands over makes a step or a kink at its foot, no panel reaches across
 one.
 
-Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa = M
-/ EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
+Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa =
+M / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
 """
 
 from __future__ import annotations
@@ -117,8 +117,8 @@ class BranchBeam:
         self.chord = chord / self.chord_length if self.chord_length > 1e-9 else self.tangent[0]
         self.second_moment = np.pi / 64.0 * self.diameter**4
         """
-        Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the first
-        panel, with the spring in series.
+        Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the
+        first panel, with the spring in series.
         """
         if root_compliance > 0.0:
             own = 1.0 / self.second_moment[0, 0] + root_compliance / self.weight[0, 0]
@@ -158,7 +158,7 @@ class BranchBeam:
 
     def over_segments(self, values: Floats) -> Floats:
         """Mean over each segment of values at the points, (p, 5, ...), as (m, ...)."""
-        panels = np.einsum("pg,pg...->p...", self.weight, values)
+        panels = np.einsum('pg,pg...->p...', self.weight, values)
         first = np.searchsorted(self.segment, np.arange(len(self.segment_length)))
         sums = np.add.reduceat(panels, first, axis=0)
         mean: Floats = (sums.T / self.segment_length).T
@@ -192,15 +192,15 @@ class BranchBeam:
 
     def moment_in_space(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
-        Internal moment under loads from any side.
+        Compute the internal moment under loads from any side.
 
         Parameters
         ----------
         load
             Force per length at the points in [N/m] in each of some cases, (p, 5, k, 3).
         force, moment
-            Force that each child hands over, and its moment about the root of the tree, both (c, k,
-            3).
+            Force that each child hands over, and its moment about the root of the tree, both (c,
+            k, 3).
 
         Returns
         -------
@@ -219,10 +219,7 @@ class BranchBeam:
         return out
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
-        """
-        Curvature by an internal moment, for a modulus of 1: bent by what acts across the branch,
-        twisted by what acts about it, both (p, 5, k, 3).
-        """
+        """Curvature by an internal moment, bending and twist, for a modulus of 1, (p, 5, k, 3)."""
         along = self.tangent[:, None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
         bent = moment + (0.5 / shear_ratio - 1.0) * twist
@@ -231,10 +228,7 @@ class BranchBeam:
 
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
-        """
-        Way from each point to each child beyond it in [m], and whether it lies beyond [-], both (p,
-        5, c).
-        """
+        """Lever [m] from each point to each child beyond it, and whether it is so, (p, 5, c)."""
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         return lever, (lever > 0.0).astype(np.float64)
 
@@ -283,7 +277,9 @@ class SlopeShape:
     def stiffness(self, other: SlopeShape, modulus: float) -> float:
         """Bending energy between two shapes, the integral of E I kappa kappa', in [N m/rad]."""
         return float(
-            self.beam.integral(modulus * self.beam.second_moment * self.curvature * other.curvature)
+            self.beam.integral(
+                modulus * self.beam.second_moment * self.curvature * other.curvature
+            )
         )
 
     def displacement(self, rotation: Floats) -> tuple[Floats, Floats, Floats]:
@@ -307,16 +303,13 @@ class SlopeShape:
 
     @cached_property
     def _reach(self) -> tuple[Floats, Floats, Floats]:
-        """
-        Integral of the slope along the branch: its cross product with a rotation is the
-        displacement.
-        """
+        """Integral of the slope along the branch: its product with a turn is the displacement."""
         return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
 
 
 class RotationField:
     """
-    A field by which a branch bends and twists in space: rotation phi(s) per unit of its coordinate.
+    Field by which a branch bends and twists in space: rotation phi(s) per unit of coordinate.
 
     Parameters
     ----------
@@ -345,7 +338,12 @@ class RotationField:
 
 @kernel
 def _integrate(
-    values: Floats, length: Floats, weight: Floats, to_points: Floats, points: Floats, nodes: Floats
+    values: Floats,
+    length: Floats,
+    weight: Floats,
+    to_points: Floats,
+    points: Floats,
+    nodes: Floats,
 ) -> None:
     """Integrate values (p, 5, k) from the base up to points, of the same shape, and nodes."""
     n_panels, n_points, n = values.shape
@@ -365,8 +363,10 @@ def _integrate(
 
 def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:
     """
-    Energy between fields of one branch in [N m/rad], (k, k): E I of bending, across the branch as
-    it runs in space, and G J of twist about it, J = 2 I.
+    Energy between fields of one branch in [N m/rad], (k, k).
+
+    It is E I of bending, across the branch as it runs in space, and G J of twist about it, J = 2
+    I.
     """
     beam, n = fields[0].beam, len(fields)
     curvature = np.stack([one.curvature for one in fields])

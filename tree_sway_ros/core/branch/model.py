@@ -4,9 +4,9 @@
 Every branch as a bending body: its axes, its mass and load along it, the fields it bends by.
 
 A branch turns about two fixed axes across its chord. Its coordinates are the components of a
-rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What a
-branch carries loads it and shapes it: the shear force and the moment of each child's subtree enter
-at the child's place.
+rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What
+a branch carries loads it and shapes it: the shear force and the moment of each child's subtree
+enter at the child's place.
 
 Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass
 per length [kg/m].
@@ -21,12 +21,18 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
-from tree_sway_ros.core.branch.beam import Attachments, BranchBeam, RotationField, SlopeShape, cross
+from tree_sway_ros.core.branch.beam import (
+    Attachments,
+    BranchBeam,
+    cross,
+    RotationField,
+    SlopeShape,
+)
 from tree_sway_ros.core.branch.shapes import (
+    Carried,
     FEWER_TURNS,
     N_PAIRS,
     N_TURNS,
-    Carried,
     shape_fields,
     wind_loads,
 )
@@ -66,8 +72,7 @@ class BranchModel:
     @cached_property
     def inertia_share(self) -> float:
         """
-        Inertia that gives the branch alone its beam's first frequency, over that of its static
-        shape [-].
+        Inertia that gives its beam's first frequency, over that of the static shape [-].
 
         Inverse iteration from the static shape: each turn bends the branch by its own inertia.
         """
@@ -92,9 +97,7 @@ def branch_models(
     leaf_area: Floats | None = None,
     root_compliance: float = 0.0,
 ) -> list[BranchModel]:
-    """
-    Model each branch of a tree for one model; parameters are those of `TreeBeams` and its `models`.
-    """
+    """Model each branch of a tree; parameters are those of `TreeBeams` and its `models`."""
     beams = TreeBeams(
         tree,
         density,
@@ -142,16 +145,18 @@ class TreeBeams:
         """Sum up what hangs on each branch."""
         n = tree.n_branches
         if leaf_mass is not None:
-            leaf_mass = one_of_each("leaf_mass", leaf_mass, n, "branch")
+            leaf_mass = one_of_each('leaf_mass', leaf_mass, n, 'branch')
         if leaf_area is not None:
-            leaf_area = one_of_each("leaf_area", leaf_area, n, "branch")
+            leaf_area = one_of_each('leaf_area', leaf_area, n, 'branch')
         self._tree, self._shear_ratio = tree, shear_ratio
         self._bare: list[tuple[BranchBeam, Floats, Floats, Ints]] = []
         self._known: dict[tuple[int, ...], BranchModel] = {}
         area, area_moment = np.zeros(n), np.zeros((n, 3))
         weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
         force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
-        self._sums = Carried(area, area_moment, force, torque, weight, weight_moment, weight_second)
+        self._sums = Carried(
+            area, area_moment, force, torque, weight, weight_moment, weight_second
+        )
         children_of: list[list[int]] = [[] for _ in range(n)]
         for branch in range(1, n):
             children_of[tree.branch_parent[branch]].append(branch)
@@ -176,7 +181,11 @@ class TreeBeams:
             if speed_profile is not None:
                 drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
             self._bare.append((beam, drag_area, mass, children))
-            point, dm, load = beam.point.reshape(-1, 3), beam.weight * mass, beam.weight * drag_area
+            point, dm, load = (
+                beam.point.reshape(-1, 3),
+                beam.weight * mass,
+                beam.weight * drag_area,
+            )
             area[branch] = load.sum() + area[children].sum()
             area_moment[branch] = load.ravel() @ point + area_moment[children].sum(axis=0)
             loads = wind_loads(beam, drag_area)
@@ -189,7 +198,9 @@ class TreeBeams:
             weight_second[branch] += weight_second[children].sum(axis=0)
         self._bare.reverse()
 
-    def models(self, *, carries: bool, enriched: frozenset[int] = frozenset()) -> list[BranchModel]:
+    def models(
+        self, *, carries: bool, enriched: frozenset[int] = frozenset()
+    ) -> list[BranchModel]:
         """
         Model each branch; where two models of the sway do not differ, it is the same.
 
@@ -261,7 +272,7 @@ def enriched_branches(tree: Tree, choice: str) -> frozenset[int]:
     carriers = {0, *tree.branch_parent[1:].tolist()}
     limbs = {0, *(int(tree.branch_parent[branch]) for branch in carriers if branch > 0)}
     chosen: dict[str, Iterable[int]] = {
-        "none": (), "stem": (0,), "limbs": limbs, "carriers": carriers,
-        "all": range(tree.n_branches)
+        'none': (), 'stem': (0,), 'limbs': limbs, 'carriers': carriers,
+        'all': range(tree.n_branches)
     }  # fmt: skip
     return frozenset(chosen[choice])

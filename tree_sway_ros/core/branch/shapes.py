@@ -3,28 +3,28 @@
 """
 The fields of rotation by which a branch bends and twists in space.
 
-A plain branch has two: those in which winds bend and twist it with all that it carries, so that its
-chord turns about one axis or the other. An enriched branch has further ones: what the inertia of
-these bends it into, and so on; and how it is twisted by all it carries when that turns about the
-chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its
-flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and twists
-in one: no coordinate of its own is spent on twist.
+A plain branch has two: those in which winds bend and twist it with all that it carries, so that
+its chord turns about one axis or the other. An enriched branch has further ones: what the inertia
+of these bends it into, and so on; and how it is twisted by all it carries when that turns about
+the chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space
+of its flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and
+twists in one: no coordinate of its own is spent on twist.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.beam import (
     BranchBeam,
-    RotationField,
-    SlopeShape,
     cross,
     cross_matrix,
+    RotationField,
+    SlopeShape,
 )
 
 N_PAIRS = 3
@@ -142,9 +142,10 @@ def shape_fields(
 
 def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     """
-    Force per length on the branch at rest, of winds from all sides along the ground, as far as it
-    is linear in the wind: per m/s of winds along x, y and z and kg/m^3 in winds of 1 m/s, (p, 5, 3,
-    3), the wind first.
+    Force per length on the branch at rest, of winds from all sides, (p, 5, 3, 3), the wind first.
+
+    It is linear in the wind: per m/s of winds along x, y and z, in air of 1 kg/m^3 and winds along
+    the ground of 1 m/s.
     """
     tangent = beam.tangent
     across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
@@ -164,13 +165,12 @@ _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
-    Curvatures that turn the chord by 1 about e2 and about -e1 as winds along x, y and z do, (2, p,
-    5, 3), out of those of the three, (p, 5, 3, 3).
+    Curvatures, (2, p, 5, 3), that turn the chord by 1 about e2 and about -e1 as the winds do.
 
-    Of all that do, these come nearest to what the three winds make of the branch (least squares, an
-    upward wind weighted by `_UPWARD`): where winds along the ground turn the chord both ways, what
-    they do is exact, and so is the static sway of a tree. None for a branch whose chord no wind
-    turns.
+    Of all that do, these come nearest to what the winds along x, y and z make of the branch, (p,
+    5, 3, 3) (least squares, an upward wind weighted by `_UPWARD`): where winds along the ground
+    turn the chord both ways, what they do is exact, and so is the static sway of a tree. None for
+    a branch whose chord no wind turns.
     """
     slopes = beam.from_base(curvatures)[0]
     ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
@@ -205,7 +205,7 @@ def _further(
     basis: list[Floats] = []
 
     def rest_of(curvature: Floats) -> RotationField | None:
-        """What is new in a curvature; it joins the basis."""
+        """Take what is new in a curvature into the basis, and return it."""
         vector = (measure * scaled(curvature, stiff)).ravel()
         whole = float(np.linalg.norm(vector))
         for _ in range(2):
@@ -242,8 +242,9 @@ def inertial_moment(
     beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
 ) -> Floats:
     """
-    Internal moment by the inertia of a field and of all that it carries, (p, 5, 3); of all that is
-    carried turning about the chord as one where there is no field.
+    Return the internal moment by the inertia of a field and of all that it carries, (p, 5, 3).
+
+    Without a field all that is carried turns about the chord as one.
     """
     places = beam.child_point[: len(carried.area)]
     if field is None:
@@ -256,7 +257,7 @@ def inertial_moment(
     at_root = moved - cross(turn, places)
     force = carried.mass[:, None] * at_root + cross(turn, carried.mass_moment)
     trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None]
-    spin = trace * turn - np.einsum("cij,cj->ci", carried.mass_second, turn)
+    spin = trace * turn - np.einsum('cij,cj->ci', carried.mass_second, turn)
     moment = cross(carried.mass_moment, at_root) + spin
     return beam.moment_in_space(load[:, :, None], force[:, None], moment[:, None])[:, :, 0]
 

@@ -19,10 +19,10 @@ third to spare, so that a wind on the border does not flicker.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
+import math
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.checks import array_to_fill, array_to_read
-from tree_sway_ros.core.fidelity.estimate import Estimate, choose
+from tree_sway_ros.core.fidelity.estimate import choose, Estimate
 from tree_sway_ros.core.fidelity.ladder import FidelityLadder
 from tree_sway_ros.core.motion.rotation_fit import coordinates_within
 from tree_sway_ros.core.simulator.assembly import Bank
@@ -38,8 +38,8 @@ from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import WIND_REFUSED, Counts, SwaySimulator
-from tree_sway_ros.core.state.tree_state import KeepsState, TreeState, digest_of
+from tree_sway_ros.core.simulator.simulator import Counts, SwaySimulator, WIND_REFUSED
+from tree_sway_ros.core.state.tree_state import digest_of, KeepsState, TreeState
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import ClimateTracker, WindClimate
@@ -147,7 +147,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     @property
     def frame_cost(self) -> float:
-        """What a step and a placing of the chosen model take on this machine in [us]."""
+        """Return what a step and a placing of the chosen model take on this machine in [us]."""
         return self.pace * self.choice.cost
 
     @property
@@ -157,7 +157,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     @property
     def shown(self) -> SwaySimulator:
-        """Simulator whose poses are seen, or fade."""
+        """Return the simulator whose poses are seen, or fade."""
         return self._shown
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -185,12 +185,12 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     @cached_property
     def bank(self) -> Bank:
-        """What places the key rotations of the whole tree, whatever the model in use."""
-        return self.ladder.whole.at_rest("coupled")
+        """Return what places the key rotations of the whole tree, whatever the model in use."""
+        return self.ladder.whole.at_rest('coupled')
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,), whatever the model."""
+        """Return the records of `BRANCH` by which key rotations are told on any model, (b,)."""
         return self.bank.branches
 
     def digest(self) -> str:
@@ -198,7 +198,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         return digest_of(self.tree, self.species, self.settings)
 
     def rotations(self) -> Floats:
-        """Key rotations of the whole tree in [rad], (N,), on the way from one model to the next."""
+        """Key rotations of the whole tree in [rad], (N,), also between one model and the next."""
         shown = self._whole_rotations(self._shown)
         share = self._faded
         if self._next is not None and share > 0.0:
@@ -210,9 +210,9 @@ class AdaptiveSimulator(OneTree, KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations of the whole tree, (n, 7)."""
         shape = (self.tree.n_segments, 7)
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        poses = np.empty(shape) if out is None else array_to_fill('out', out, shape)
         expected = self.bank.oscillators.rotations().shape
-        rotations = array_to_read("rotations", rotations, expected)
+        rotations = array_to_read('rotations', rotations, expected)
         self.bank.place(rotations, self.tree.start[0], poses)
         return poses
 
@@ -229,7 +229,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
                 f"a state of tree '{state.tree}', model '{state.model}', settings {state.digest}",
                 where=self.tree.name,
                 cure=f"this is tree '{self.tree.name}' with settings {self.digest()} and models: "
-                + ", ".join(self._built),
+                + ', '.join(self._built),
             )
         simulator.set_state(replace(state, model=simulator.model, digest=simulator.digest()))
         self._shown, self._next, self._left, self._behind = simulator, None, None, 0.0
@@ -258,10 +258,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
             each.tune(**changes)
 
     def review(self, *, at_best: bool = False) -> Estimate:
-        """
-        Choose again: call it when the tolerance has changed; with ``at_best`` whatever the
-        tolerance.
-        """
+        """Choose again once the tolerance has changed; with ``at_best`` whatever the tolerance."""
         self._since_review, self._judged = 0.0, self._gust
         climate = self._tracker.climate
         estimates = self._estimates(climate, self._in_gust(climate))
@@ -288,9 +285,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         return poses
 
     def reset(self) -> None:
-        """
-        Go back to rest and to the wind that was expected, at once on the model that it asks for.
-        """
+        """Go back to rest and to the expected wind, at once on the model that it asks for."""
         self.choice = self._expect()
         self._shown, self._next, self._left = self._simulator(self.choice), None, None
         self._shown.reset()
@@ -304,7 +299,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         return self._choose(self.ladder.estimates(self._expected))
 
     def _feel(self, wind_mean: ArrayLike, dt: float) -> None:
-        """Notice a load beyond what the model was chosen for, before the step in which it comes."""
+        """Notice, before its step, a load beyond what the model was chosen for."""
         x, y, z = np.asarray(wind_mean, dtype=np.float64).tolist()
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
@@ -336,7 +331,7 @@ class AdaptiveSimulator(OneTree, KeepsState):
         """Note by how much the picture would jump from a model to the one now shown."""
         self._turns_apart = self._whole_rotations(left) - self._whole_rotations(self._shown)
         poses, others = left.place(), self._shown.place()
-        apart = np.einsum("jk,jk->j", poses[:, 3:], others[:, 3:]) < 0.0
+        apart = np.einsum('jk,jk->j', poses[:, 3:], others[:, 3:]) < 0.0
         poses[apart, 3:] *= -1.0
         self._poses_apart = poses - others
         self._left, self._behind = None, 1.0
@@ -382,8 +377,8 @@ class AdaptiveSimulator(OneTree, KeepsState):
 
     def _among(self, simulator: SwaySimulator) -> Ints:
         """Where the coordinates of a model stand among those of the whole tree, (n,)."""
-        first = self.joints["coordinate"][self.ladder.moving(self._name_of(simulator))]
-        counts = simulator.joints["n_coordinates"]
+        first = self.joints['coordinate'][self.ladder.moving(self._name_of(simulator))]
+        counts = simulator.joints['n_coordinates']
         within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
         return np.repeat(first, counts) + within
 
@@ -419,7 +414,7 @@ def _shift(poses: Floats, by: Floats) -> None:
 def _mix(poses: Floats, others: Floats, share: float) -> None:
     """Go over from poses to others by a share, in place."""
     turn, other = poses[:, 3:], others[:, 3:]
-    towards = np.einsum("jk,jk->j", turn, other)
+    towards = np.einsum('jk,jk->j', turn, other)
     poses[:, :3] += share * (others[:, :3] - poses[:, :3])
     turn += share * (np.where(towards < 0.0, -1.0, 1.0)[:, None] * other - turn)
-    turn /= np.sqrt(np.einsum("jk,jk->j", turn, turn))[:, None]
+    turn /= np.sqrt(np.einsum('jk,jk->j', turn, turn))[:, None]

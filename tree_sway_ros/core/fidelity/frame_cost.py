@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a frame costs, from counts: known before a model is run, so that a budget can choose among
-models.
+What a frame costs, from counts: known before a model is run, so that a budget can choose.
 
 Prices are fits to trees of 31 to 261 branches in 3 to 12 segments each, timed on one core of a
 server of 2020; `pace` scales them to the machine at hand.
@@ -32,8 +31,8 @@ _MODE_OF_COORDINATE = 1.5e-3
 def frame_cost(bank: Bank, tree: Tree) -> float:
     """Cost of one step and one placing of a model of a whole tree in [us]."""
     branches = bank.branches
-    n_moving, n_enriched = len(branches), int((branches["n_coordinates"] > 2).sum())
-    n_bending = int((branches["end"] - branches["first"]).sum())
+    n_moving, n_enriched = len(branches), int((branches['n_coordinates'] > 2).sum())
+    n_bending = int((branches['end'] - branches['first']).sum())
     place = _CALL + _PLACE_BRANCH * n_moving + _PLACE_ENRICHED * n_enriched
     place += _PLACE_SEGMENT * n_bending + _PLACE_RIGID * (tree.n_segments - n_bending)
     if not bank.frequencies.size:

@@ -8,9 +8,9 @@ the difference of the two responses, summed over the frequencies of the wind's l
 difference, joined from the root to the tips of all branches, is what a viewer would see. To it
 comes a margin for what no linear model knows.
 
-Between the models stand those in which the quietest branches are frozen and move with their parents
-as one body; they are models like any other, as the response of a tree with frozen branches is known
-too.
+Between the models stand those in which the quietest branches are frozen and move with their
+parents as one body; they are models like any other, as the response of a tree with frozen branches
+is known too.
 
 Where gusts reach limb by limb, limbs are also loaded against each other, in four patterns of signs
 that their delays deal them; what those differ by counts with the power that each limb feels by
@@ -21,8 +21,8 @@ Symbols: D(f) difference of two tip responses, S(f) spectrum of the load, C its 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
+import math
 
 import numpy as np
 
@@ -55,12 +55,12 @@ where this says 5 to 7 %, at mean winds of 5 and 12 m/s; built-in ones by 1.4 to
 """
 
 LADDER: tuple[tuple[str, int, float], ...] = (
-    ("coupled", 0, 0.0), ("coupled", 0, 0.01),
-    ("modes", 12, 0.0), ("modes", 12, 0.003), ("modes", 12, 0.01), ("modes", 12, 0.03),
-    ("modes", 12, 0.1),
-    ("modes", 6, 0.0), ("modes", 3, 0.0),
-    ("wind_basis", 20, 0.0),
-    ("subtree", 0, 0.0), ("subtree", 0, 0.1), ("branch", 0, 0.0), ("frozen", 0, math.inf),
+    ('coupled', 0, 0.0), ('coupled', 0, 0.01),
+    ('modes', 12, 0.0), ('modes', 12, 0.003), ('modes', 12, 0.01), ('modes', 12, 0.03),
+    ('modes', 12, 0.1),
+    ('modes', 6, 0.0), ('modes', 3, 0.0),
+    ('wind_basis', 20, 0.0),
+    ('subtree', 0, 0.0), ('subtree', 0, 0.1), ('branch', 0, 0.0), ('frozen', 0, math.inf),
 )  # fmt: skip
 """
 Models, the best first, with their number of modes and the share of the motion that freezing may
@@ -91,7 +91,7 @@ class FidelityLadder:
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Find the response of every model."""
         self.tree, self.species = tree, species
-        whole = CalibratedTree(tree, species, replace(settings, stiffness="beam"))
+        whole = CalibratedTree(tree, species, replace(settings, stiffness='beam'))
         self._drag_law = whole.drag_law
         best, best_modes = _best(tree)
         self._coherence = settings.crown_coherence
@@ -109,7 +109,7 @@ class FidelityLadder:
                 self._trees[share] = PartlyFrozenTree(whole, quiet)
         self._models: dict[str, _Model] = {}
         for model, n_modes, share in LADDER:
-            if model == "coupled":
+            if model == 'coupled':
                 model, n_modes = best, best_modes
             self._add(model, n_modes, share)
         self._grams = np.stack([self._motion, *(each.error for each in self._models.values())])
@@ -121,7 +121,7 @@ class FidelityLadder:
 
     @property
     def whole(self) -> CalibratedTree:
-        """The tree, calibrated, nothing frozen."""
+        """Return the tree, calibrated, nothing frozen."""
         return self._trees[0.0]
 
     def moving(self, name: str) -> Ints:
@@ -147,16 +147,18 @@ class FidelityLadder:
         found = []
         for each, error in zip(self._models.values(), errors.tolist(), strict=True):
             # What no linear model knows has nothing to do with what a lesser one leaves out.
-            rest = (FLOOR + each.table_error) * offset if each.model != "frozen" else 0.0
+            rest = (FLOOR + each.table_error) * offset if each.model != 'frozen' else 0.0
             bound = math.hypot(error, rest)
-            found.append(Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen))
+            found.append(
+                Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen)
+            )
         return sorted(found, key=lambda e: e.cost)
 
     def _add(self, model: str, n_modes: int, share: float) -> None:
         """Set a model against the best one, both on the coordinates of the whole tree."""
         calibrated, whole = self._trees.get(share), self._trees[0.0].layer(model)
         n = whole.reduction.n_coordinates
-        if model == "wind_basis" and self.whole.plain:
+        if model == 'wind_basis' and self.whole.plain:
             return
         if calibrated is None or n_modes > calibrated.layer(model).reduction.n_coordinates:
             return
@@ -204,11 +206,11 @@ class _Model:
 
 def _best(tree: Tree) -> tuple[str, int]:
     """Find the model that all others are set against, and its number of modes."""
-    return ("coupled", 0) if tree.n_branches <= MOST_COUPLED else ("modes", MOST_MODES)
+    return ('coupled', 0) if tree.n_branches <= MOST_COUPLED else ('modes', MOST_MODES)
 
 
 def _n_coordinates(branches: Records) -> int:
-    return int(branches["n_coordinates"].sum())
+    return int(branches['n_coordinates'].sum())
 
 
 def _signs(delay: Ints) -> Floats:
@@ -218,16 +220,17 @@ def _signs(delay: Ints) -> Floats:
 
 def _gram(response: Complexes) -> Floats:
     """
-    Mean over tips of the inner products of the answers (b, 3, 2 p, f) along x and y to an even wind
-    and to patterns, of those in the mean, (1 or 2, f, 2, 2).
+    Mean over tips of the answers' inner products to an even wind and patterns, (1 or 2, f, 2, 2).
+
+    The answers (b, 3, 2 p, f) are along x and y; of the patterns it is the mean.
     """
     b, _, columns, f = response.shape
     by_pattern = response.reshape(b, 3, columns // 2, 2, f)
-    grams = np.einsum("bkpif,bkpjf->pfij", by_pattern.conj(), by_pattern).real / b
+    grams = np.einsum('bkpif,bkpjf->pfij', by_pattern.conj(), by_pattern).real / b
     return np.stack([grams[0], *([grams[1:].mean(axis=0)] if len(grams) > 1 else [])])
 
 
 def _mean_squares(grams: Floats, power: Floats) -> Floats:
-    """Mean squares that the power of a load makes of `_gram` of each, both (..., f, 2, 2), (k,)."""
+    """Mean squares (k,) that the power of a load makes of each `_gram`, both (..., f, 2, 2)."""
     squares: Floats = grams.reshape(len(grams), -1) @ power.ravel()
     return squares

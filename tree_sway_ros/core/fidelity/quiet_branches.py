@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.motion.response import Complexes, base_motion, carried_to, tip_motion
+from tree_sway_ros.core.motion.response import base_motion, carried_to, Complexes, tip_motion
 from tree_sway_ros.core.reduction.pruning import Bools, Pruning
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
@@ -29,8 +29,7 @@ def quiet_sets(
     shares: Sequence[float],
 ) -> list[Bools]:
     """
-    Find the branches to freeze for each share of the motion of the tips that the error may be,
-    (b,).
+    Find the branches (b,) to freeze for each share of the tips' motion that the error may be.
 
     With each branch goes all that it carries. Rotations are the `key_response` (N, 2, f) at
     frequencies in [Hz], (f,), the first of them 0.
@@ -42,10 +41,7 @@ def quiet_sets(
 
 
 def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed: float) -> Bools:
-    """
-    Bisect for the highest threshold per tip at which what the frozen subtrees swing is still
-    allowed.
-    """
+    """Bisect for the highest threshold per tip at which the frozen subtrees swing as allowed."""
     low, high = 0, len(order)  # so many of the quietest may surely, may perhaps be frozen
     quiet = np.zeros(tree.n_branches, dtype=np.bool_)
     while low < high:
@@ -59,22 +55,19 @@ def _largest(tree: Tree, swing: Floats, per_tip: Floats, order: Floats, allowed:
 
 
 def _swings(tree: Tree, branches: Records, rotations: Complexes) -> tuple[Floats, float]:
-    """
-    Sum over the tips of each subtree of the squared displacement from its base, (b,), and that of
-    all tips from the ground.
-    """
+    """Sum squared displacements of tips: of each subtree from its base, (b,), of all in space."""
     base, tips = base_motion(branches, rotations), tip_motion(branches, rotations)
     swing = np.zeros(tree.n_branches)
     for branch in range(tree.n_branches):
         those = slice(branch, int(tree.subtree_end[branch]))
         body = np.broadcast_to(base[branch], (those.stop - branch, *base.shape[1:]))
-        own = tips[those] - carried_to(body, branches["tip"][those])
+        own = tips[those] - carried_to(body, branches['tip'][those])
         swing[branch] = np.square(np.abs(own)).sum()
     return swing, float(swing[0])
 
 
 def _weights(frequencies: Floats) -> Floats:
-    """Mean square of the load at each frequency, in a wind of intensity 0.2 from any side, (f,)."""
+    """Mean square (f,) of the load at each frequency, in a wind of intensity 0.2 from any side."""
     climate = WindClimate.steady(1.0, 0.2)
     weights: Floats = np.trace(climate.power(frequencies), axis1=1, axis2=2)
     weights[0] += np.square(climate.mean).sum()

@@ -3,9 +3,9 @@
 """
 The line a growing shoot draws in space, told by its heading.
 
-A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad]. Habits
-of growth are plain in these terms: a weeping shoot starts above the horizon and ends below it, a
-conifer's starts low and turns up.
+A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad].
+Habits of growth are plain in these terms: a weeping shoot starts above the horizon and ends below
+it, a conifer's starts low and turns up.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def direction_of(azimuth: float, elevation: float) -> Floats:
-    """Unit vector (3,) of a heading given in [rad]."""
+    """Return the unit vector (3,) of a heading given in [rad]."""
     across = np.cos(elevation)
     return np.array([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)])
 
@@ -34,7 +34,7 @@ def heading_of(direction: Floats) -> tuple[float, float]:
 
 def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
     """
-    Unit vector (3,) at an angle from an axis, both in [rad].
+    Return the unit vector (3,) at an angle from an axis, both in [rad].
 
     The azimuth about the axis is 0 level and to the right of someone who looks along it, pi/2 up.
     """
@@ -64,10 +64,12 @@ def grow_axis(
 
     Parameters
     ----------
+    origin, length, n_segments
+        First node, (3,), and length along the nodes, both in [m], and how many segments.
     azimuth, elevation
         Heading of the first segment, and elevation of the first and the last one, in [rad].
-    length
-        Length along the nodes in [m].
+    rng
+        Source of what is drawn.
     wander
         Standard deviation of the change of heading per segment in [rad].
     unevenness
@@ -80,7 +82,8 @@ def grow_axis(
     steps *= length / steps.sum()
     drift = np.cumsum(wander * rng.standard_normal((n_segments, 2)), axis=0)
     elevations = np.linspace(elevation[0], elevation[1], n_segments) + drift[:, 0]
-    # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the vertical.
+    # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the
+    # vertical.
     azimuths = azimuth + drift[:, 1] / np.maximum(np.cos(elevations), 0.3)
     level = np.cos(elevations)
     headings = np.stack(

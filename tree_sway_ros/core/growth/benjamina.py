@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.core.growth.axis import GOLDEN_ANGLE, aim, grow_axis, heading_of
+from tree_sway_ros.core.growth.axis import aim, GOLDEN_ANGLE, grow_axis, heading_of
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
@@ -26,12 +26,10 @@ def grow_benjamina(
     *,
     height: float = 1.3,
     diameter: float = 0.0235,
-    name: str = "benjamina",
-    species: str = "benjamina",
+    name: str = 'benjamina',
+    species: str = 'benjamina',
 ) -> Tree:
-    """
-    Grow a weeping pot plant with several stems; the diameter is that of the stock at its base.
-    """
+    """Grow a weeping pot plant with several stems; the diameter is the stock's at its base."""
     skeleton = Skeleton()
     stock = skeleton.add(grow_axis(np.zeros(3), 0.0, (_UPRIGHT, _UPRIGHT), 0.07, 2, rng))
     facing = rng.uniform(0.0, 2.0 * np.pi)

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A broadleaf that stands alone: a trunk that loses itself in limbs, and a crown of its species' form.
+A broadleaf that stands alone: a trunk lost in its limbs, and a crown of its species' form.
 
 Limbs and their branches grow towards the outline of the crown and stop short of it; that alone
 shapes it.
@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.growth.axis import GOLDEN_ANGLE, aim, direction_of, grow_axis, heading_of
-from tree_sway_ros.core.growth.forms import BroadleafForm, broadleaf_form
+from tree_sway_ros.core.growth.axis import aim, direction_of, GOLDEN_ANGLE, grow_axis, heading_of
+from tree_sway_ros.core.growth.forms import broadleaf_form, BroadleafForm
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import BREAST_HEIGHT, node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
@@ -27,8 +27,8 @@ def grow_broadleaf(
     *,
     height: float = 8.0,
     diameter: float = 0.18,
-    name: str = "broadleaf",
-    species: str = "broadleaf",
+    name: str = 'broadleaf',
+    species: str = 'broadleaf',
 ) -> Tree:
     """
     Grow a tree with a trunk, limbs, branches and twigs, of a height and a diameter in [m].

@@ -13,10 +13,10 @@ from tree_sway_ros.core.growth.benjamina import grow_benjamina
 from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
 from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError, nearest
+from tree_sway_ros.errors import nearest, ParameterError
 
 _GENERATORS: MappingProxyType[str, Callable[[np.random.Generator], Tree]] = MappingProxyType(
-    {"benjamina": grow_benjamina, "goldcrest": grow_goldcrest, "broadleaf": grow_broadleaf}
+    {'benjamina': grow_benjamina, 'goldcrest': grow_goldcrest, 'broadleaf': grow_broadleaf}
 )
 
 BUILTIN_TREES: tuple[str, ...] = tuple(_GENERATORS)
@@ -31,8 +31,8 @@ def builtin_tree(name: str, seed: int = 0) -> Tree:
     """
     if name not in _GENERATORS:
         guess = nearest(name.lower(), BUILTIN_TREES)
-        cure = f"{guess} use one of: {', '.join(BUILTIN_TREES)}".lstrip()
-        raise ParameterError(f"no built-in tree is called '{name}'", where="tree", cure=cure)
+        cure = f'{guess} use one of: {", ".join(BUILTIN_TREES)}'.lstrip()
+        raise ParameterError(f"no built-in tree is called '{name}'", where='tree', cure=cure)
     if seed < 0:
-        raise ParameterError(f"seed {seed} is negative", where="seed", cure="give 0 or more")
+        raise ParameterError(f'seed {seed} is negative', where='seed', cure='give 0 or more')
     return _GENERATORS[name](np.random.default_rng(seed))

@@ -3,10 +3,10 @@
 """
 A conifer that stands alone: one straight stem, branches in whorls, a crown of its species' form.
 
-Branches near the ground are the oldest and longest; those near the top are short and point upwards.
-Twigs stand left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between a cone
-and a paraboloid, whatever its branches: its volume is 0.44 to 0.50 of the cylinder of its height
-and diameter at breast height, as yield tables have it.
+Branches near the ground are the oldest and longest; those near the top are short and point
+upwards. Twigs stand left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between
+a cone and a paraboloid, whatever its branches: its volume is 0.44 to 0.50 of the cylinder of its
+height and diameter at breast height, as yield tables have it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway_ros.core.growth.axis import direction_of, grow_axis
-from tree_sway_ros.core.growth.forms import ConiferForm, conifer_form
+from tree_sway_ros.core.growth.forms import conifer_form, ConiferForm
 from tree_sway_ros.core.growth.skeleton import Skeleton
 from tree_sway_ros.core.growth.thickness import BREAST_HEIGHT, node_diameters
 from tree_sway_ros.core.growth.twigs import add_twigs
@@ -30,8 +30,8 @@ def grow_conifer(
     *,
     height: float = 12.0,
     diameter: float = 0.2,
-    name: str = "conifer",
-    species: str = "spruce",
+    name: str = 'conifer',
+    species: str = 'spruce',
 ) -> Tree:
     """Grow whorls on a straight stem; arguments as of `grow_broadleaf`."""
     form, skeleton = conifer_form(species), Skeleton()

@@ -94,8 +94,8 @@ class BroadleafForm:
         Of the pipe model; less makes branches thinner beside their stem. Trees have 1.8 to 2.3
         (Eloy 2011, Physical Review Letters 107, 258101).
     taper
-        Power of the distance from the top that the trunk tapers with on top of that; as a conifer's
-        stem, and hardly where the trunk goes to the very top.
+        Power of the distance from the top that the trunk tapers with on top of that; as a
+        conifer's stem, and hardly where the trunk goes to the very top.
     slenderness
         Height over diameter.
 
@@ -158,32 +158,32 @@ class ConiferForm:
 
 _BROADLEAVES = {
     # Short stout bole, heavy crooked limbs far out, as wide as high.
-    "oak": BroadleafForm(
+    'oak': BroadleafForm(
         Outline(0.16, 0.45, 0.42, 2.2, 2.3), 0.2, 0.62, 13, (0.1, 1.0), (0.25, 0.2), 0.2,
         spread=0.95, branch_turn=0.15, lift=0.3, slenderness=42.0,
     ),
     # White stem to the very top, slender limbs that rise steeply and hang at their ends.
-    "birch": BroadleafForm(
+    'birch': BroadleafForm(
         Outline(0.14, 0.24, 0.36, 1.6, 1.5), 0.2, 0.96, 20, (0.75, 1.15), (-0.9, -0.35), 0.05,
         spread=0.6, branch_turn=-1.2, lift=-2.0, twig=0.07, taper=0.2, slenderness=58.0,
     ),
     # Smooth straight stem, many limbs, dense dome down low.
-    "beech": BroadleafForm(
+    'beech': BroadleafForm(
         Outline(0.08, 0.37, 0.42, 2.6, 2.4), 0.14, 0.84, 18, (0.3, 1.1), (0.1, 0.15), 0.06,
         spread=0.7, branch_turn=-0.25, lift=-0.1,
     ),
     # Long bole, few open limbs in pairs; branches bow down and turn up at their ends.
-    "ash": BroadleafForm(
+    'ash': BroadleafForm(
         Outline(0.2, 0.34, 0.52, 2.0, 2.0), 0.32, 0.8, 12, (0.5, 1.0), (0.1, 0.2), 0.06, True,
         spread=0.95, branch_turn=0.9, lift=0.9, twig=0.06, slenderness=52.0,
     ),
     # Broad full dome on a stout bole, limbs in pairs.
-    "sycamore": BroadleafForm(
+    'sycamore': BroadleafForm(
         Outline(0.15, 0.41, 0.46, 3.0, 3.0), 0.2, 0.72, 16, (0.3, 1.1), (0.3, 0.1), 0.08, True,
         spread=0.85, branch_turn=0.3, lift=0.4, exponent=1.98, taper=1.0,
     ),
     # Short bole that parts into few wide limbs; round open crown of coarse twigs.
-    "walnut": BroadleafForm(
+    'walnut': BroadleafForm(
         Outline(0.2, 0.43, 0.5, 2.0, 2.2), 0.24, 0.46, 10, (0.35, 1.05), (0.25, 0.2), 0.12,
         n_branches=7, spread=0.9, branch_turn=0.3, lift=0.5, twig=0.065,
     ),
@@ -191,19 +191,19 @@ _BROADLEAVES = {
 
 _CONIFERS = {
     # Narrow pointed cone; branches sag and turn up at their ends, twigs hang like a comb.
-    "spruce": ConiferForm(
+    'spruce': ConiferForm(
         Outline(0.24, 0.17, 0.4, 1.25, 1.15), 20, 5, (-0.35, 0.75), 0.5, 0.05, -1.2, 0.3, 2.3
     ),
     # Broad stiff cone, branches level and straight.
-    "sitka": ConiferForm(
+    'sitka': ConiferForm(
         Outline(0.24, 0.21, 0.34, 1.2, 1.0), 17, 5, (0.05, 0.65), 0.05, 0.02, 0.1, 0.3, 2.3
     ),
     # Long bare bole, few crooked branches that turn up, flat open crown.
-    "pine": ConiferForm(
+    'pine': ConiferForm(
         Outline(0.5, 0.22, 0.5, 2.0, 2.8), 11, 4, (-0.1, 0.55), 0.45, 0.16, 0.9, 0.35, 1.95
     ),
     # Full cone, level branches turned up at their ends.
-    "douglas_fir": ConiferForm(
+    'douglas_fir': ConiferForm(
         Outline(0.38, 0.19, 0.38, 1.3, 1.25), 15, 5, (-0.1, 0.8), 0.4, 0.06, -0.4, 0.3, 2.3
     ),
 }  # fmt: skip

@@ -25,8 +25,8 @@ def grow_goldcrest(
     *,
     height: float = 1.2,
     diameter: float = 0.019,
-    name: str = "goldcrest",
-    species: str = "goldcrest",
+    name: str = 'goldcrest',
+    species: str = 'goldcrest',
 ) -> Tree:
     """Grow a narrow cone of steep short branches; the diameter is that of the stem at its base."""
     skeleton = Skeleton()

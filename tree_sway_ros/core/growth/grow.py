@@ -13,7 +13,7 @@ McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters hold
 from __future__ import annotations
 
 import math
-from typing import Literal, get_args
+from typing import get_args, Literal
 
 import numpy as np
 
@@ -27,15 +27,15 @@ from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
 
-Habit = Literal["conifer", "broadleaf", "pot"]
+Habit = Literal['conifer', 'broadleaf', 'pot']
 HABITS: tuple[Habit, ...] = get_args(Habit)
 """Habits that `grow` knows."""
 
 _POT_SLENDERNESS = 58.0
 _HEIGHTS: dict[Habit, tuple[float, float]] = {
-    "conifer": (1.0, 60.0),
-    "broadleaf": (1.0, 50.0),
-    "pot": (0.2, 4.0),
+    'conifer': (1.0, 60.0),
+    'broadleaf': (1.0, 50.0),
+    'pot': (0.2, 4.0),
 }
 _GRAVITY = 9.81
 
@@ -85,50 +85,48 @@ def grow(
     kind = habit if habit is not None else wood.habit
     if kind not in HABITS:
         raise ParameterError(
-            f"unknown habit '{kind}'", where="habit", cure=f"use one of: {', '.join(HABITS)}"
+            f"unknown habit '{kind}'", where='habit', cure=f'use one of: {", ".join(HABITS)}'
         )
     low, high = _HEIGHTS[kind]
     if not low <= height <= high:
         raise ParameterError(
             f"height {height:g} m is out of range for the habit '{kind}'",
-            where="height",
-            cure=f"give {low:g} to {high:g} m",
+            where='height',
+            cure=f'give {low:g} to {high:g} m',
         )
     if diameter is None:
         diameter = height / _slenderness(kind, species, height)
     _check_stem(wood, height, diameter)
     called = name if name is not None else species
-    if kind == "conifer":
+    if kind == 'conifer':
         return grow_conifer(rng, height=height, diameter=diameter, name=called, species=species)
-    if kind == "broadleaf":
+    if kind == 'broadleaf':
         generator = grow_broadleaf
     else:
-        generator = grow_goldcrest if species == "goldcrest" else grow_benjamina
+        generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
     return generator(rng, height=height, diameter=diameter, name=called, species=species)
 
 
 def _slenderness(kind: Habit, species: str, height: float) -> float:
-    if kind == "conifer":
+    if kind == 'conifer':
         return min(60.0 * (20.0 / height) ** 0.5, 90.0)
-    return broadleaf_form(species).slenderness if kind == "broadleaf" else _POT_SLENDERNESS
+    return broadleaf_form(species).slenderness if kind == 'broadleaf' else _POT_SLENDERNESS
 
 
 def _check_stem(wood: Species, height: float, diameter: float) -> None:
     thinnest = _thinnest(wood, height)
     thickest = height / 5.0
     if not thinnest <= diameter <= thickest:
-        why = "would bend over under its own weight" if diameter < thinnest else "is no stem"
+        why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
         raise ParameterError(
-            f"diameter {diameter:.4g} m at a height of {height:g} m {why}",
-            where="diameter",
-            cure=f"give {thinnest:.3g} to {thickest:.3g} m",
+            f'diameter {diameter:.4g} m at a height of {height:g} m {why}',
+            where='diameter',
+            cure=f'give {thinnest:.3g} to {thickest:.3g} m',
         )
 
 
 def _thinnest(wood: Species, height: float) -> float:
-    """
-    Diameter at which a bare stem reaches 0.8 of Greenhill's length; a crown needs that reserve.
-    """
+    """Diameter at which a bare stem is of 0.8 of Greenhill's length: the reserve for a crown."""
     # EI and the weight per length of a rod of 1 m; the length goes with the diameter to 2/3.
     area = math.pi / 4.0
     of_one = greenhill_length(wood.modulus * area / 16.0, wood.density * _GRAVITY * area)

@@ -3,8 +3,8 @@
 """
 A tree while it grows: shoots as lines of nodes, each on a node of an older one.
 
-Shoots are added parents first, so that a backward pass over them sums from the tips to the root and
-a forward pass goes the other way.
+Shoots are added parents first, so that a backward pass over them sums from the tips to the root
+and a forward pass goes the other way.
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ from tree_sway_ros.core.tree.tree import Tree
 @dataclass
 class Shoot:
     """
-    One branch to be: nodes from base to tip in [m], (k + 1, 3), and the node of its parent it sits
-    on.
+    One branch to be: nodes from base to tip in [m], (k + 1, 3), and the parent's node it sits on.
 
     The parent is -1 for the stem; ``at`` is 1 .. k of the parent.
     """
@@ -34,11 +33,11 @@ class Shoot:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments."""
+        """Return the number of segments."""
         return len(self.nodes) - 1
 
     def tangent(self, node: int) -> Floats:
-        """Unit vector (3,) of the segment that ends at a node; of the first one at node 0."""
+        """Return the unit vector (3,) of the segment that ends at a node; of the first at 0."""
         last = max(node, 1)
         along = self.nodes[last] - self.nodes[last - 1]
         return np.asarray(along / np.linalg.norm(along))
@@ -57,7 +56,7 @@ class Skeleton:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments of all shoots."""
+        """Return the number of segments of all shoots."""
         return sum(shoot.n_segments for shoot in self.shoots)
 
     def scale_to_height(self, height: float) -> None:
@@ -69,9 +68,7 @@ class Skeleton:
             shoot.nodes = (shoot.nodes - root) * factor
 
     def to_tree(self, diameters: Sequence[Floats], name: str, species: str) -> Tree:
-        """
-        Turn it into a `Tree`, with diameters at the nodes of each shoot in [m], (k + 1,) each.
-        """
+        """Turn it into a `Tree`, with diameters at the nodes of each shoot in [m], (k + 1,)."""
         first = np.cumsum([0] + [shoot.n_segments for shoot in self.shoots])
         parents: list[int] = []
         for shoot, begin in zip(self.shoots, first, strict=False):

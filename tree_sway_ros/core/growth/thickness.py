@@ -4,10 +4,10 @@
 How thick each branch is: the pipe model, anchored at one measured diameter.
 
 A cross-section carries the conduits of all wood beyond it (Shinozaki et al. 1964). With W the
-length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p)``. Exponent p is 2
-where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as ours,
-lie between. The length w follows from the one diameter that is given, at the base or at breast
-height.
+length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p)``. Exponent p is
+2 where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as
+ours, lie between. The length w follows from the one diameter that is given, at the base or at
+breast height.
 """
 
 from __future__ import annotations
@@ -50,19 +50,21 @@ def node_diameters(
     bole_taper: float = 0.0,
 ) -> list[Floats]:
     """
-    Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the first one the stem.
+    Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the stem first.
 
     Parameters
     ----------
-    diameter
-        Diameter of the stem in [m], at `at_height` above the root in [m].
+    skeleton
+        The shoots, the stem first.
+    diameter, at_height
+        Diameter of the stem in [m], at a height above the root in [m].
     tip_diameter
         Diameter of a shoot's tip in [m].
     exponent
         p above in [-].
     stem_taper
-        Power of the distance from the top that the stem's diameter goes with, if it does not follow
-        the pipe model.
+        Power of the distance from the top that the stem's diameter goes with, if it does not
+        follow the pipe model.
     bole_taper
         Power of the distance from the top of the tree that the stem's diameter goes with on top of
         the pipe model, above the height where it is given: pipes of branches that are gone stay in
@@ -76,9 +78,9 @@ def node_diameters(
     """
     if not diameter > 2.0 * tip_diameter:
         raise ParameterError(
-            f"diameter {diameter:.4g} m is too thin for a stem with tips of {tip_diameter:.4g} m",
-            where="diameter",
-            cure=f"give more than {2.0 * tip_diameter:.4g} m",
+            f'diameter {diameter:.4g} m is too thin for a stem with tips of {tip_diameter:.4g} m',
+            where='diameter',
+            cure=f'give more than {2.0 * tip_diameter:.4g} m',
         )
     beyond = carried_length(skeleton)
     stem = skeleton.shoots[0]
@@ -91,7 +93,9 @@ def node_diameters(
         diameters[0] = np.maximum(own, tip_diameter)
     top = max(float(shoot.nodes[:, 2].max()) for shoot in skeleton.shoots)
     below_top = np.maximum(top - stem.nodes[:, 2], 0.0) / (top - stem.nodes[0, 2] - at_height)
-    diameters[0] = np.maximum(diameters[0] * np.minimum(below_top, 1.0) ** bole_taper, tip_diameter)
+    diameters[0] = np.maximum(
+        diameters[0] * np.minimum(below_top, 1.0) ** bole_taper, tip_diameter
+    )
     _support(skeleton, diameters)
     # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tree_sway_ros.core.growth.axis import UP, aim
+from tree_sway_ros.core.growth.axis import aim, UP
 from tree_sway_ros.core.growth.skeleton import Skeleton
 
 
@@ -34,8 +34,10 @@ def add_twigs(
 
     Parameters
     ----------
-    length
-        Length of those on the inner half in [m]; on the outer half `outer_ratio` times that.
+    skeleton, shoot, first_node
+        The shoots, the number of this one, and the first of its nodes to bear twigs.
+    length, outer_ratio
+        Length of those on the inner half in [m]; times the ratio [-] on the outer half.
     polar
         Angle from the shoot in [rad].
     sides

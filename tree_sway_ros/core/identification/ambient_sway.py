@@ -8,9 +8,10 @@ each bin on its own (Whittle, 1953). The likelihood of a resonance on a smooth l
 
     S(f) = (f / f0)^p (a / ((1 - r^2)^2 + (2 zeta r)^2) + b),   r = f / f0,
 
-is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the resolution
-of the spectrum, and p takes up the slope of the turbulence and whether displacement, tilt or
-acceleration was measured. Standard errors are those of Fisher's information (Brillinger, 1981).
+is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the
+resolution of the spectrum, and p takes up the slope of the turbulence and whether displacement,
+tilt or acceleration was measured. Standard errors are those of Fisher's information (Brillinger,
+1981).
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ _MAX_POINTS = 600
 _SLOPE = 5.0
 _MIN_GAIN = 8.0
 """
-Log-likelihood that a resonance must add to a smooth spectrum: 1 in 1,000 by chi-square of its three
-parameters.
+Log-likelihood that a resonance must add to a smooth spectrum: 1 in 1,000 by chi-square of its
+three parameters.
 
 """
 
@@ -41,14 +42,13 @@ parameters.
 class AmbientSway(SwayEstimate):
     """One resonance; ``gain`` is the log-likelihood that it adds to a smooth spectrum."""
 
-    kind: ClassVar[str] = "ambient"
+    kind: ClassVar[str] = 'ambient'
     gain: float
 
 
 def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     """
-    Fit the resonance of an ambient record along the axis that moves most around a rough frequency
-    [Hz].
+    Fit the resonance of an ambient record, along the axis that moves most, near a frequency [Hz].
 
     The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c). A
     `FormatError` tells of fewer than 20 cycles, or no resonance.
@@ -56,8 +56,8 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     cycles = len(motion) * dt * rough
     if cycles < _MIN_CYCLES:
         raise FormatError(
-            f"{cycles:.1f} cycles of {rough:.3g} Hz",
-            cure="an ambient record takes at least 20 cycles, better 500",
+            f'{cycles:.1f} cycles of {rough:.3g} Hz',
+            cure='an ambient record takes at least 20 cycles, better 500',
         )
     frequency, power, bins = _periodogram(motion, dt, rough)
     start = np.log(
@@ -72,18 +72,15 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     inside = frequency[0] < found < frequency[-1] and ratio < 0.4
     if not inside or gain < _MIN_GAIN:
         raise FormatError(
-            f"no sway stands out of the spectrum around {rough:.3g} Hz",
-            cure="record longer, in more wind, nearer to the top, or name the band the sway is in",
+            f'no sway stands out of the spectrum around {rough:.3g} Hz',
+            cure='record longer, in more wind, nearer to the top, or name the band the sway is in',
         )
     frequency_error, damping_error = _standard_errors(frequency, bins, best.x)
     return AmbientSway(found, ratio, frequency_error, damping_error, cycles, gain)
 
 
 def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats, int]:
-    """
-    Frequencies, power of mean 1 along the axis that moves most there, and of how many bins each is
-    the mean.
-    """
+    """Frequencies, power of mean 1 along the axis that moves most, and bins averaged in each."""
     taper = signal.windows.tukey(len(motion), 0.1)
     spectrum = np.fft.rfft(taper[:, None] * motion, axis=0)
     frequency = np.fft.rfftfreq(len(motion), dt)
@@ -99,9 +96,7 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
 
 
 def _starts() -> list[Floats]:
-    """
-    Shifts of the first guess: the surface has side valleys where damping and floor trade places.
-    """
+    """Shifts of the first guess, out of side valleys where damping and floor trade places."""
     return [
         np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)
     ]
@@ -141,7 +136,7 @@ def _fit(frequency: Floats, power: Floats, bins: int, start: Floats) -> optimize
         return bins * float((logarithm + over).sum()) + 0.5 * (x[4] / _SLOPE) ** 2, slope
 
     limits = [tuple(np.log(frequency[[0, -1]])), (np.log(1e-3), 0.0), *3 * [(-40.0, 10.0)]]
-    return optimize.minimize(loss, start, jac=True, method="L-BFGS-B", bounds=limits)
+    return optimize.minimize(loss, start, jac=True, method='L-BFGS-B', bounds=limits)
 
 
 def _smooth_loss(frequency: Floats, power: Floats, bins: int) -> float:
@@ -152,11 +147,11 @@ def _smooth_loss(frequency: Floats, power: Floats, bins: int) -> float:
         logarithm = x[0] + x[1] * lever
         return bins * float((logarithm + power * np.exp(-logarithm)).sum())
 
-    return float(optimize.minimize(loss, np.zeros(2), method="BFGS").fun)
+    return float(optimize.minimize(loss, np.zeros(2), method='BFGS').fun)
 
 
 def _standard_errors(frequency: Floats, bins: int, x: Floats) -> tuple[float, float]:
-    """Standard errors of frequency [Hz] and damping ratio [-] by Fisher's information."""
+    """Return standard errors of frequency [Hz] and damping ratio [-] by Fisher's information."""
     _, slopes = log_spectrum(x, frequency)
     prior = np.diag([0.0, 0.0, 1e-6, 1e-6, 1.0 / _SLOPE**2])
     covariance = linalg.pinvh(bins * slopes.T @ slopes + prior)

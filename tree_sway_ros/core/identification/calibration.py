@@ -4,16 +4,16 @@
 The modulus that gives a tree its measured frequency.
 
 With its weight a tree's square frequency is not proportional to the modulus, but its elastic
-stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is reduced
-once. The lowest w^2 rises with s and bends down, being the least of functions linear in s, with the
-slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a bracket
-keeps it off the buckling load, where w is 0.
+stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is
+reduced once. The lowest w^2 rises with s and bends down, being the least of functions linear in s,
+with the slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a
+bracket keeps it off the buckling load, where w is 0.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
+import math
 
 import numpy as np
 
@@ -101,7 +101,7 @@ def calibrate(
         A tree that would buckle before it sways so slowly, or a branch without mass.
 
     """
-    within("frequency", frequency, 0.0, 1e3, "Hz", above=True)
+    within('frequency', frequency, 0.0, 1e3, 'Hz', above=True)
     tree, species = tree_and_species(tree, species)
     settings = in_season(tree, species, settings or Settings())
     model = _ScaledTree(tree, species, settings)
@@ -109,18 +109,18 @@ def calibrate(
     if found is None:
         weakest, limit = model.weakest, model.sway(model.least)
         raise TreeError(
-            f"{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz "
-            f"when branch "
+            f'{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz '
+            f'when branch '
             f"'{weakest}' is about to buckle under its own weight",
             where=tree.name,
-            cure="check the measured frequency, the density and the diameters",
+            cure='check the measured frequency, the density and the diameters',
         )
     roots = species.root_stiffness if settings.root_stiffness is None else settings.root_stiffness
-    changes: dict[str, float] = {"modulus": found.scale * species.modulus}
-    changes["root_stiffness"] = found.scale * roots
+    changes: dict[str, float] = {'modulus': found.scale * species.modulus}
+    changes['root_stiffness'] = found.scale * roots
     if damping_ratio is not None:
-        within("damping ratio", damping_ratio, 0.0, 1.0)
-        changes["damping_in_leaf" if settings.in_leaf else "damping_bare"] = damping_ratio
+        within('damping ratio', damping_ratio, 0.0, 1.0)
+        changes['damping_in_leaf' if settings.in_leaf else 'damping_bare'] = damping_ratio
     return Calibration(
         replace(species, **changes, is_estimate=False),  # type: ignore[arg-type]
         found.frequency,
@@ -133,10 +133,7 @@ def calibrate(
 
 @dataclass(frozen=True)
 class _Sway:
-    """
-    Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and the coordinate that turns
-    most.
-    """
+    """Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and what turns most."""
 
     scale: float
     square: float
@@ -177,7 +174,7 @@ class _ScaledTree:
 
     def branch_of(self, coordinate: int) -> str:
         """Name of the branch that a coordinate belongs to."""
-        branch = int(np.searchsorted(self.reduction.first, coordinate, side="right")) - 1
+        branch = int(np.searchsorted(self.reduction.first, coordinate, side='right')) - 1
         return self.tree.branch_names[branch]
 
     def sway(self, scale: float) -> _Sway:
@@ -190,7 +187,7 @@ class _ScaledTree:
         return _Sway(scale, square, float(energy.sum()), int(np.argmax(energy)))
 
     def swaying_at(self, square: float) -> _Sway | None:
-        """Find the scale for a square circular frequency [1/s^2]; None if the tree would buckle."""
+        """Find the scale for a square circular frequency [1/s^2]; None if the tree buckles."""
         low, high = self.least, math.inf
         sway = self.sway(max(1.0, 2.0 * low))
         while abs(sway.square / square - 1.0) > _TOLERANCE:

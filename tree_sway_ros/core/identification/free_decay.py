@@ -5,11 +5,12 @@ Frequency and damping of a tree that was pulled and let go.
 
 A free decay is a sum of damped exponentials, the same ones in every channel. The matrix pencil
 finds them all at once, so that a second mode, the other axis or a shifted rest do not bend the
-first (Hua & Sarkar, 1990). The standard errors come from the curvature of the least-squares fit and
-from how much the answer changes as the decay goes on, for the damping of a real tree depends on its
-amplitude.
+first (Hua & Sarkar, 1990). The standard errors come from the curvature of the least-squares fit
+and from how much the answer changes as the decay goes on, for the damping of a real tree depends
+on its amplitude.
 
-Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping ratio.
+Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping
+ratio.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class FreeDecay(SwayEstimate):
     largest of all; ``speed`` the largest amplitude around the frequency times that, per second.
     """
 
-    kind: ClassVar[str] = "release"
+    kind: ClassVar[str] = 'release'
     start: float
     explained: float
     quiet: float
@@ -52,9 +53,7 @@ class FreeDecay(SwayEstimate):
 
 @dataclass(frozen=True)
 class _Fit:
-    """
-    Dominant pole of a stretch of motion, its standard error, and the share of energy explained.
-    """
+    """Dominant pole of a stretch of motion, its standard error, and the energy explained [-]."""
 
     pole: complex
     error: float
@@ -76,8 +75,8 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     available = (len(motion) - first) / cycle
     if available < _MIN_CYCLES:
         raise FormatError(
-            f"{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing",
-            cure="record 3 cycles after the release, better 10, or name the band of the sway",
+            f'{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing',
+            cure='record 3 cycles after the release, better 10, or name the band of the sway',
         )
     # A window that ends where 5 % are left; how long that is takes a first look to know.
     cycles = min(8.0, available)
@@ -111,14 +110,14 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
 
 
 def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
-    """Motion below three times a frequency, (n, c), and the envelope of what is around it, (n,)."""
+    """Motion (n, c) below three times a frequency, and the envelope (n,) of what is around it."""
     nyquist = 0.5 / dt
     slow = motion
     if 3.0 * rough < 0.8 * nyquist:
-        low = signal.butter(4, 3.0 * rough / nyquist, output="sos")
+        low = signal.butter(4, 3.0 * rough / nyquist, output='sos')
         slow = signal.sosfiltfilt(low, motion, axis=0)
     edges = np.array([0.5, min(1.7, 0.9 * nyquist / rough)]) * rough / nyquist
-    band = signal.sosfiltfilt(signal.butter(2, edges, "bandpass", output="sos"), motion, axis=0)
+    band = signal.sosfiltfilt(signal.butter(2, edges, 'bandpass', output='sos'), motion, axis=0)
     # The transform is periodic: zeros behind the end keep a large start out of it.
     padded = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
     analytic = signal.hilbert(band, padded, axis=0)[: len(motion)]
@@ -151,8 +150,8 @@ def _pencil(motion: Floats, dt: float, rough: float) -> _Fit:
     near &= energy > _FAINT * energy[swings].max(initial=0.0)
     if not near.any():
         raise FormatError(
-            f"no motion that decays near {rough:.3g} Hz",
-            cure="check that it is a pull-and-release record, or name the band the sway is in",
+            f'no motion that decays near {rough:.3g} Hz',
+            cure='check that it is a pull-and-release record, or name the band the sway is in',
         )
     best = int(np.argmax(np.where(near, energy, -1.0)))
     explained = 1.0 - float((rest**2).sum() / (centred**2).sum())
@@ -164,7 +163,7 @@ def _standard_error(
     decay: NDArray[np.complex128], amplitude: NDArray[np.complex128], dt: float, rest: Floats
 ) -> float:
     """
-    Standard error of a pole's real and imaginary part in [1/s].
+    Return the standard error of a pole's real and imaginary part in [1/s].
 
     A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s
     t)`` can replace.

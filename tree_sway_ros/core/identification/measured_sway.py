@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import signal
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.identification.ambient_sway import AmbientSway, ambient_sway
-from tree_sway_ros.core.identification.free_decay import FreeDecay, free_decay
+from tree_sway_ros.core.identification.ambient_sway import ambient_sway, AmbientSway
+from tree_sway_ros.core.identification.free_decay import free_decay, FreeDecay
 from tree_sway_ros.core.identification.spectral_peaks import Band, Spectrum
 from tree_sway_ros.core.identification.sway_estimate import SwayEstimate
 from tree_sway_ros.errors import FormatError, ParameterError
 
-KINDS = ("release", "ambient")
+KINDS = ('release', 'ambient')
 """Kinds of record."""
 
 _MIN_SAMPLES = 16
@@ -63,38 +63,36 @@ def estimate_sway(
 
     """
     if kind is not None and kind not in KINDS:
-        raise ParameterError(f"unknown kind '{kind}'", cure=f"use one of: {', '.join(KINDS)}")
+        raise ParameterError(f"unknown kind '{kind}'", cure=f'use one of: {", ".join(KINDS)}')
     if band is not None and not 0.0 < band[0] < band[1] < np.inf:
         raise ParameterError(
-            f"band {band[0]:g} to {band[1]:g} Hz", cure="give two rising frequencies above 0"
+            f'band {band[0]:g} to {band[1]:g} Hz', cure='give two rising frequencies above 0'
         )
     even, dt, gap = _even(*_checked(time, motion))
-    if kind == "ambient":
+    if kind == 'ambient':
         return _ambient(even, dt, gap, band)
-    refusal = FormatError("the motion does not die away from one swing")
+    refusal = FormatError('the motion does not die away from one swing')
     try:
         decay = _release(even, dt, gap, band)
     except FormatError as error:
-        if kind == "release":
+        if kind == 'release':
             raise
         refusal = error
     else:
-        if kind == "release" or _is_release(decay):
+        if kind == 'release' or _is_release(decay):
             _refuse_lost(decay)
             return decay
     try:
         return _ambient(even, dt, gap, band)
     except FormatError as error:
         raise FormatError(
-            f"neither a release ({refusal.what}) nor ambient ({error.what})",
+            f'neither a release ({refusal.what}) nor ambient ({error.what})',
             cure=refusal.cure or error.cure,
         ) from None
 
 
 def _is_release(decay: FreeDecay) -> bool:
-    """
-    Ambient motion soon swings nearly as far again; a release has a tenth of its swing around it.
-    """
+    """Ambient motion soon swings as far again; a release has a tenth of its swing around it."""
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
 
@@ -103,15 +101,15 @@ def _refuse_lost(decay: FreeDecay) -> None:
     f, z = decay.frequency, decay.damping_ratio
     clear = np.log(1.0 / max(decay.quiet, 1e-9)) / (2.0 * np.pi * z)
     if decay.frequency_error > _UNSURE[0] * f or decay.damping_error > _UNSURE[1] * z:
-        what = f"{f:.3g} +- {decay.frequency_error:.2g} Hz"
-        what = f"{what}, damping {z:.2g} +- {decay.damping_error:.2g}"
+        what = f'{f:.3g} +- {decay.frequency_error:.2g} Hz'
+        what = f'{what}, damping {z:.2g} +- {decay.damping_error:.2g}'
     elif clear < _LEAST_CLEAR:
-        what = f"the swing drowns in other motion after {clear:.1f} cycles, at damping {z:.2g}"
+        what = f'the swing drowns in other motion after {clear:.1f} cycles, at damping {z:.2g}'
     else:
         return
     raise FormatError(
-        f"{what}: too much moves beside the swing",
-        cure="pull farther or on a calmer day, or give frequency and damping yourself",
+        f'{what}: too much moves beside the swing',
+        cure='pull farther or on a calmer day, or give frequency and damping yourself',
     )
 
 
@@ -122,24 +120,24 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
     x = x[:, None] if x.ndim == 1 else x
     if t.ndim != 1 or x.ndim != 2 or len(t) != len(x):
         raise FormatError(
-            f"times of shape {t.shape}, motion of shape {x.shape}", cure="give (n,) and (n, c)"
+            f'times of shape {t.shape}, motion of shape {x.shape}', cure='give (n,) and (n, c)'
         )
     if len(t) < _MIN_SAMPLES:
-        raise FormatError(f"{len(t)} samples", cure=f"record {_MIN_SAMPLES} at the very least")
+        raise FormatError(f'{len(t)} samples', cure=f'record {_MIN_SAMPLES} at the very least')
     for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
         raise FormatError(
-            "not a finite number, or one that nothing measures",
-            where=f"sample {bad}",
-            cure="remove that sample",
+            'not a finite number, or one that nothing measures',
+            where=f'sample {bad}',
+            cure='remove that sample',
         )
     for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
         raise FormatError(
-            f"time {t[bad + 1]:g} s after {t[bad]:g} s",
-            where=f"sample {bad + 1}",
-            cure="put the samples in the order of time, each time once",
+            f'time {t[bad + 1]:g} s after {t[bad]:g} s',
+            where=f'sample {bad + 1}',
+            cure='put the samples in the order of time, each time once',
         )
     if not (np.ptp(x, axis=0) > 1e-12 * np.abs(x).max(axis=0)).any():
-        raise FormatError("nothing moves", cure="check the sensor and the column")
+        raise FormatError('nothing moves', cure='check the sensor and the column')
     return t, x
 
 
@@ -154,8 +152,8 @@ def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
     dt = float(np.median(steps))
     if time[-1] - time[0] > 4.0 * len(time) * dt:
         raise FormatError(
-            f"gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart",
-            cure="give one record without the gaps",
+            f'gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart',
+            cure='give one record without the gaps',
         )
     grid = np.arange(time[0], time[-1] + 0.5 * dt, dt)
     even = np.stack([np.interp(grid, time, x) for x in motion.T], axis=1)
@@ -165,16 +163,13 @@ def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
 def _refuse_coarse(gap: float, rough: float) -> None:
     if gap * rough > 0.25:
         raise FormatError(
-            f"{gap:.3g} s between samples, for a sway of {rough:.3g} Hz",
-            cure="record at least four samples per cycle, without gaps",
+            f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
+            cure='record at least four samples per cycle, without gaps',
         )
 
 
 def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
-    """
-    Slowest clear decay at the strong peaks of the velocity's spectrum, which a step of the rest
-    does not hide.
-    """
+    """Slowest clear decay at strong peaks of the velocity's spectrum, not hidden by a step."""
     padded = 4 * len(motion)
     frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
@@ -216,7 +211,7 @@ def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
         except FormatError as refusal:
             refusals.append(refusal)
     if not found and len(refusals) > 1:
-        raise FormatError("no sway stands out of the spectrum", cure=refusals[-1].cure)
+        raise FormatError('no sway stands out of the spectrum', cure=refusals[-1].cure)
     if not found:
         raise refusals[0]
     clearest = max(sway.gain for sway in found)

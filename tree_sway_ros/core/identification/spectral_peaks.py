@@ -21,10 +21,7 @@ _PROMINENCE = 1.5
 
 @dataclass(frozen=True)
 class Spectrum:
-    """
-    Power (m,), of any unit, of a record of a duration [s], at even frequencies from 0 in [Hz],
-    (m,).
-    """
+    """Power (m,), of any unit, of a record of a duration [s], at even frequencies [Hz] from 0."""
 
     frequency: Floats
     power: Floats
@@ -42,9 +39,9 @@ class Spectrum:
         low, high = max(low, 0.8 / self.duration), min(high, 0.9 * float(self.frequency[-1]))
         if low >= high:
             raise FormatError(
-                f"{self.duration:.3g} s sampled up to {self.frequency[-1]:.3g} Hz hold nothing "
-                f"in the band",
-                cure="record longer, sample faster, or name another band",
+                f'{self.duration:.3g} s sampled up to {self.frequency[-1]:.3g} Hz hold nothing '
+                f'in the band',
+                cure='record longer, sample faster, or name another band',
             )
         grid = np.geomspace(low, high, 2 + int(np.log(high / low) / (0.25 * width)))
         level = self._level(grid, width, min_bins)
@@ -52,7 +49,7 @@ class Spectrum:
         if band is not None and not len(at):
             at = np.array([np.argmax(level)])
         if not len(at):
-            raise FormatError("no peak in its spectrum", cure="record longer, or in more wind")
+            raise FormatError('no peak in its spectrum', cure='record longer, or in more wind')
         return grid[at], level[at]
 
     def _level(self, grid: Floats, width: float, min_bins: int) -> Floats:

@@ -11,13 +11,12 @@ from typing import ClassVar
 @dataclass(frozen=True)
 class SwayEstimate:
     """
-    One sway: undamped natural frequency [Hz], damping ratio with that of the air, standard errors
-    of both.
+    One sway: undamped frequency [Hz], damping ratio with the air's, and standard errors of both.
 
     `kind` is that of the record, ``release`` or ``ambient``; the answer rests on so many cycles.
     """
 
-    kind: ClassVar[str] = ""
+    kind: ClassVar[str] = ''
     frequency: float
     damping_ratio: float
     frequency_error: float

@@ -33,28 +33,23 @@ LARGEST_ANGLE = 0.7
 
 
 def flutter_amplitude(speed: ArrayLike, frequency: ArrayLike) -> Floats:
-    """
-    Amplitude of the flutter [rad] in air at a speed [m/s], for a frequency about the stalk [Hz].
-    """
+    """Amplitude of the flutter [rad] in air at a speed [m/s], for a stalk's frequency [Hz]."""
     u = np.asarray(speed, dtype=np.float64)
     free = FLUTTER_GAIN * u * u / np.asarray(frequency, dtype=np.float64)
     return np.asarray(LARGEST_ANGLE * np.tanh(free / LARGEST_ANGLE))
 
 
 def flutter_angle(clusters: LeafClusters, speed: ArrayLike, time: float) -> Floats:
-    """
-    Angle of each cluster about its stalk [rad], (m,), at a time [s] in air past each [m/s], (m,).
-    """
+    """Angle of each cluster about its stalk [rad], at a time [s] in air past each [m/s], (m,)."""
     swing = np.sin(2.0 * np.pi * clusters.frequency * time + clusters.phase)
     return np.asarray(flutter_amplitude(speed, clusters.frequency) * swing)
 
 
 def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) -> Floats:
-    """
-    Pose block (m, 7) of the clusters' centres, from that of the segments, (n, 7), and angles [rad],
-    (m,).
-    """
-    from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
+    """Pose block (m, 7) of the clusters, from the segments' (n, 7) and angles [rad], (m,)."""
+    from scipy.spatial.transform import (
+        Rotation,  # it takes long to load, and only drawing needs it
+    )
 
     carrier = poses[clusters.segment]
     turn = Rotation.from_quat(carrier[:, 3:])
@@ -81,10 +76,10 @@ def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     """
     Tell of the leaves once, as plain numbers and lists, all that a viewer needs to draw them.
 
-    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law and
-    its two constants.
+    A list per field of `LeafClusters`, rounded to 0.1 mm and 1e-4, and ``flutter`` with the law
+    and its two constants.
     """
     columns = {name: np.round(values, 4).tolist() for name, values in vars(clusters).items()}
-    law = "largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)"
-    flutter = {"law": law, "gain": FLUTTER_GAIN, "largest_angle": LARGEST_ANGLE}
-    return {**columns, "flutter": flutter}
+    law = 'largest_angle tanh(gain U^2 / (frequency largest_angle)) sin(2 pi frequency t + phase)'
+    flutter = {'law': law, 'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
+    return {**columns, 'flutter': flutter}

@@ -3,11 +3,11 @@
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 
-Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A tree
-has as much leaf area as its stem can supply, but no more than six times the ground it covers: few
-stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun would:
-leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in a crown
-of outline F (Monsi & Saeki 1953).
+Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A
+tree has as much leaf area as its stem can supply, but no more than six times the ground it covers:
+few stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun
+would: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in
+a crown of outline F (Monsi & Saeki 1953).
 """
 
 from __future__ import annotations
@@ -31,10 +31,7 @@ _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
 @dataclass(frozen=True)
 class Foliage:
-    """
-    What leaves add to each branch: fresh mass [kg], leaf area of one side and drag area [m^2],
-    (b,).
-    """
+    """What leaves add to each branch: fresh mass [kg], one-sided and drag area [m^2], (b,)."""
 
     mass: Floats
     area: Floats
@@ -44,8 +41,7 @@ class Foliage:
 @dataclass(frozen=True)
 class LeafClusters:
     """
-    Leaves to be drawn, each cluster carried by one segment; static, as they flutter where they are
-    drawn.
+    Leaves to be drawn, each cluster carried by one segment; they flutter where they are drawn.
 
     Parameters
     ----------
@@ -71,12 +67,10 @@ class LeafClusters:
 
 
 def leafy_length(tree: Tree) -> Floats:
-    """
-    Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood, or 0.
-    """
+    """Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood."""
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
-    thin_first = np.argsort(tree.base_diameter, kind="stable")
+    thin_first = np.argsort(tree.base_diameter, kind='stable')
     reached = np.cumsum(tree.length[thin_first])
     middle = int(np.searchsorted(reached, 0.5 * reached[-1]))
     limit = tree.base_diameter[thin_first[middle]] * (1.0 + 1e-9)
@@ -85,9 +79,7 @@ def leafy_length(tree: Tree) -> Floats:
 
 
 def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
-    """
-    Mass and area of the leaves on each branch, when there are any; traits of its species if None.
-    """
+    """Mass and area of the leaves on each branch, if any; traits of its species if None."""
     leaf = traits if traits is not None else leaf_traits(tree.species)
     points = np.vstack([tree.start, tree.end])
     wide, deep, _ = np.ptp(points, axis=0)
@@ -105,9 +97,7 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
 
 
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
-    """
-    Area of wood on each branch that is clad in needles, which stand all round it, in [m^2], (b,).
-    """
+    """Area of wood on each branch that needles clad, which stand all round it, in [m^2], (b,)."""
     if not traits.are_needles:
         return np.zeros(tree.n_branches)
     area = 0.5 * (tree.base_diameter + tree.tip_diameter) * leafy_length(tree)
@@ -124,12 +114,12 @@ def leaf_clusters(
     tells of a count that is not positive.
     """
     if count < 1:
-        raise ParameterError(f"{count} leaf clusters", where="count", cure="ask for 1 or more")
+        raise ParameterError(f'{count} leaf clusters', where='count', cure='ask for 1 or more')
     leaf = traits if traits is not None else leaf_traits(tree.species)
     leafy = leafy_length(tree)
     ends = np.cumsum(leafy)
     place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count * ends[-1]
-    segment = np.minimum(np.searchsorted(ends, place, side="right"), tree.n_segments - 1)
+    segment = np.minimum(np.searchsorted(ends, place, side='right'), tree.n_segments - 1)
     along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
     # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a
     # leaf.
@@ -159,7 +149,7 @@ def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int])
         field.name: np.concatenate([getattr(each, field.name) for each in clusters])
         for field in fields(LeafClusters)
     }
-    return LeafClusters(**{**columns, "segment": np.concatenate(carriers)})
+    return LeafClusters(**{**columns, 'segment': np.concatenate(carriers)})
 
 
 def no_clusters() -> LeafClusters:
@@ -171,13 +161,13 @@ def no_clusters() -> LeafClusters:
 
 
 def _facing_up(away: Floats, rest: Floats) -> Floats:
-    """
-    Orientations w x y z whose x runs away from the twig and whose z looks as far up as it can.
-    """
-    from scipy.spatial.transform import Rotation  # it takes long to load, and only drawing needs it
+    """Orientations w x y z whose x runs away from the twig and whose z looks up most."""
+    from scipy.spatial.transform import (
+        Rotation,  # it takes long to load, and only drawing needs it
+    )
 
     up = Rotation.from_quat(rest[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0])
-    z = up - np.einsum("ij,ij->i", up, away)[:, None] * away
+    z = up - np.einsum('ij,ij->i', up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)
     # A leaf that points straight up may look any way across.
     z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])

@@ -1,21 +1,20 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What the wind does to a branch: one load centre per branch, so that cost does not depend on how
-finely it is cut.
+What the wind does to a branch: one load centre, so that cost does not depend on how it is cut.
 
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
 piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement
 of the loaded pieces; in wind the branch damps itself at the displacement that gives the same
 damping as the sum. In still air the pieces' own speeds count, which differ: their mean square
-beside the centre's is added, so that there too it damps itself as the sum does. Wood keeps the drag
-of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4 and
-20 m/s, constant outside. Those are the speeds at which crowns were measured in wind tunnels
+beside the centre's is added, so that there too it damps itself as the sum does. Wood keeps the
+drag of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4
+and 20 m/s, constant outside. Those are the speeds at which crowns were measured in wind tunnels
 (Rudnicki et al. 2004; Vollsinger et al. 2005).
 
 **Sheltering is assumed, not modelled.** Leaves hide each other as the outline of the crown has it,
-and shelter each other as in the crowns that their law was measured on; twigs clad in needles belong
-to such a crown. Bare wood and branches that leaves stand on meet the whole wind.
+and shelter each other as in the crowns that their law was measured on; twigs clad in needles
+belong to such a crown. Bare wood and branches that leaves stand on meet the whole wind.
 
 **Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step,
 where an explicit drag would shake it to pieces. With u the velocity the branch would have half a
@@ -45,10 +44,7 @@ SHARED_AT = 8.0
 
 
 class DragLaw(NamedTuple):
-    """
-    Drag coefficient of a tree, ``Cd = C U^-N + C0``: C and N of what streamlines, C0 of what does
-    not.
-    """
+    """Drag of a tree, ``Cd = C U^-N + C0``: C and N of what streamlines, C0 of what does not."""
 
     coefficient: float
     exponent: float
@@ -56,7 +52,11 @@ class DragLaw(NamedTuple):
 
 
 def crown_drag(
-    wood_area: float, leaf_area: Floats, clad_wood: Floats, wood: float, leaves: tuple[float, float]
+    wood_area: float,
+    leaf_area: Floats,
+    clad_wood: Floats,
+    wood: float,
+    leaves: tuple[float, float],
 ) -> tuple[DragLaw, Floats]:
     """
     Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.

@@ -27,7 +27,7 @@ _A5, _B5, _C5, _D5, _E5, _F5 = (
 
 @inlined
 def fill_harmonics(x: float, y: float, z: float, degree: int, out: Floats) -> None:
-    """Write the functions up to a degree of 1, 3 or 5 at a direction, a unit vector, (`COUNT`,)."""
+    """Write the functions (`COUNT`,) up to degree 1, 3 or 5 at a direction, a unit vector."""
     out[0], out[1], out[2] = 3.0**0.5 * y, 3.0**0.5 * z, 3.0**0.5 * x
     if degree >= 3:
         xx, yy, zz, xy = x * x, y * y, z * z, x * y

@@ -16,8 +16,7 @@ from tree_sway_ros.core.kernel import WHY_PLAIN
 
 def put_four(lanes: Any, row: int, lane: int, a: Any, b: Any, c: Any, d: Any, first: int) -> None:
     """
-    Write four rows of four lanes, from a first row and lane on, to a, b, c and d from an element
-    on.
+    Write four rows of four lanes, from a row and lane on, to a, b, c and d from an element on.
 
     All lie in one piece.
     """
@@ -35,8 +34,8 @@ def write_past_caches(of: Any, into: Any) -> None:
     """
     Copy an array (n,) to memory that is not read soon, without reading it first.
 
-    What is written to memory beyond the caches is else fetched from there before. `settle` makes it
-    seen by other threads.
+    What is written to memory beyond the caches is else fetched from there before. `settle` makes
+    it seen by other threads.
     """
     into[:] = of
 
@@ -102,11 +101,13 @@ if not WHY_PLAIN:
 
     _put, _take = _carried(True), _carried(False)
 
-    @overload(put_four, inline="always")
+    @overload(put_four, inline='always')
     def _put_four(lanes, row, lane, a, b, c, d, first):  # type: ignore[no-untyped-def]
-        return lambda lanes, row, lane, a, b, c, d, first: _put(lanes, row, lane, a, b, c, d, first)
+        return lambda lanes, row, lane, a, b, c, d, first: _put(
+            lanes, row, lane, a, b, c, d, first
+        )
 
-    @overload(take_four, inline="always")
+    @overload(take_four, inline='always')
     def _take_four(a, b, c, d, first, lanes, row, lane):  # type: ignore[no-untyped-def]
         return lambda a, b, c, d, first, lanes, row, lane: _take(
             lanes, row, lane, a, b, c, d, first
@@ -122,7 +123,7 @@ if not WHY_PLAIN:
             read = builder.bitcast(_element(context, builder, kinds[2], *values[2:]), line)
             written = builder.store(builder.load(read, align=8), to, align=64)
             told = builder.module.add_metadata([ir.IntType(32)(1)])
-            written.set_metadata("nontemporal", told)
+            written.set_metadata('nontemporal', told)
             return context.get_dummy_value()
 
         return types.none(into, types.intp, of, types.intp), generate
@@ -130,12 +131,12 @@ if not WHY_PLAIN:
     @intrinsic
     def _fence(typing):  # type: ignore[no-untyped-def]
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            builder.fence("seq_cst")
+            builder.fence('seq_cst')
             return context.get_dummy_value()
 
         return types.none(), generate
 
-    @overload(settle, inline="always")
+    @overload(settle, inline='always')
     def _settle():  # type: ignore[no-untyped-def]
         return lambda: _fence()
 

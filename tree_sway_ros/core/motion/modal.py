@@ -5,8 +5,8 @@ Models 3 and 4 of the ladder: natural modes of the coupled tree on the same osci
 
 Model 3, `modes`, steps the m slowest modes and takes what is left of the motion as static,
 ``x = D Q + Phi (eta - E^T Q)``: D is the diagonal of the flexibility, and E takes out of it what
-the modes already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and 2
-the load is found once per step, at the state half a step on.
+the modes already hold. Model 4, `coupled`, steps all modes and leaves nothing. As in models 1 and
+2 the load is found once per step, at the state half a step on.
 
 Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -76,7 +76,7 @@ class ModalBank:
 
     @property
     def loads(self) -> Records:
-        """Records of `load_fields`."""
+        """Return the records of `load_fields`."""
         return self._loads
 
     def set_pace(self, dt: float) -> None:
@@ -90,8 +90,8 @@ class ModalBank:
         self.set_pace(dt)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self.half[:, 6] + self.half[:, 7]
-        compliance = np.einsum("bm,m->b", self._participation, velocity)  # not by threads
-        self._loads["compliance"][block, lane] = compliance
+        compliance = np.einsum('bm,m->b', self._participation, velocity)  # not by threads
+        self._loads['compliance'][block, lane] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -115,31 +115,25 @@ class ModalBank:
         return partial(entry_of(_expand, *arrays), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
-        """
-        Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
-        geometry.
-        """
+        """Key rotations (N, k, f) at rest under moments (N, k) [N m] that swing at w [rad/s]."""
         impedance = self.stiffness[:, None] - circular**2 + 1j * self.damping[:, None] * circular
         dynamic = (self.shapes.T @ moments)[:, :, None] / impedance[:, None, :]
         eta = dynamic - (self.held @ moments)[:, :, None]
         rest = self.flexibility[:, None, None] * moments[:, :, None]
-        swinging: NDArray[np.complex128] = np.einsum("im,mkf->ikf", self.shapes, eta) + rest
+        swinging: NDArray[np.complex128] = np.einsum('im,mkf->ikf', self.shapes, eta) + rest
         return np.asarray(swinging, dtype=np.complex128)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
-        return self.modal[:4], self.state[0], self._loads["slip"]
+        """Return views of what is carried from one step to the next."""
+        return self.modal[:4], self.state[0], self._loads['slip']
 
     def take(self, eta: Floats, rate: Floats, force: Floats, rotations: Floats) -> None:
-        """
-        Go on from modes, their rates and forces (m,) and from key rotations (N,) with the static
-        rest in them.
-        """
+        """Go on from modes, rates and forces (m,) and key rotations (N,), static rest included."""
         self.modal[0], self.modal[1], self.modal[2], self.modal[3] = eta, rate, 0.0, force
         rest = rotations - self.shapes @ eta
         bends = self.flexibility > 0.0
         self.state[0] = np.where(bends, rest, 0.0) / np.where(bends, self.flexibility, 1.0)
-        self._loads["slip"] = 0.0
+        self._loads['slip'] = 0.0
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -158,7 +152,7 @@ class ModalBank:
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
-        forces: Floats = self.work["force"]
+        forces: Floats = self.work['force']
         return forces
 
     def reset(self) -> None:
@@ -166,23 +160,23 @@ class ModalBank:
         self.modal[:] = 0.0
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._loads["slip"] = 0.0
+        self._loads['slip'] = 0.0
 
 
 def _participation(branches: Records, shapes: Floats) -> Floats:
-    """Mean over three directions of the squared motion of each load centre in each mode, (b, m)."""
+    """Mean squared motion of each load centre in each mode, over three directions, (b, m)."""
     m = shapes.shape[1]
     motion = np.zeros((len(branches), 6, m))
     out = np.zeros((len(branches), m))
     for b, branch in enumerate(branches):
-        own = slice(branch["coordinate"], branch["coordinate"] + branch["n_coordinates"])
+        own = slice(branch['coordinate'], branch['coordinate'] + branch['n_coordinates'])
         if b > 0:
-            parent = branches[branch["parent"]]
-            k = parent["n_coordinates"]
-            moved = shapes[parent["coordinate"] : parent["coordinate"] + k]
-            motion[b] = motion[branch["parent"]] + branch["twist"][:k].T @ moved
-        at = motion[b, :3] - cross_matrix(branch["centre"]) @ motion[b, 3:]
-        at += branch["flow"][: branch["n_coordinates"]].T @ shapes[own]
+            parent = branches[branch['parent']]
+            k = parent['n_coordinates']
+            moved = shapes[parent['coordinate'] : parent['coordinate'] + k]
+            motion[b] = motion[branch['parent']] + branch['twist'][:k].T @ moved
+        at = motion[b, :3] - cross_matrix(branch['centre']) @ motion[b, 3:]
+        at += branch['flow'][: branch['n_coordinates']].T @ shapes[own]
         out[b] = np.square(at).sum(axis=0) / 2.0
     return out
 

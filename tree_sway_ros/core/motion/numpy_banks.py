@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Banks of oscillators stepped in plain numpy, for machines without a compiler: some 100 times slower.
+Banks of oscillators in plain numpy, for machines without a compiler: some 100 times slower.
 
-Each keeps the state of its compiled counterpart, in the same arrays, so that a state kept by one is
-taken by the other; they agree to rounding. They are the oracle of the kernels as well.
+Each keeps the state of its compiled counterpart, in the same arrays, so that a state kept by one
+is taken by the other; they agree to rounding. They are the oracle of the kernels as well.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.modal import ModalBank
-from tree_sway_ros.core.motion.numpy_passes import NumpyPasses, into_lanes, of_lanes
+from tree_sway_ros.core.motion.numpy_passes import into_lanes, NumpyPasses, of_lanes
 from tree_sway_ros.core.motion.numpy_rotation import two_axis_moment
 from tree_sway_ros.core.motion.uncoupled import UncoupledBank
 
@@ -32,7 +32,7 @@ class NumpyUncoupledBank(UncoupledBank):
         """Refill what depends on the time step [s]."""
         super().set_step(dt)
         n = len(self.branches)
-        names = ("whole", "half", "guard", "compliance")
+        names = ('whole', 'half', 'guard', 'compliance')
         self._whole, self._half, self._guard, self._compliance = (
             of_lanes(self._banks[name], n) for name in names
         )
@@ -41,29 +41,29 @@ class NumpyUncoupledBank(UncoupledBank):
         """Advance one step, as `UncoupledBank.advance`."""
         passes, n = self._passes, len(self.branches)
         x, v = self.x.reshape(-1, 2), self.v.reshape(-1, 2)
-        load, slip = of_lanes(self._banks["load"], n), of_lanes(self._banks["slip"], n).copy()
+        load, slip = of_lanes(self._banks['load'], n), of_lanes(self._banks['slip'], n).copy()
         none = np.zeros(n)
         moment = two_axis_moment(x, v, load, none, np.inf)
         h = self._half[:, :, None]
         middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
         base = passes.outward(middle_x, middle_v) if self.carries else np.zeros((n, 9))
-        wind = np.array([wx, wy, wz]) + of_lanes(self._banks["gust"], n)
+        wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)
         force = passes.wind_forces(
             base, middle_x, middle_v, wind, per_speed_squared, self._compliance, slip
         )
         pull = passes.generalised_loads(base[:, 6:], force, self.carries, self.moment)
         load = np.hstack([pull[:, None], self.moment.reshape(-1, 2)])
-        self.work["force"] = force
-        into_lanes(slip, self._banks["slip"])
-        into_lanes(load, self._banks["load"])
+        self.work['force'] = force
+        into_lanes(slip, self._banks['slip'])
+        into_lanes(load, self._banks['load'])
         return self._step(x, v, load)
 
     def _step(self, x: Floats, v: Floats, load: Floats) -> int:
         """Step every oscillator, predictor and corrector; returns how many loads were held."""
         gyro, load_limit, moment_limit = self._guard.T
-        with np.errstate(all="ignore"):
-            size = np.sqrt(np.einsum("bk,bk->b", load, load))
+        with np.errstate(all='ignore'):
+            size = np.sqrt(np.einsum('bk,bk->b', load, load))
             held = ~(size <= load_limit)
             load = load.copy()
             load[held] *= np.where(np.isfinite(size[held]), load_limit[held] / size[held], 0.0)[
@@ -77,7 +77,7 @@ class NumpyUncoupledBank(UncoupledBank):
         then = two_axis_moment(
             ahead_x + c[:, 3] * now, ahead_v + c[:, 7] * now, load, gyro, moment_limit
         )
-        source = self.branches["source"]
+        source = self.branches['source']
         x[:] = (ahead_x + c[:, 3] * then)[source]
         v[:] = (ahead_v + c[:, 7] * then)[source]
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
@@ -103,18 +103,18 @@ class NumpyModalBank(ModalBank):
         middle_rate = h[4] * eta + h[5] * rate + (h[6] + h[7]) * force
         x = passes.per_branch(flexibility * moment + _summed(middle_eta, self._shapes))
         v = passes.per_branch(_summed(middle_rate, self._shapes))
-        slip = of_lanes(self._loads["slip"], n).copy()
+        slip = of_lanes(self._loads['slip'], n).copy()
         base = passes.outward(x, v)
-        wind = np.array([wx, wy, wz]) + of_lanes(self._loads["gust"], n)
-        compliance = of_lanes(self._loads["compliance"], n)
+        wind = np.array([wx, wy, wz]) + of_lanes(self._loads['gust'], n)
+        compliance = of_lanes(self._loads['compliance'], n)
         on_branches = passes.wind_forces(base, x, v, wind, per_speed_squared, compliance, slip)
         passes.bent_loads(base, x, on_branches, moment)
-        self.work["force"] = on_branches
-        into_lanes(slip, self._loads["slip"])
+        self.work['force'] = on_branches
+        into_lanes(slip, self._loads['slip'])
         over = ~(np.abs(moment) <= self.limit)
         moment[over] = np.where(moment[over] > 0.0, self.limit[over], -self.limit[over])
-        force[:] = np.einsum("mi,i->m", self._shapes, moment)
-        rest[:] = np.einsum("mi,i->m", self.held, moment)
+        force[:] = np.einsum('mi,i->m', self._shapes, moment)
+        rest[:] = np.einsum('mi,i->m', self.held, moment)
         new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
         rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force
         eta[:] = new_eta
@@ -130,4 +130,4 @@ class NumpyModalBank(ModalBank):
 
 def _summed(amounts: Floats, shapes: Floats) -> Floats:
     """Sum of shapes (m, N) by amounts (m,), (N,), in one order whatever the number of threads."""
-    return np.asarray(np.einsum("m,mi->i", amounts, shapes))
+    return np.asarray(np.einsum('m,mi->i', amounts, shapes))

@@ -18,7 +18,7 @@ _SMALL = 1e-6
 
 
 def quaternions_of(vectors: Floats) -> Floats:
-    """Unit quaternions of rotation vectors in [rad]."""
+    """Return the unit quaternions of rotation vectors in [rad]."""
     half = 0.5 * np.linalg.norm(vectors, axis=1)[:, None]
     return np.hstack([np.cos(half), 0.5 * np.sinc(half / np.pi) * vectors])
 

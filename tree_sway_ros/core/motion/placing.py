@@ -1,14 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key rotations to poses: the segments of each branch follow its key, the branches are joined from the
-root.
+Key rotations to poses: segments follow the key of their branch, branches join from the root.
 
 A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth
 curve and keeps its length. The chord of the bent chain turns by a little less than the coordinate
 says (third cumulant of the slope along the branch); the coordinate is stretched by that much, so
-that the chord angle is kept. Beyond 30 degrees a tapered branch goes over to the slope of a load at
-the tip.
+that the chord angle is kept. Beyond 30 degrees a tapered branch goes over to the slope of a load
+at the tip.
 
 Sixteen branches at a time, parents before their children: how the bases are turned and where they
 stand, then segment after segment up the sixteen branches at once.
@@ -26,14 +25,14 @@ from tree_sway_ros.core.kernel import fused, inlined
 from tree_sway_ros.core.motion.lanes import put_four, take_four
 from tree_sway_ros.core.motion.records import LANES
 from tree_sway_ros.core.rotation import (
-    NEAR_LIMIT,
-    SERIES_LIMIT,
     half_angle,
     half_angle_near,
     half_angle_series,
+    NEAR_LIMIT,
     product,
     quaternion,
     rotated,
+    SERIES_LIMIT,
 )
 
 _BLEND_FROM = np.deg2rad(30.0) ** 2
@@ -76,8 +75,8 @@ def place_standing_at(
     """
     Place every segment of a tree that is turned and scaled, with its root node at east, north, up.
 
-    ``cosine`` and ``sine`` are of half the angle that it is turned by about the vertical, ``scale``
-    its size over that of its records; the rest is as for `place`.
+    ``cosine`` and ``sine`` are of half the angle that it is turned by about the vertical,
+    ``scale`` its size over that of its records; the rest is as for `place`.
     """
     last = len(heads) - 1
     scratch = heads[last]
@@ -205,10 +204,7 @@ def _turn_on_parents(head: Record, scratch: Record) -> None:
 
 @fused
 def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
-    """
-    Turn the bases of sixteen branches, put them where they stand, and set how their first shape
-    bends.
-    """
+    """Turn the bases of sixteen branches, place them, and set how their first shape bends."""
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
@@ -253,10 +249,7 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
 
 @fused
 def _write_bases(head: Record, scratch: Record, work: Records) -> float:
-    """
-    Leave for the children how their parents are turned; return a bound on the square of half the
-    angle that any segment turns by.
-    """
+    """Leave their turned bases to the children; bound the square of half of any segment's turn."""
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
     for j in range(0, whole, 4):
         a, b = work[np.uintp(branch[j])].base, work[np.uintp(branch[j + 1])].base
@@ -292,7 +285,8 @@ def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Float
             half = 0.5 * x[i + c]
             half_key[c, j] = half
             further += half * half * branch.steepest[c]
-        # The square of a sum is at most twice the square of its first and twice that of the others.
+        # The square of a sum is at most twice the square of its first and twice that of the
+        # others.
         others = branch.n_coordinates - 2
         farthest = max(farthest, 2.0 * (scratch.half_angle[j] + others * further))
     return farthest

@@ -1,19 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How far tips go in a wind that swings at one pace: linear response of every model, before a step is
-taken.
+How far tips go in a wind that swings at one pace: linear response, before a step is taken.
 
 Loads are split as turbulence is: along the mean wind, where the load goes with the square of the
-speed, and across it. The gain of a model is the motion of the tips of all branches, joined from the
-root, per unit of load at each frequency. Gains of two models can be set against each other; that is
-how the error of the lesser one is known without running the greater.
+speed, and across it. The gain of a model is the motion of the tips of all branches, joined from
+the root, per unit of load at each frequency. Gains of two models can be set against each other;
+that is how the error of the lesser one is known without running the greater.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
+import math
 from typing import Any, Protocol
 
 import numpy as np
@@ -50,27 +49,24 @@ def key_response(
     moments = []
     for pattern in patterns:
         branches = oscillators.branches.copy()
-        branches["area"] *= pattern
+        branches['area'] *= pattern
         moments.append(even_wind_moments(branches, n_coordinates, carries=oscillators.carries))
     return oscillators.response(np.hstack(moments), 2.0 * np.pi * np.asarray(frequencies))
 
 
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """
-    Join small rotations (N, ...) from the root to displacements of the tip of each branch, (b, 3,
-    ...).
-    """
-    tips = carried_to(base_motion(branches, rotations), branches["tip"])
+    """Join small rotations (N, ...) from the root to displacements of branch tips, (b, 3, ...)."""
+    tips = carried_to(base_motion(branches, rotations), branches['tip'])
     for own, rows in _moved(branches, rotations):
-        tips[rows] += _sums(branches["reach"][rows, : own.shape[1]], own)
+        tips[rows] += _sums(branches['reach'][rows, : own.shape[1]], own)
     return tips
 
 
 def _moved(branches: Records, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
     """Rotations (k, c, ...) of those branches (k,) that have as many coordinates, c."""
-    for count in np.unique(branches["n_coordinates"]):
-        rows = np.flatnonzero(branches["n_coordinates"] == count)
-        yield rotations[branches["coordinate"][rows, None] + np.arange(count)], rows
+    for count in np.unique(branches['n_coordinates']):
+        rows = np.flatnonzero(branches['n_coordinates'] == count)
+        yield rotations[branches['coordinate'][rows, None] + np.arange(count)], rows
 
 
 def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
@@ -81,17 +77,14 @@ def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """
-    Motion (v, w) of the base of each branch about the root under small rotations (N, ...), (b, 6,
-    ...).
-    """
+    """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
     base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
-    parents = branches["parent"]
+    parents = branches['parent']
     for own, rows in _moved(branches, rotations):
         place = np.full(len(branches) + 1, -1)
         place[rows] = np.arange(len(rows))
         children = np.flatnonzero(place[parents] >= 0)
-        twists = branches["twist"][children, : own.shape[1]]
+        twists = branches['twist'][children, : own.shape[1]]
         base[children] = _sums(twists, own[place[parents[children]]])
     for branch in np.flatnonzero(parents > 0):  # children of the stem have all that is theirs
         base[branch] += base[parents[branch]]
@@ -99,10 +92,7 @@ def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
-    """
-    Displacement of points (p, 3) of bodies moving by (v, w) about the root, (p, 6, ...),
-    (p, 3, ...).
-    """
+    """Displacement (p, 3, ...) of points (p, 3) of bodies moving by (v, w) about the root."""
     x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
     wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]
     moved = motion[:, :3].copy()

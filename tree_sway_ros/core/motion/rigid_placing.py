@@ -32,8 +32,8 @@ class RigidParts:
     rows
         Its base segment, its first segment and one past its last, rows of the pose block, (t, 3).
     base_turn, offset
-        Rotation of its base per unit of the parent's coordinates, (t, c, 3), and its base from that
-        segment's start in its frame in [m], (t, 3).
+        Rotation of its base per unit of the parent's coordinates, (t, c, 3), and its base from
+        that segment's start in its frame in [m], (t, 3).
     arm, rest
         Start of each segment of the tree from the base it moves with, at rest, in [m], (n, 3), and
         orientation at rest, w x y z, (n, 4); those of moving segments are not read.
@@ -49,9 +49,7 @@ class RigidParts:
 
     @staticmethod
     def of(pruning: Pruning, branches: Records) -> RigidParts:
-        """
-        Lay out the frozen subtrees of a tree, by the records of `BRANCH` of the whole of it, (b,).
-        """
+        """Lay out the frozen subtrees of a tree, by the `BRANCH` records of all of it, (b,)."""
         tree, tops = pruning.whole, pruning.tops
         first = tree.branch_first[tops]
         end = tree.branch_first[tree.subtree_end[tops]]
@@ -61,16 +59,15 @@ class RigidParts:
         return RigidParts(
             pruning.place_among_moving[tree.branch_parent[tops]],
             np.stack([tree.segment_parent[first], first, end], axis=1),
-            branches["twist"][tops, :, 3:].copy(),
-            branches["offset"][tops].copy(),
+            branches['twist'][tops, :, 3:].copy(),
+            branches['offset'][tops].copy(),
             tree.start - base,
             tree.rest_frame,
         )
 
     def place(self, branches: Records, work: Records, x: Floats, out: Floats) -> None:
         """
-        Place the frozen segments, once the moving ones are: their rows of the whole pose block, (n,
-        7).
+        Place the frozen segments in the whole pose block (n, 7), once the moving ones are.
 
         Records (m,) and key rotations (M,) are those of the moving branches.
         """

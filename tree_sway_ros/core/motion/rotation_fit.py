@@ -33,7 +33,7 @@ class RotationFit:
         """Invert the shapes of every branch."""
         self._branches = branches
         self._rest = tree.rest_frame
-        self._inverse = np.zeros((tree.n_segments, branches["push"].shape[1], 3))
+        self._inverse = np.zeros((tree.n_segments, branches['push'].shape[1], 3))
         for b, branch in enumerate(branches):
             here = tree.segments_of(b)
             turns = turns_of_segments(branch, segments)
@@ -42,12 +42,10 @@ class RotationFit:
             inverse = (np.linalg.pinv(columns, rcond=_LEAST) * root).reshape(len(turns[0]), -1, 3)
             self._inverse[here, : len(turns[0])] = inverse.transpose(1, 0, 2)
         self._base = np.zeros((len(branches), 4))
-        self._x = np.zeros(int(branches["n_coordinates"].sum()))
+        self._x = np.zeros(int(branches['n_coordinates'].sum()))
 
     def of(self, poses: Floats) -> Floats:
-        """
-        Return the key rotations of a pose block (n, 7) in [rad], (N,); the same array each time.
-        """
+        """Return the key rotations (N,) of a pose block (n, 7) in [rad]; always the same array."""
         _fit(self._branches, self._inverse, self._rest, poses, self._base, self._x)
         return self._x
 
@@ -93,12 +91,12 @@ def coordinates_within(branches: Records, moving: Ints, whole: Records) -> Any:
     """
     rows, columns, values = [], [], []
     for local, b in zip(branches, moving, strict=True):
-        row, column = int(whole["coordinate"][b]), int(local["coordinate"])
-        further = np.arange(2, int(local["n_coordinates"]))
+        row, column = int(whole['coordinate'][b]), int(local['coordinate'])
+        further = np.arange(2, int(local['n_coordinates']))
         # x turns about e2 and y about -e1, as in `BRANCH`.
-        axes, own = (each["frame"][[2, 1]] * [[1.0], [-1.0]] for each in (whole[b], local))
+        axes, own = (each['frame'][[2, 1]] * [[1.0], [-1.0]] for each in (whole[b], local))
         rows += [row, row, row + 1, row + 1, *(row + further)]
         columns += [column, column + 1, column, column + 1, *(column + further)]
         values += [*(axes @ own.T).ravel(), *np.ones(len(further))]
-    shape = (int(whole["n_coordinates"].sum()), int(branches["n_coordinates"].sum()))
+    shape = (int(whole['n_coordinates'].sum()), int(branches['n_coordinates'].sum()))
     return sparse.csr_matrix((values, (rows, columns)), shape=shape)

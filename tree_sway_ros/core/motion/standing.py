@@ -26,15 +26,15 @@ from tree_sway_ros.core.motion.wind_basis_table import STEEPEST
 
 STANDING = np.dtype(
     [
-        ("kind", "i8"),  # its row among the tables
-        ("pace", "i8"),  # its row among the paces
-        ("is_still", "i8"),  # whether it is not solved
-        ("is_held", "i8"),  # whether its last wind was held at the limit of its table
-        ("scale", "f8"),  # its height over that of its kind
-        ("speed", "f8"),  # wind at its height over that at its kind's
-        ("cosine", "f8"),  # of half the angle that it is turned by
-        ("sine", "f8"),
-        ("at", "f8", (3,)),  # its root node [m]
+        ('kind', 'i8'),  # its row among the tables
+        ('pace', 'i8'),  # its row among the paces
+        ('is_still', 'i8'),  # whether it is not solved
+        ('is_held', 'i8'),  # whether its last wind was held at the limit of its table
+        ('scale', 'f8'),  # its height over that of its kind
+        ('speed', 'f8'),  # wind at its height over that at its kind's
+        ('cosine', 'f8'),  # of half the angle that it is turned by
+        ('sine', 'f8'),
+        ('at', 'f8', (3,)),  # its root node [m]
     ]
 )
 """How a tree of a stand stands."""
@@ -58,14 +58,14 @@ def step_standing(
     """
     Step every tree that is not still, each with its mean wind over the step in [m/s], (t, 3).
 
-    Records are of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,); C
-    and N of each kind (k, 2).
+    Records are of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,);
+    C and N of each kind (k, 2).
 
     Returns
     -------
     tuple
-        Trees whose wind was held at the limit of their table, and trees whose motion was not finite
-        and that go on from rest.
+        Trees whose wind was held at the limit of their table, and trees whose motion was not
+        finite and that go on from rest.
 
     """
     held, restarted = 0, 0
@@ -125,8 +125,8 @@ def place_standing(
     """
     Place trees of one kind.
 
-    Each is placed in memory that stays in the cache, then written out in one run: writing branch by
-    branch to memory that does not takes longer than both.
+    Each is placed in memory that stays in the cache, then written out in one run: writing branch
+    by branch to memory that does not takes longer than both.
 
     Parameters
     ----------

@@ -83,8 +83,8 @@ def wind_forces(
         `pressure` of the wind in [kg/m^3].
 
     """
-    # Each pass goes over all branches: what is written one by one and read as vectors at once would
-    # have to wait.
+    # Each pass goes over all branches: what is written one by one and read as vectors at once
+    # would have to wait.
     n = len(branches)
     if carries:
         for b in range(n):
@@ -176,7 +176,8 @@ def generalised_loads(
     """
     Turn forces into moments on the key rotations.
 
-    Its own force meets a branch where the branch now points; what it carries acts at rest geometry.
+    Its own force meets a branch where the branch now points; what it carries acts at rest
+    geometry.
 
     Parameters
     ----------
@@ -219,10 +220,7 @@ def _own_loads(loads: Record) -> None:
 
 @fused
 def inward_pass(branches: Records, work: Records) -> None:
-    """
-    Add up, from the twigs to the stem, force and moment about the root of all that each branch
-    carries.
-    """
+    """Add up from twigs to stem the force and moment about the root that each branch carries."""
     for b in range(len(branches)):
         here, couple = work[b], branches[b].couple
         force, wrench = here.force, here.wrench
@@ -311,10 +309,7 @@ def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats)
 
 @fused
 def _turned_loads(loads: Record) -> None:
-    """
-    Turn the wind's own forces on sixteen branches into loads on their coordinates and moments about
-    their bases.
-    """
+    """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
     force, push, load, couple = loads.own_force, loads.push, loads.load, loads.couple
     turn, base, moment = loads.turned, loads.base, loads.moment
     for j in range(LANES):

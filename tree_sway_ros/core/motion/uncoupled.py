@@ -28,7 +28,7 @@ from tree_sway_ros.core.motion.tree_passes import generalised_loads, outward_pas
 from tree_sway_ros.core.oscillators.propagator import fill_propagator
 from tree_sway_ros.core.oscillators.rule_names import DEFAULT
 from tree_sway_ros.core.oscillators.step_rules import fill_steps
-from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_branch, true_force
+from tree_sway_ros.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
 
 
 class UncoupledBank:
@@ -65,7 +65,7 @@ class UncoupledBank:
 
     @property
     def loads(self) -> Records:
-        """Records of `load_fields`, and what the oscillators add."""
+        """Return the records of `load_fields`, and what the oscillators add."""
         return self._banks
 
     def set_step(self, dt: float) -> None:
@@ -78,10 +78,10 @@ class UncoupledBank:
         held = half[:, [0, 1, 2, 4, 5, 6]]
         held[:, [2, 5]] += half[:, [3, 7]]
         block, lane = np.divmod(np.arange(n), LANES)
-        flow = np.square(self.branches["flow"][:, :2]).sum(axis=(1, 2)) / 2.0
-        for name, rows in (("whole", whole), ("half", held), ("guard", guard)):
+        flow = np.square(self.branches['flow'][:, :2]).sum(axis=(1, 2)) / 2.0
+        for name, rows in (('whole', whole), ('half', held), ('guard', guard)):
             self._banks[name][block, :, lane] = rows
-        self._banks["compliance"][block, lane] = flow * held[:, 5]
+        self._banks['compliance'][block, lane] = flow * held[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -97,10 +97,7 @@ class UncoupledBank:
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
-        """
-        Key rotations (N, k, f) under moments (N, k) [N m] that swing at w [rad/s], (f,), at rest
-        geometry.
-        """
+        """Key rotations (N, k, f) at rest under moments (N, k) [N m] that swing at w [rad/s]."""
         impedance = (
             self.stiffness[:, None]
             - self.inertia[:, None] * circular**2
@@ -110,8 +107,8 @@ class UncoupledBank:
         return moments[:, :, None] * flexibility[:, None, :]
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
-        return self.x, self.v, self._banks["slip"], self._banks["load"]
+        """Return views of what is carried from one step to the next."""
+        return self.x, self.v, self._banks['slip'], self._banks['load']
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
@@ -128,14 +125,14 @@ class UncoupledBank:
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
-        forces: Floats = self.work["force"]
+        forces: Floats = self.work['force']
         return forces
 
     def reset(self) -> None:
         """Go back to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._banks["slip"] = self._banks["load"] = 0.0
+        self._banks['slip'] = self._banks['load'] = 0.0
 
 
 @fused

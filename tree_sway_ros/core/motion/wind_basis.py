@@ -4,16 +4,16 @@
 Model `wind_basis`: a tree as a dozen oscillators, driven by a table of all even winds.
 
 What a step costs does not depend on the tree's size. The oscillators and the static rest are those
-of `modes`, and so is the order of work: the load is that of the state half a step on. Only the load
-comes from a table (`wind_basis_table`) and not from the branches. Where a wind or a lean leaves the
-table, the step is one of `modes`, told by `outside`.
+of `modes`, and so is the order of work: the load is that of the state half a step on. Only the
+load comes from a table (`wind_basis_table`) and not from the branches. Where a wind or a lean
+leaves the table, the step is one of `modes`, told by `outside`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cached_property, partial
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,28 +36,28 @@ from tree_sway_ros.core.motion.wind_basis_table import GENTLE, STEEPEST, WindBas
 
 def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     """State of one tree on a table, and scratch."""
-    m = table_layout(n_modes, n_harmonics)["stiffness"].shape[0]
+    m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
     return np.dtype(
         [
-            ("outside", "i8"),  # whether the last wind was outside of the table
-            ("eta", "f8", (m,)),
-            ("rate", "f8", (m,)),
-            ("force", "f8", (m,)),
-            ("rest", "f8", (N_REST,)),
-            ("wind", "f8", (3,)),  # [m/s]
-            ("pressure", "f8"),  # drag per area and speed squared [kg/m^3]
-            ("middle", "f8", (m,)),
-            ("middle_rate", "f8", (m,)),
-            ("wanted", "f8", (m,)),
-            ("scratch", "f8", (3, m)),
-            ("values", "f8", (n_harmonics,)),
+            ('outside', 'i8'),  # whether the last wind was outside of the table
+            ('eta', 'f8', (m,)),
+            ('rate', 'f8', (m,)),
+            ('force', 'f8', (m,)),
+            ('rest', 'f8', (N_REST,)),
+            ('wind', 'f8', (3,)),  # [m/s]
+            ('pressure', 'f8'),  # drag per area and speed squared [kg/m^3]
+            ('middle', 'f8', (m,)),
+            ('middle_rate', 'f8', (m,)),
+            ('wanted', 'f8', (m,)),
+            ('scratch', 'f8', (3, m)),
+            ('values', 'f8', (n_harmonics,)),
         ]
     )
 
 
 _pressure = inlined(pressure)
 
-CARRIED = ("eta", "rate", "force", "rest", "middle", "middle_rate", "wind", "pressure", "outside")
+CARRIED = ('eta', 'rate', 'force', 'rest', 'middle', 'middle_rate', 'wind', 'pressure', 'outside')
 """Fields of an instance that a state holds."""
 
 
@@ -78,7 +78,7 @@ class WindBasisBank:
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
         n, m = modal.shapes.shape
         self.record, self.pace = table.record, np.zeros(1, dtype=pace_layout(m))
-        layout = instance_layout(m, COUNT[int(table.record["degree"][0])])
+        layout = instance_layout(m, COUNT[int(table.record['degree'][0])])
         self.instance = np.zeros(1, dtype=layout)
         self.all_shapes = np.vstack([modal.shapes.T, table.rest_shapes])
         self._x = np.zeros(n)
@@ -107,14 +107,12 @@ class WindBasisBank:
     def stepping(
         self, wind: Floats, max_wind: float, law: DragLaw
     ) -> Callable[[float, float, float], int]:
-        """
-        Return a step as one compiled call: `step_in_wind` of the components of a wind in [m/s].
-        """
+        """Return a step as one compiled call: `step_in_wind` of a wind's components in [m/s]."""
         arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
 
     def placing(self, segments: Records, heads: Records) -> Callable[[Floats, Floats], None]:
-        """Return the placing of the state as one compiled call, of a root node and a pose block."""
+        """Return the placing of the state, a compiled call of a root node and a pose block."""
         arrays = (
             self.record, self.instance, self.all_shapes, self._x,
             self.branches, segments, heads, self.work,
@@ -131,7 +129,7 @@ class WindBasisBank:
         return self.modal.response(moments, circular)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return tuple(self.instance[name] for name in CARRIED)
 
     def rotations(self) -> Floats:
@@ -140,24 +138,24 @@ class WindBasisBank:
         return self._x
 
     def forces(self) -> Floats:
-        """Force of the last step's wind on each branch in [N], (b, 3); a pass over all branches."""
+        """Force of the last step's wind on each branch [N], (b, 3); a pass over all branches."""
         m, now = self.modal.shapes.shape[1], self.instance[0]
-        self.modal.take(now["eta"][:m], now["rate"][:m], now["force"][:m], self.rotations())
-        wx, wy, wz = now["wind"].tolist()
-        self.modal.advance(wx, wy, wz, float(now["pressure"]))
+        self.modal.take(now['eta'][:m], now['rate'][:m], now['force'][:m], self.rotations())
+        wx, wy, wz = now['wind'].tolist()
+        self.modal.advance(wx, wy, wz, float(now['pressure']))
         return self.modal.forces()
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
         m = self.modal.shapes.shape[1]
-        return self.rotations().copy(), self.modal.shapes @ self.instance[0]["rate"][:m]
+        return self.rotations().copy(), self.modal.shapes @ self.instance[0]['rate'][:m]
 
     def take_over(self, x: Floats, v: Floats) -> None:
         """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
         self.reset()
         self.modal.take_over(x, v)
         m = self.modal.shapes.shape[1]
-        self.instance["eta"][0, :m], self.instance["rate"][0, :m] = self.modal.modal[:2]
+        self.instance['eta'][0, :m], self.instance['rate'][0, :m] = self.modal.modal[:2]
 
     def reset(self) -> None:
         """Go back to rest."""
@@ -169,10 +167,10 @@ class WindBasisBank:
 def fill_pace(pace: np.void, modal: ModalBank) -> None:
     """Take the coefficients of a time step over into a record of `pace_layout`."""
     m = modal.shapes.shape[1]
-    pace["whole"], pace["half"] = 0.0, 0.0
-    pace["whole"][:, :m] = modal.whole.T
+    pace['whole'], pace['half'] = 0.0, 0.0
+    pace['whole'][:, :m] = modal.whole.T
     half = modal.half
-    pace["half"][:, :m] = np.stack(
+    pace['half'][:, :m] = np.stack(
         [half[:, 0], half[:, 1], half[:, 2] + half[:, 3],
          half[:, 4], half[:, 5], half[:, 6] + half[:, 7]]
     )  # fmt: skip
@@ -185,16 +183,16 @@ def step_outside(instance: Record, modal: ModalBank, shapes: Floats, rotations: 
     Returns how many loads were held at their limit.
     """
     m = modal.shapes.shape[1]
-    rotations[:] = instance["eta"][:m] @ shapes[:m] + instance["rest"] @ shapes[m:]
-    wx, wy, wz = instance["wind"].tolist()
-    load = float(instance["pressure"])
-    modal.take(instance["eta"][:m], instance["rate"][:m], instance["force"][:m], rotations)
+    rotations[:] = instance['eta'][:m] @ shapes[:m] + instance['rest'] @ shapes[m:]
+    wx, wy, wz = instance['wind'].tolist()
+    load = float(instance['pressure'])
+    modal.take(instance['eta'][:m], instance['rate'][:m], instance['force'][:m], rotations)
     held = modal.advance(wx, wy, wz, load)
-    for row, name in enumerate(("eta", "rate")):
+    for row, name in enumerate(('eta', 'rate')):
         instance[name][:m] = modal.modal[row]
-    instance["force"][:m] = modal.modal[3]
-    rest = modal.rotations() - instance["eta"][:m] @ shapes[:m]
-    instance["rest"] = np.linalg.lstsq(shapes[m:].T, rest, rcond=1e-10)[0]
+    instance['force'][:m] = modal.modal[3]
+    rest = modal.rotations() - instance['eta'][:m] @ shapes[:m]
+    instance['rest'] = np.linalg.lstsq(shapes[m:].T, rest, rcond=1e-10)[0]
     return held
 
 

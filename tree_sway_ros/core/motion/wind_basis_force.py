@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
+import math
 
 import numpy as np
 
@@ -31,24 +31,24 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     a, n = N_AZIMUTHS, N_LEVELS
     return np.dtype(
         [
-            ("n_modes", "i8"),
-            ("degree", "i8"),
-            ("levels", "f8", (n,)),  # dynamic pressures [kg/m/s^2]
-            ("most_pressure", "f8"),  # up to which the table holds [kg/m/s^2]
-            ("most_energy", "f8"),  # twice the strain energy up to which it holds [J]
-            ("stiffness", "f8", (m,)),
-            ("harmonics", "f8", (n_harmonics, m)),
-            ("rest_harmonics", "f8", (n_harmonics, N_REST)),
-            ("static", "f8", (a, m)),  # deflection per dynamic pressure
-            ("amount", "f8", (a, m)),  # weights of the modes in the lean along it
-            ("excess", "f8", (a, m)),
-            ("lean", "f8", (a, m, m)),  # as the next ones: by the mode that moves, then the mode
-            ("load", "f8", (a, n, m)),
-            ("rest", "f8", (a, n, N_REST)),
-            ("rest_turning", "f8", (a, m, N_REST)),
-            ("rest_damping", "f8", (a, m, N_REST)),
-            ("turning", "f8", (a, n, m, m)),
-            ("damping", "f8", (a, n, m, m)),
+            ('n_modes', 'i8'),
+            ('degree', 'i8'),
+            ('levels', 'f8', (n,)),  # dynamic pressures [kg/m/s^2]
+            ('most_pressure', 'f8'),  # up to which the table holds [kg/m/s^2]
+            ('most_energy', 'f8'),  # twice the strain energy up to which it holds [J]
+            ('stiffness', 'f8', (m,)),
+            ('harmonics', 'f8', (n_harmonics, m)),
+            ('rest_harmonics', 'f8', (n_harmonics, N_REST)),
+            ('static', 'f8', (a, m)),  # deflection per dynamic pressure
+            ('amount', 'f8', (a, m)),  # weights of the modes in the lean along it
+            ('excess', 'f8', (a, m)),
+            ('lean', 'f8', (a, m, m)),  # as the next ones: by the mode that moves, then the mode
+            ('load', 'f8', (a, n, m)),
+            ('rest', 'f8', (a, n, N_REST)),
+            ('rest_turning', 'f8', (a, m, N_REST)),
+            ('rest_damping', 'f8', (a, m, N_REST)),
+            ('turning', 'f8', (a, n, m, m)),
+            ('damping', 'f8', (a, n, m, m)),
         ]
     )
 
@@ -56,11 +56,11 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
 @cache
 def pace_layout(n_modes: int) -> np.dtype[np.void]:
     """How the modes of a table go on in a time step."""
-    m = table_layout(n_modes, 0)["stiffness"].shape[0]
+    m = table_layout(n_modes, 0)['stiffness'].shape[0]
     return np.dtype(
         [
-            ("whole", "f8", (8, m)),  # columns of the propagator of a step
-            ("half", "f8", (6, m)),  # of half a step under a constant load
+            ('whole', 'f8', (8, m)),  # columns of the propagator of a step
+            ('half', 'f8', (6, m)),  # of half a step under a constant load
         ]
     )
 
@@ -114,8 +114,8 @@ def wind_force(
     eta, rate
         Modes and their rates, (m,).
     values, scratch
-        Harmonics, (h,), written; and to work in, (3, m), the last of these gets the diagonal of the
-        damping.
+        Harmonics, (h,), written; and to work in, (3, m), the last of these gets the diagonal of
+        the damping.
     force
         Modal forces (m,), written.
 
@@ -164,10 +164,7 @@ def wind_rest(
     table: Record, x: float, y: float, push: float, drag: float,
     eta: Floats, rate: Floats, values: Floats, rest: Floats,
 ) -> None:  # fmt: skip
-    """
-    Find the static rest of the modes left out, (r,), as `wind_force`, by harmonics of the wind,
-    (h,).
-    """
+    """Find the static rest of modes left out, (r,), as `wind_force`, by wind harmonics (h,)."""
     first, second, j, share, up, lean = table_corners(table, x, y, eta)
     a, b, c, d = (1.0 - share) * (1.0 - up), (1.0 - share) * up, share * (1.0 - up), share * up
     for r in range(len(rest)):

@@ -123,9 +123,9 @@ class WindBasisTable:
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
-        table["n_modes"], table["degree"] = m, degree
-        table["stiffness"] = 1.0
-        table["stiffness"][:m] = bank.stiffness
+        table['n_modes'], table['degree'] = m, degree
+        table['stiffness'] = 1.0
+        table['stiffness'][:m] = bank.stiffness
         self._along = harmonics_at(direction(_ASKED, 0.0), degree)
         self._rests = self._fit_harmonics(table, degree)
         self._fill_slopes(table)
@@ -158,7 +158,7 @@ class WindBasisTable:
         return slopes
 
     def _rest_of(self, moments: Floats) -> Floats:
-        """Static rest of the modes left out under moments (k, N), (k, N)."""
+        """Return the static rest of the modes left out under moments (k, N), (k, N)."""
         bank = self._bank
         rest: Floats = bank.flexibility * moments - (moments @ bank.held.T) @ self._shapes.T
         return rest
@@ -166,26 +166,26 @@ class WindBasisTable:
     def _fit_harmonics(self, table: Record, degree: int) -> Floats:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
-            _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing="ij"
+            _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
         )
         directions = direction(azimuth.ravel(), elevation.ravel())
         weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
         loads = np.array([self._moments(self._still, self._still, d) for d in directions])
         values = harmonics_at(directions, degree) * weight[:, None]
         fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
-        table["harmonics"][:, : table["n_modes"]] = fitted @ self._shapes
+        table['harmonics'][:, : table['n_modes']] = fitted @ self._shapes
         return self._rest_of(fitted)
 
     def _fill_slopes(self, table: Record) -> None:
         """Fill the deflections in level winds, and what winds aslant and stronger ones change."""
-        m, shapes = int(table["n_modes"]), self._shapes
-        stiffness = table["stiffness"][:m]
+        m, shapes = int(table['n_modes']), self._shapes
+        stiffness = table['stiffness'][:m]
         azimuths = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
-        along = harmonics_at(direction(azimuths, 0.0), int(table["degree"]))
-        static = along @ table["harmonics"][:, :m] / stiffness
+        along = harmonics_at(direction(azimuths, 0.0), int(table['degree']))
+        static = along @ table['harmonics'][:, :m] / stiffness
         twice = (static**2 @ stiffness)[:, None]
-        table["static"][:, :m] = static
-        table["amount"][:, :m] = static * stiffness / np.where(twice > 0.0, twice, 1.0)
+        table['static'][:, :m] = static
+        table['amount'][:, :m] = static * stiffness / np.where(twice > 0.0, twice, 1.0)
         self._twice = float(twice.max())
         excess, lean = np.zeros((len(_ASKED), m)), np.zeros((len(_ASKED), m, m))
         for k, azimuth in enumerate(_ASKED):
@@ -195,8 +195,8 @@ class WindBasisTable:
                 slant = direction(azimuth, sign * _SLOPE_AT)
                 slopes = self._slopes(self._still, slant, shapes.T)
                 lean[k] += sign * slopes @ shapes / (2.0 * np.sin(_SLOPE_AT))
-        table["excess"][:, :m] = _between(excess)
-        table["lean"][:, :m, :m] = _between(lean)
+        table['excess'][:, :m] = _between(excess)
+        table['lean'][:, :m, :m] = _between(lean)
 
     def _level(self, pressure: float, *, lowest: bool = False) -> _Level:
         """
@@ -212,7 +212,7 @@ class WindBasisTable:
         )  # fmt: skip
         for k, azimuth in enumerate(_ASKED):
             ahead = direction(azimuth, 0.0)
-            static = self.record[0]["static"][2 * k, :m]
+            static = self.record[0]['static'][2 * k, :m]
             at = pressure * (shapes @ static + self._along[k] @ self._rests)
             upright = self._moments(self._still, self._still, ahead)
             further = self._moments(at, self._still, ahead) - upright
@@ -227,29 +227,29 @@ class WindBasisTable:
 
     def _fill_levels(self, table: Record, levels: list[_Level]) -> None:
         """Fill what the lean changes, and how far the table goes on."""
-        m = int(table["n_modes"])
-        table["levels"] = [level.pressure for level in levels]
-        table["most_pressure"] = BEYOND * table["levels"][-1]
-        table["most_energy"] = 2.0 * self._twice * table["levels"][-1] ** 2
+        m = int(table['n_modes'])
+        table['levels'] = [level.pressure for level in levels]
+        table['most_pressure'] = BEYOND * table['levels'][-1]
+        table['most_energy'] = 2.0 * self._twice * table['levels'][-1] ** 2
         for j, level in enumerate(levels):
-            table["load"][:, j, :m] = _between(level.load)
-            table["turning"][:, j, :m, :m] = _between(level.turning)
-            table["damping"][:, j, :m, :m] = _between(level.damping)
+            table['load'][:, j, :m] = _between(level.load)
+            table['turning'][:, j, :m, :m] = _between(level.turning)
+            table['damping'][:, j, :m, :m] = _between(level.damping)
         rest = np.stack([level.rest for level in levels], axis=1)
         assert levels[1].rest_slopes is not None
         self._fill_rest(table, rest, levels[1].rest_slopes)
 
     def _fill_rest(self, table: Record, rest: Floats, by_mode: Floats) -> None:
         """Lay the rest out on the few shapes that move the tips most in winds."""
-        m, levels, rests = int(table["n_modes"]), table["levels"], self._rests
+        m, levels, rests = int(table['n_modes']), table['levels'], self._rests
         n, top = rests.shape[1], levels[1]
-        moved = _SWING * top * np.abs(table["static"][:, :m]).max(axis=0)[:, None]
-        pace = moved * np.sqrt(table["stiffness"][:m] / top)[:, None]
+        moved = _SWING * top * np.abs(table['static'][:, :m]).max(axis=0)[:, None]
+        pace = moved * np.sqrt(table['stiffness'][:m] / top)[:, None]
         parts = {
-            "rest_harmonics": (rests, top),
-            "rest": (rest, np.maximum(levels, top)[:, None]),
-            "rest_turning": (by_mode[0], top * moved),
-            "rest_damping": (by_mode[1], top * pace),
+            'rest_harmonics': (rests, top),
+            'rest': (rest, np.maximum(levels, top)[:, None]),
+            'rest_turning': (by_mode[0], top * moved),
+            'rest_damping': (by_mode[1], top * pace),
         }
         told = np.concatenate([(part * size).reshape(-1, n) for part, size in parts.values()])
         tips = tip_motion(self._bank.branches, told.T).reshape(-1, len(told))
@@ -263,25 +263,25 @@ class WindBasisTable:
         for name, (part, size) in parts.items():
             rows = part.size // n
             amounts = share[first : first + rows].reshape(*part.shape[:-1], N_REST) / size
-            amounts = amounts if name == "rest_harmonics" else _between(amounts)
+            amounts = amounts if name == 'rest_harmonics' else _between(amounts)
             table[name][tuple(map(slice, amounts.shape))] = amounts
             first += rows
 
     def _tried(self, table: Record, degree: int) -> float:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
-        m, stiffness = int(table["n_modes"]), table["stiffness"]
+        m, stiffness = int(table['n_modes']), table['stiffness']
         forces, scratch = np.zeros(len(stiffness)), np.zeros((3, len(stiffness)))
         values, rest, still = np.zeros(COUNT[degree]), np.zeros(N_REST), np.zeros(len(stiffness))
         wrong = right = 0.0
         for _ in range(_TRIALS):
             azimuth, elevation = rng.uniform(0.0, 2.0 * np.pi), rng.normal(0.0, 0.15)
             wind = direction(azimuth, elevation)
-            push, lean = rng.uniform(0.05, 1.0, 2) * table["levels"][-1]
+            push, lean = rng.uniform(0.05, 1.0, 2) * table['levels'][-1]
             side = direction(azimuth + rng.normal(0.0, 0.3), 0.0)
             at = harmonics_at(side[None], degree)[0]
             eta = np.zeros(len(stiffness))
-            eta[:m] = lean * (at @ table["harmonics"][:, :m]) / stiffness[:m]
+            eta[:m] = lean * (at @ table['harmonics'][:, :m]) / stiffness[:m]
             _force(
                 self.record, wind[0], wind[1], wind[2], push, eta, still, values, scratch, forces,
                 rest,
@@ -300,7 +300,7 @@ def _pressure(number: int, drag_law: DragLaw) -> float:
 
 
 def _between(asked: Floats) -> Floats:
-    """Values at `N_AZIMUTHS` of a smooth function, first axis, that is known at every other one."""
+    """Values at `N_AZIMUTHS`, first axis, of a smooth function known at every other one."""
     waves = np.fft.rfft(asked, axis=0)
     waves[-1] *= 0.5
     found: Floats = np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked))
@@ -308,7 +308,7 @@ def _between(asked: Floats) -> Floats:
 
 
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
-    """Unit vectors, (..., 3)."""
+    """Return unit vectors, (..., 3)."""
     azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
     level = np.cos(elevation)
     out: Floats = np.stack(

@@ -58,8 +58,7 @@ def scaled_discriminant(
     i: float, c: float, k: float, h: float, alpha: float, kappa: float
 ) -> tuple[float, float, float]:
     """
-    Return delta = alpha^2 - kappa and, where it is negative, its root's phase as a sum of two
-    floats.
+    Return delta = alpha^2 - kappa and, if negative, its root's phase as a sum of two floats.
 
     Both come from ``k2^2 - 4 I k1``, whose two products are taken without rounding.
     """

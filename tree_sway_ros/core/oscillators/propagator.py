@@ -3,17 +3,17 @@
 """
 The exact propagator of a bank of oscillators, the kernel that every model of the ladder stands on.
 
-One row of eight coefficients advances ``I x'' + k2 x' + k1 x = M(t)`` over a step h, exactly, for a
-moment M that runs linearly from M0 to M1 (first-order hold)::
+One row of eight coefficients advances ``I x'' + k2 x' + k1 x = M(t)`` over a step h, exactly, for
+a moment M that runs linearly from M0 to M1 (first-order hold)::
 
     x1 = c0 x + c1 v + c2 M0 + c3 M1
     v1 = c4 x + c5 v + c6 M0 + c7 M1
 
-Symbols: alpha = k2 h / 2 I, kappa = k1 h^2 / I, and mu1, mu2 = -alpha +- sqrt(alpha^2 - kappa), the
-two eigenvalues times h. With e[..] for the divided differences of the exponential, everything
-follows from ``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham 2008,
-Functions of Matrices, 10.7: the phi functions), which `exponential_differences` finds without
-cancellation.
+Symbols: alpha = k2 h / 2 I, kappa = k1 h^2 / I, and mu1, mu2 = -alpha +- sqrt(alpha^2 - kappa),
+the two eigenvalues times h. With e[..] for the divided differences of the exponential, everything
+follows from ``s = e[mu1, mu2]``, ``p = e[0, mu1, mu2]`` and ``q = e[0, 0, mu1, mu2]`` (Higham
+2008, Functions of Matrices, 10.7: the phi functions), which `exponential_differences` finds
+without cancellation.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from tree_sway_ros.errors import ParameterError
 
 Floats = NDArray[np.float64]
 
-_NO_MOTION = "inertia, damping and stiffness are all zero: nothing resists the moment"
+_NO_MOTION = 'inertia, damping and stiffness are all zero: nothing resists the moment'
 
 
 def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float) -> Floats:
@@ -44,7 +44,8 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     Parameters
     ----------
     inertia
-        Moment of inertia I in [kg m^2], (n,) or a scalar for all; zero gives the first-order limit.
+        Moment of inertia I in [kg m^2], (n,) or a scalar for all; zero gives the first-order
+        limit.
     damping
         Damping coefficient k2 in [N m s], (n,) or a scalar.
     stiffness
@@ -55,8 +56,8 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     Returns
     -------
     Floats
-        c0 .. c7 of the module's text, (n, 8). Where I and k2 are zero, the static answer: x1 = M1 /
-        k1 with the velocity of the line between the two answers.
+        c0 .. c7 of the module's text, (n, 8). Where I and k2 are zero, the static answer: x1 = M1
+        / k1 with the velocity of the line between the two answers.
 
     Raises
     ------
@@ -70,19 +71,21 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     )
     i, c, k = (np.ascontiguousarray(part) for part in parts)
     if not (np.isfinite(dt) and dt > 0.0):
-        raise ParameterError(f"time step of {dt} s", where="propagator", cure="give a step above 0")
-    for name, values in (("inertia", i), ("damping", c), ("stiffness", k)):
+        raise ParameterError(
+            f'time step of {dt} s', where='propagator', cure='give a step above 0'
+        )
+    for name, values in (('inertia', i), ('damping', c), ('stiffness', k)):
         bad = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
         if len(bad):
             raise ParameterError(
-                f"{name} of {values[bad[0]]}",
-                where=f"oscillator {bad[0]}",
-                cure="give a finite value of 0 or more",
+                f'{name} of {values[bad[0]]}',
+                where=f'oscillator {bad[0]}',
+                cure='give a finite value of 0 or more',
             )
     out = np.empty((len(i), 8))
     refused = fill_propagator(i, c, k, dt, out)
     if refused >= 0:
-        raise ParameterError(_NO_MOTION, where=f"oscillator {refused}")
+        raise ParameterError(_NO_MOTION, where=f'oscillator {refused}')
     return out
 
 
@@ -93,8 +96,8 @@ def fill_propagator(
     """
     Refill coefficients (n, 8) in place, for a step [s] that changes; computed in float64.
 
-    Arguments are those of `propagator`, not checked; nothing is allocated. Returned is the index of
-    the first oscillator with nothing but zeros (its row is set to stand still), or -1.
+    Arguments are those of `propagator`, not checked; nothing is allocated. Returned is the index
+    of the first oscillator with nothing but zeros (its row is set to stand still), or -1.
     """
     refused = -1
     for row in range(len(inertia)):

@@ -4,8 +4,8 @@
 The step rules that the solver can run, each as a function of a linear oscillator's state and load.
 
 Every rule is linear in angle, rate and the moments at both ends of a step, so eight coefficients
-per oscillator hold it; the kernels apply those and do not know which rule made them. What the rules
-are, with order, limits and sources, is declared where they are studied side by side
+per oscillator hold it; the kernels apply those and do not know which rule made them. What the
+rules are, with order, limits and sources, is declared where they are studied side by side
 (``study/methods``).
 """
 
@@ -117,13 +117,13 @@ def verlet(x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> State:
 
 STEP_RULES: MappingProxyType[str, StepRule] = MappingProxyType(
     {
-        "semi_implicit_euler": semi_implicit_euler,
-        "verlet": verlet,
-        "rk4": runge_kutta_4,
-        "implicit_midpoint": implicit_midpoint,
-        "tr_bdf2": tr_bdf2,
-        "exact_zoh": exact_zoh,
-        "exact_foh": exact_foh,
+        'semi_implicit_euler': semi_implicit_euler,
+        'verlet': verlet,
+        'rk4': runge_kutta_4,
+        'implicit_midpoint': implicit_midpoint,
+        'tr_bdf2': tr_bdf2,
+        'exact_zoh': exact_zoh,
+        'exact_foh': exact_foh,
     }
 )
 """Step rules by the name that the setting ``integrator`` takes, one of `REAL_TIME`."""
@@ -133,9 +133,9 @@ def rule_named(name: str) -> StepRule:
     """Return a step rule by its name; a `ParameterError` if no rule has it."""
     if name not in STEP_RULES:
         raise ParameterError(
-            f"no integrator {name!r} that the solver can run",
-            where="integrator",
-            cure="take one of " + ", ".join(REAL_TIME),
+            f'no integrator {name!r} that the solver can run',
+            where='integrator',
+            cure='take one of ' + ', '.join(REAL_TIME),
         )
     return STEP_RULES[name]
 
@@ -143,14 +143,12 @@ def rule_named(name: str) -> StepRule:
 def rule_propagator(
     name: str, inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float
 ) -> Array:
-    """
-    Eight coefficients per oscillator, as `propagator.propagator`, of a rule's own step, (n, 8).
-    """
+    """Coefficients of a rule's own step per oscillator, as `propagator.propagator`, (n, 8)."""
     i, c, k = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))
     )
     body = Oscillator(i[:, None], c[:, None], k[:, None], dt)
-    with np.errstate(all="ignore"):
+    with np.errstate(all='ignore'):
         x0, v0, m0, m1 = np.eye(4)
         x, v = rule_named(name)(x0, v0, m0, m1, body)
     return np.ascontiguousarray(np.hstack(np.broadcast_arrays(x, v)))
@@ -197,7 +195,7 @@ def stable_steps(
         *(np.atleast_1d(np.asarray(a, float)) for a in (inertia, damping, stiffness))
     )
     rows = rule_propagator(name, i, c, k, dt)
-    if name.startswith("exact"):
+    if name.startswith('exact'):
         return rows
     square = rows[:, [0, 1, 4, 5]].reshape(-1, 2, 2)
     finite = np.isfinite(square).all((1, 2))
@@ -213,10 +211,10 @@ def stable_steps(
     )
     limit = stability_limit(name, ratio)
     raise ParameterError(
-        f"integrator {name!r} is unstable for oscillator {first}: w h is {w * dt:.3g}, its limit "
-        f"{limit:.3g} at damping ratio {ratio:.3g}",
-        where="integrator",
-        cure=f"take {DEFAULT}, or a step below {limit / w:.2g} s" if w > 0 else f"take {DEFAULT}",
+        f'integrator {name!r} is unstable for oscillator {first}: w h is {w * dt:.3g}, its limit '
+        f'{limit:.3g} at damping ratio {ratio:.3g}',
+        where='integrator',
+        cure=f'take {DEFAULT}, or a step below {limit / w:.2g} s' if w > 0 else f'take {DEFAULT}',
     )
 
 

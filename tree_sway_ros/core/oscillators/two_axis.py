@@ -6,8 +6,8 @@ A branch on two axes: its force, its gyroscopic term and one guarded step of the
 The state is the rotation vector (x, y) in [rad] in the branch's own rest frame (b along the chord,
 e1 and e2 across): the chord points along ``u = cos|e| b + sinc|e| (x e1 + y e2)``. In steady wind
 it moves in one plane, the paper's; when the wind turns it needs no plane and has no singular
-direction. With t = x^2 + y^2 and W the force times its lever, in [N m], Lagrange's equations on the
-sphere are::
+direction. With t = x^2 + y^2 and W the force times its lever, in [N m], Lagrange's equations on
+the sphere are::
 
     I (e'' - gyroscopic) + k2 e' + k1 e = true_force
     true_force = W_perp / sinc + e (e.W)(cos - 1 / sinc) / t - W_b sinc e
@@ -17,14 +17,14 @@ The second line of the kinetic energy, T = I/2 (|v|^2 + (sinc^2 - 1) L^2 / t), i
 y); so is what follows from it, and in this form nothing is divided by t. With sinc = 1 + t s and
 cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 
-**Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right to
-3e-9 up to the guard; no root, sine or cosine is taken.
+**Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right
+to 3e-9 up to the guard; no root, sine or cosine is taken.
 **Guard.** For these terms (x, y) is held within sinc >= 0.3 (2.36 rad): beyond it they are the
-circle's. The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max
-k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no ellipse. A bounded
-moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max = 3 / (w
-h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the branch to
-the right side and angle; at 4 / (w h)^2 it no longer does.
+circle's. The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5
+s_max k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no ellipse. A
+bounded moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max
+= 3 / (w h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the
+branch to the right side and angle; at 4 / (w h)^2 it no longer does.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _held(x: float, y: float) -> tuple[float, float, float]:
 
 @inlined
 def _series(t: float) -> tuple[float, float, float, float]:
-    """Return s, c of the module's text and their tails s', c': s = -1/6 + t s', c = -1/2 + t c'."""
+    """Return s, c of the module's text, tails s', c' too: s = -1/6 + t s', c = -1/2 + t c'."""
     s = like(1.5032424712277569e-10, t)
     s = s * t - like(2.5002780465942419e-8, t)
     s = s * t + like(2.7556346133638428e-6, t)

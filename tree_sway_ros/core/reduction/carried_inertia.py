@@ -22,8 +22,8 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
     Inertia of each coordinate with its subtree giving way, in [kg m^2], (N,).
 
-    It is never less than the diagonal of the mass matrix. Both axes of a branch that carries others
-    are taken as one, so that it does not matter how they are laid.
+    It is never less than the diagonal of the mass matrix. Both axes of a branch that carries
+    others are taken as one, so that it does not matter how they are laid.
     """
     mass, stiffness = reduction.mass.tocsc(), reduction.stiffness.tocsc()
     inertia = np.asarray(mass.diagonal()).copy()
@@ -34,7 +34,7 @@ def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
         its_mass, its_stiffness = mass[below, below], stiffness[below, below]
         own = int(reduction.first[branch + 1] - first)
         follow = its_mass[:, :own].toarray() / spring[below, None]
-        energy = np.einsum("ni,ni->", follow, its_stiffness @ follow)
-        kinetic = np.einsum("ni,ni->", follow, its_mass @ follow)
+        energy = np.einsum('ni,ni->', follow, its_stiffness @ follow)
+        kinetic = np.einsum('ni,ni->', follow, its_mass @ follow)
         inertia[first : first + own] = spring[first : first + own] * kinetic / energy
     return inertia

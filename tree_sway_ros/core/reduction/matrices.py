@@ -3,8 +3,8 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the child
-carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
+A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the
+child carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
 (linear, angular) of a unit rate of coordinate j with all that it carries, the entries for an
 ancestor's coordinate i are
 
@@ -75,10 +75,7 @@ class Reduction:
 
     @property
     def flexibility(self) -> Floats:
-        """
-        Of each coordinate alone in [rad/(N m)], (N,): both axes as one, so that it does not matter
-        how they are laid.
-        """
+        """Of each coordinate alone [rad/(N m)], (N,): both axes as one, however they are laid."""
         diagonal = np.asarray(self.stiffness.diagonal())
         mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
         return mean
@@ -145,7 +142,9 @@ def reduce_tree(
             below = slice(int(first[child]), int(first[tree.subtree_end[child]]))
             mass.add(own, below, base_twists @ momentum[below].T)
             lift = momentum[below]
-            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(base_twists[:, 4], lift[:, 0])
+            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(
+                base_twists[:, 4], lift[:, 0]
+            )
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
@@ -184,9 +183,7 @@ class _Blocks:
 
 
 def _motions(model: BranchModel) -> tuple[Floats, Floats]:
-    """
-    Displacement at the points (k, p, 5, 3) and twist on the children (k, c, 6) of each coordinate.
-    """
+    """Displacement at points (k, p, 5, 3) and twist on children (k, c, 6) of each coordinate."""
     places = model.beam.child_point
     twists = [
         np.hstack([one.children - cross(one.child_slope, places), one.child_slope])
@@ -200,8 +197,8 @@ def _spatial_inertia(model: BranchModel) -> Floats:
     point = model.beam.point
     dm = model.mass * model.beam.weight
     mass = dm.sum()
-    cross = cross_matrix(np.einsum("sg,sgk->k", dm, point))
-    second = np.einsum("sg,sgi,sgj->ij", dm, point, point)
+    cross = cross_matrix(np.einsum('sg,sgk->k', dm, point))
+    second = np.einsum('sg,sgi,sgj->ij', dm, point, point)
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = mass * np.eye(3)
     inertia[:3, 3:] = -cross
@@ -212,16 +209,15 @@ def _spatial_inertia(model: BranchModel) -> Floats:
 
 def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     """
-    Second-order lift of all that a branch carries, between its own coordinates, per unit of
-    gravity.
+    Second-order lift per unit of gravity of all that a branch carries, between its coordinates.
 
     Every piece ds turns what lies beyond it: with m the mass beyond, the entry is the integral of
     psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each
     child's subtree about its base takes the place of m t for the child.
 
-    Rotations about unlike axes do not add up: what is first bent and then twisted is turned by half
-    of the cross product of the two as well, and the weight, whose moment the branch bears at rest,
-    does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
+    Rotations about unlike axes do not add up: what is first bent and then twisted is turned by
+    half of the cross product of the two as well, and the weight, whose moment the branch bears at
+    rest, does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
     """
     beam = model.beam
     own, nodes, _ = beam.from_base(model.mass)

@@ -3,22 +3,22 @@
 """
 Linear algebra on one thread, so that a tree is the same bit for bit however many a machine has.
 
-OpenBLAS divides sums among its threads, so that the last bits of modes depend on their number. What
-numpy and scipy are linked with is asked through the libraries that they have loaded; where it is
-another BLAS nothing is changed.
+OpenBLAS divides sums among its threads, so that the last bits of modes depend on their number.
+What numpy and scipy are linked with is asked through the libraries that they have loaded; where it
+is another BLAS nothing is changed.
 """
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+import ctypes
 from functools import cache
 
 from numpy.linalg import _umath_linalg
 from scipy.linalg import _fblas
 
-_NAMES = ("scipy_openblas_{}64_", "scipy_openblas_{}", "openblas_{}64_", "openblas_{}")
+_NAMES = ('scipy_openblas_{}64_', 'scipy_openblas_{}', 'openblas_{}64_', 'openblas_{}')
 
 
 @contextmanager
@@ -44,8 +44,8 @@ def _switches() -> tuple[tuple[Callable[[int], object], Callable[[], int]], ...]
         except OSError:
             continue
         for name in _NAMES:
-            put = getattr(library, name.format("set_num_threads"), None)
-            get = getattr(library, name.format("get_num_threads"), None)
+            put = getattr(library, name.format('set_num_threads'), None)
+            get = getattr(library, name.format('get_num_threads'), None)
             if put is not None and get is not None:
                 found.append((put, get))
                 break

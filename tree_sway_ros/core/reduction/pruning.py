@@ -50,7 +50,7 @@ class Pruning:
         for branch in range(1, len(frozen)):
             frozen[branch] |= frozen[parent[branch]]
         frozen.setflags(write=False)
-        object.__setattr__(self, "frozen", frozen)
+        object.__setattr__(self, 'frozen', frozen)
 
     @property
     def moving(self) -> Ints:
@@ -64,9 +64,7 @@ class Pruning:
 
     @property
     def place_among_moving(self) -> Ints:
-        """
-        Index of each branch among those that move, -1 for the frozen and for no branch, (b + 1,).
-        """
+        """Index of each branch among the moving, -1 for the frozen and for no branch, (b + 1,)."""
         place = np.full(len(self.frozen) + 1, -1, dtype=np.int64)
         place[self.moving] = np.arange(len(self.moving))
         return place
@@ -113,7 +111,7 @@ class Pruning:
         )
 
     def carriers(self) -> Ints:
-        """Moving branch that each branch moves with: its own, or the nearest below, (b,)."""
+        """Return the moving branch that each moves with: its own, or the nearest below, (b,)."""
         carrier = np.arange(len(self.frozen))
         for branch in np.flatnonzero(self.frozen):
             carrier[branch] = carrier[self.whole.branch_parent[branch]]

@@ -5,8 +5,8 @@ The tree as a chain of rigid segments, solved whole: the conventional method, sl
 
 Every segment bends at one joint inside it (see `articulated_bodies`), the articulated-body
 algorithm gives the accelerations in O(n) (`articulated_kernel`), springs and dampers are implicit
-(`articulated_step`). It stands beside the reduced model as the truth for large, coupled motion, and
-as the last model of the ladder.
+(`articulated_step`). It stands beside the reduced model as the truth for large, coupled motion,
+and as the last model of the ladder.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREA
 from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies
 from tree_sway_ros.core.reference.articulated_kernel import articulation_of, motion_of
 from tree_sway_ros.core.reference.articulated_modes import (
-    JointModes,
     end_displacements,
     joint_modes,
+    JointModes,
 )
 from tree_sway_ros.core.reference.articulated_pose import place_bodies, pose_block
-from tree_sway_ros.core.reference.articulated_step import Laws, State, advance, scratch_of
+from tree_sway_ros.core.reference.articulated_step import advance, Laws, scratch_of, State
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.tree import Tree
 
@@ -40,8 +40,8 @@ LARGEST_TURN = 0.3
 
 FASTEST_DECAY = 15.0
 """
-Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of 1/60
-s.
+Rate in [1/s] up to which modes are damped singly: that part is explicit and must suit steps of
+1/60 s.
 
 """
 
@@ -141,11 +141,11 @@ class ArticulatedTree:
         self.reset()
 
     def _along(self, leaves: Floats | None) -> Floats:
-        """What leaves add per metre of each piece: that of a branch over its length."""
+        """Spread what leaves add to a branch over its length: that per metre of each piece."""
         tree = self.tree
         if leaves is None:
             return np.zeros(tree.n_segments * self.subdivisions)
-        each = one_of_each("leaves", leaves, tree.n_branches, "branch")
+        each = one_of_each('leaves', leaves, tree.n_branches, 'branch')
         return np.repeat((each / tree.branch_length)[tree.branch_of_segment], self.subdivisions)
 
     def tune(self, stiffness: float, damping_ratio: float, weight: float) -> None:
@@ -196,7 +196,7 @@ class ArticulatedTree:
     def place(self, out: Floats | None = None) -> Floats:
         """Pose of each segment at its start node, ``x y z qx qy qz qw``, (n, 7)."""
         shape = (self.tree.n_segments, 7)
-        out = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        out = np.empty(shape) if out is None else array_to_fill('out', out, shape)
         self._place_bodies()
         _, start, end = self._nodes
         pose_block(
@@ -213,8 +213,7 @@ class ArticulatedTree:
 
     def linear_modes(self, count: int) -> tuple[Floats, Floats]:
         """
-        Natural frequencies [Hz], lowest first, (count,), and displacements of the end nodes,
-        (count, n, 3).
+        Natural frequencies [Hz], lowest first, (count,), and the end nodes' shapes, (count, n, 3).
 
         The shapes have unit modal mass.
         """
@@ -225,10 +224,7 @@ class ArticulatedTree:
     def _even_damping(
         self, ratio: float, count: int
     ) -> tuple[float, float, Floats, Floats, Floats, Floats]:
-        """
-        Damping of `Laws`: by stiffness so much that the last of these modes has the ratio, and the
-        rest to each below it.
-        """
+        """Damping of `Laws` at one ratio, by stiffness for the last mode; others add their own."""
         modes = joint_modes(self.bodies, self._gravity, count)
         circular = 2.0 * math.pi * modes.frequency
         slow = max(1, int(np.sum(ratio * circular <= FASTEST_DECAY)))

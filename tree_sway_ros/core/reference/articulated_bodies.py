@@ -4,11 +4,11 @@
 Rigid bodies and springs that stand for a tree: hinges inside the segments.
 
 Rigid finite elements (Wittbrodt, Adamiec-Wojcik & Wojciech 2006, chapter 2): the bending of a
-segment is gathered in one ball joint of stiffness ``1 / integral(ds / EI)`` at the centroid of ``ds
-/ EI``, which is the middle where it does not taper, and body i is what lies between the joints: the
-tip's part of segment i and the root's parts of all that sit on it. The tangent at a fork then is
-the same for all who meet there, and frequencies converge with the square of the length of the
-segments; joints at the nodes would be a power slower wherever a branch forks.
+segment is gathered in one ball joint of stiffness ``1 / integral(ds / EI)`` at the centroid of
+``ds / EI``, which is the middle where it does not taper, and body i is what lies between the
+joints: the tip's part of segment i and the root's parts of all that sit on it. The tangent at a
+fork then is the same for all who meet there, and frequencies converge with the square of the
+length of the segments; joints at the nodes would be a power slower wherever a branch forks.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def _part_moments(
     line += leaf_mass.reshape(-1, 1, 1) * span * half * weight
     mass, first = line.sum(axis=2), (line * reach).sum(axis=2)
     second = (line * reach**2).sum(axis=2)
-    along = np.einsum("ni,nj->nij", axis, axis)[:, None]
+    along = np.einsum('ni,nj->nij', axis, axis)[:, None]
     tensor = second[..., None, None] * (np.eye(3) - along) + disc[..., None, None] * (
         np.eye(3) + along
     )
@@ -157,15 +157,15 @@ def _part_moments(
 
 
 def _tensor(mass: Floats, place: Floats) -> Floats:
-    square = np.einsum("ni,ni->n", place, place)[:, None, None] * np.eye(3)
-    out: Floats = mass[:, None, None] * (square - np.einsum("ni,nj->nij", place, place))
+    square = np.einsum('ni,ni->n', place, place)[:, None, None] * np.eye(3)
+    out: Floats = mass[:, None, None] * (square - np.einsum('ni,nj->nij', place, place))
     return out
 
 
 def _parallel(mass: Floats, shift: Floats, first: Floats) -> Floats:
-    """What the inertia gains when its point is moved back by `shift`."""
-    cross = np.einsum("ni,nj->nij", shift, first)
-    both = 2.0 * np.einsum("nii->n", cross)[:, None, None] * np.eye(3)
+    """Return what the inertia gains when its point is moved back by `shift`."""
+    cross = np.einsum('ni,nj->nij', shift, first)
+    both = 2.0 * np.einsum('nii->n', cross)[:, None, None] * np.eye(3)
     out: Floats = _tensor(mass, shift) + both - cross - cross.transpose(0, 2, 1)
     return out
 

@@ -20,7 +20,6 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.rotation_kernel import (
-    Vector,
     cross,
     cross_columns,
     dot,
@@ -30,6 +29,7 @@ from tree_sway_ros.core.reference.rotation_kernel import (
     read,
     times,
     times_transposed,
+    Vector,
     write,
 )
 
@@ -103,7 +103,7 @@ def articulation_of(n: int) -> Articulation:
 
 @kernel
 def move(bodies: Bodies, turn: Floats, rate: Floats, motion: Motion) -> None:
-    """Carry rotations (n, 3, 3) and rates (n, 3) of the joints, in body axes, from the root out."""
+    """Carry rotations (n, 3, 3) and rates (n, 3) of the joints in body axes from the root out."""
     rotation = motion.rotation
     for i in range(len(turn)):
         p = bodies.carrier[i]
@@ -182,14 +182,16 @@ def accelerate(
 
     Parameters
     ----------
+    bodies, motion
+        The tree, and its motion from `move`.
     torque
         Torque of the joints, body axes, (n, 3) in [N m].
     twist_axis
         Gradient of their angles of twist, body axes, (n, 3).
     implicit
         Inertia added to the joints by their stiffness in [s^2]: it makes the springs implicit.
-    scratch
-        From `load`, with every force pushed.
+    scratch, out
+        From `load`, with every force pushed; the accelerations.
 
     """
     n = len(bodies.mass)
@@ -258,9 +260,7 @@ def _shift(
     d: Vector, A: Floats, B: Floats, C: Floats, first: Floats, second: Floats,
     to_A: Floats, to_B: Floats, to_C: Floats,
 ) -> None:  # fmt: skip
-    """
-    Add an inertia to one whose point lies back by d: B + d x C, and A + d x B^T - (B + d x C) d x.
-    """
+    """Add an inertia to one whose point is d back: B + d x C; A + d x B^T - (B + d x C) d x."""
     cross_columns(d, C, first)
     for j in range(3):
         for k in range(3):

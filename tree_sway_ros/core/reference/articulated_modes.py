@@ -37,14 +37,14 @@ def joint_modes(bodies: Bodies, gravity: float, count: int) -> JointModes:
     mass, stiffness = joint_mass(bodies), joint_stiffness(bodies, gravity)
     factor = linalg.splu(
         stiffness,
-        permc_spec="MMD_AT_PLUS_A",
+        permc_spec='MMD_AT_PLUS_A',
         diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
+        options={'SymmetricMode': True},
     )
     if np.any(factor.U.diagonal() <= 0.0):
         raise TreeError(
-            "buckles under its own weight: its stiffness is not positive with gravity",
-            cure="check modulus, density and diameters, or leave gravity out",
+            'buckles under its own weight: its stiffness is not positive with gravity',
+            cure='check modulus, density and diameters, or leave gravity out',
         )
     size = mass.shape[0]
     solve = linalg.LinearOperator(mass.shape, matvec=factor.solve, dtype=np.float64)
@@ -87,8 +87,10 @@ def joint_stiffness(bodies: Bodies, gravity: float) -> Any:
     Gravity's part is the second variation of the height of the masses, each joint turned in the
     axes its carrier has turned already, with the springs' share in holding the rest shape.
     """
-    twist = np.einsum("ni,nj->nij", bodies.axis, bodies.axis)
-    springs = bodies.bend[:, None, None] * (np.eye(3) - twist) + bodies.twist[:, None, None] * twist
+    twist = np.einsum('ni,nj->nij', bodies.axis, bodies.axis)
+    springs = (
+        bodies.bend[:, None, None] * (np.eye(3) - twist) + bodies.twist[:, None, None] * twist
+    )
     own, pairs = list(springs), []
     if gravity != 0.0:
         _, lever, _ = _composite(bodies)
@@ -136,8 +138,8 @@ def _composite(bodies: Bodies) -> tuple[Floats, Floats, Floats]:
 
 
 def _point_inertia(mass: Floats, place: Floats) -> Floats:
-    square = np.einsum("ni,ni->n", place, place)[:, None, None] * np.eye(3)
-    out: Floats = mass[:, None, None] * (square - np.einsum("ni,nj->nij", place, place))
+    square = np.einsum('ni,ni->n', place, place)[:, None, None] * np.eye(3)
+    out: Floats = mass[:, None, None] * (square - np.einsum('ni,nj->nij', place, place))
     return out
 
 

@@ -1,12 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-One step of the articulated tree: springs and dampers implicit, everything else explicit, second
-order.
+One step of the articulated tree: springs and dampers implicit, all else explicit, order two.
 
 ROS2 of Verwer, Spee, Blom & Hundsdorfer (1999), a Rosenbrock method of order two whatever the
-Jacobian, L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, each of its
-own joint only, so that (1 - gamma h A) costs no more than some inertia added to each joint:
+Jacobian, L-stable with gamma = 1 - 1/sqrt 2. As Jacobian serve the springs and dampers, each of
+its own joint only, so that (1 - gamma h A) costs no more than some inertia added to each joint:
 
     (M + gamma h C + gamma^2 h^2 K) k = f - gamma h K w.
 """
@@ -22,15 +21,14 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.reference.articulated_bodies import Bodies
 from tree_sway_ros.core.reference.articulated_kernel import (
-    Articulation,
-    Motion,
     accelerate,
+    Articulation,
     load,
+    Motion,
     move,
     push,
 )
 from tree_sway_ros.core.reference.rotation_kernel import (
-    Vector,
     cross,
     dot,
     held_torque,
@@ -41,6 +39,7 @@ from tree_sway_ros.core.reference.rotation_kernel import (
     times,
     turn_on,
     twist_of,
+    Vector,
     write,
 )
 
@@ -87,10 +86,7 @@ class Laws(NamedTuple):
 
 
 class State(NamedTuple):
-    """
-    Rotations of the joints, quaternions wxyz (n, 4), and their rates in [rad/s], (n, 3), in body
-    axes.
-    """
+    """Rotations of the joints, quaternions wxyz (n, 4), and rates in body axes [rad/s], (n, 3)."""
 
     turn: Floats
     rate: Floats
@@ -183,8 +179,8 @@ def damp_modes(laws: Laws, rate: Floats, implicit: float, out: Floats) -> None:
     """
     Take the damping of single modes off the accelerations of the joints, (n, 3).
 
-    Taken off their torques it would shake a bent tree to pieces: there a torque that bends the tree
-    at rest also twists it, and has hardly any inertia to do so against.
+    Taken off their torques it would shake a bent tree to pieces: there a torque that bends the
+    tree at rest also twists it, and has hardly any inertia to do so against.
     """
     for mode in range(len(laws.mode_damping)):
         momentum, shape = laws.mode_momentum[mode], laws.mode_turn[mode]
@@ -213,8 +209,8 @@ def respond(
     Accelerations of the joints (n, 3) in [rad/s^2], body axes, in air (n, 3) in [m/s].
 
     Joints have quaternions (n, 4) and angular velocities (n, 3). ``implicit`` is gamma h in [s]; 0
-    is the plain equation of motion. What is filled on the way is scratch, but for its `pull`, which
-    is read.
+    is the plain equation of motion. What is filled on the way is scratch, but for its `pull`,
+    which is read.
     """
     late = laws.stiffness_damping + implicit
     for i in range(len(turn)):

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What every model of a tree is measured by: where its tips are, in winds that are even per frame.
-"""
+"""What every model of a tree is measured by: where its tips are, in winds even over frames."""
 
 from __future__ import annotations
 
@@ -22,8 +20,7 @@ def tips_of_poses(tree: Tree, poses: Floats, branches: Ints | slice = slice(None
 
 def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:
     """
-    Means of a wind record [m/s], (m, 3), over frames of dt [s], its samples joined by lines, (t,
-    3).
+    Means of a wind record [m/s], (m, 3), joined by lines, over frames of dt [s], (t, 3).
 
     The first frame begins with the first sample, the last ends by the last.
     """
@@ -33,7 +30,7 @@ def frame_means(time: ArrayLike, velocity: ArrayLike, dt: float) -> Floats:
         [np.zeros(3), np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)]
     )
     edge = t[0] + dt * np.arange(int((t[-1] - t[0]) / dt + 1e-9) + 1)
-    k = np.clip(np.searchsorted(t, edge, side="right") - 1, 0, len(slope) - 1)
+    k = np.clip(np.searchsorted(t, edge, side='right') - 1, 0, len(slope) - 1)
     past = (edge - t[k])[:, None]
     means: Floats = np.diff(whole[k] + v[k] * past + 0.5 * slope[k] * past**2, axis=0) / dt
     return means

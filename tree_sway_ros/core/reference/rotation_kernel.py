@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Vectors as triples of floats and rotations, compiled by numba into their callers: nothing is
-allocated.
-"""
+"""Vectors as triples of floats, and rotations, compiled into their callers without allocation."""
 
 from __future__ import annotations
 
@@ -99,9 +96,7 @@ def inverse(m: Floats, out: Floats) -> None:
 
 @kernel
 def turn_on(q: Quaternion, v: Vector, out: Floats) -> None:
-    """
-    Turn a quaternion wxyz (4,) on by a rotation vector in its own axes in [rad], to unit length.
-    """
+    """Turn a unit quaternion wxyz (4,) on by a rotation vector in its own axes in [rad]."""
     square = dot(v, v)
     half = 0.5 * math.sqrt(square)
     factor = 0.5 - square / 48.0 if square < 1e-6 else math.sin(half) / (2.0 * half)

@@ -51,9 +51,7 @@ def set_demand(
 
 
 def set_pace(simulators: Iterable[TreeSimulator], spent: float) -> None:
-    """
-    Tell the trees that choose their model what a frame of all of them takes here and now, in [us].
-    """
+    """Tell the trees that choose their model what a frame of all takes here and now, in [us]."""
     adaptive = adaptive_among(simulators)
     foreseen = sum(each.choice.cost for each in adaptive)
     for each in adaptive:

@@ -19,11 +19,11 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
-from tree_sway_ros.core.simulator.simulator import OK, WIND_REFUSED, Counts, refuse_time_step
+from tree_sway_ros.core.simulator.simulator import Counts, OK, refuse_time_step, WIND_REFUSED
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
 from tree_sway_ros.core.wind.limits import take_wind
@@ -44,8 +44,8 @@ class Forest:
         Largest error of the tips in [m] that the model ``auto`` may allow itself, in each tree on
         its own.
     anemometer
-        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the wind
-        reaches first if None (`GustHistory`).
+        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the
+        wind reaches first if None (`GustHistory`).
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
@@ -84,14 +84,16 @@ class Forest:
         for number, each in enumerate(trees):
             if not isinstance(each, PlacedTree):
                 raise ParameterError(
-                    f"a {type(each).__name__}, where a PlacedTree is asked for",
-                    where=f"trees[{number}]",
-                    cure="give PlacedTree(name, tree, x, y) each",
+                    f'a {type(each).__name__}, where a PlacedTree is asked for',
+                    where=f'trees[{number}]',
+                    cure='give PlacedTree(name, tree, x, y) each',
                 )
         names = [tree.name for tree in trees]
         for name in names:
             if names.count(name) > 1:
-                raise ParameterError(f"two trees called '{name}'", where="forest", cure="name each")
+                raise ParameterError(
+                    f"two trees called '{name}'", where='forest', cure='name each'
+                )
         self.settings = settings_with(settings, changes)
         self.names = tuple(names)
         self.tree: Tree = joined([tree.placed() for tree in trees])
@@ -112,7 +114,7 @@ class Forest:
     @property
     def model(self) -> str:
         """Model in use; several where trees differ."""
-        return ", ".join(dict.fromkeys(sim.model for sim in self.simulators))
+        return ', '.join(dict.fromkeys(sim.model for sim in self.simulators))
 
     @property
     def n_solved(self) -> int:
@@ -131,7 +133,7 @@ class Forest:
 
     @property
     def counts(self) -> Counts:
-        """What was refused at the anemometer, and held or begun anew in any tree."""
+        """Return what was refused at the anemometer, and held or begun anew in any tree."""
         held = sum(sim.counts.held for sim in self.simulators)
         restarted = sum(sim.counts.restarted for sim in self.simulators)
         return Counts(self._steps, self._refused, held, restarted)
@@ -152,9 +154,9 @@ class Forest:
 
         """
         if name not in self.names:
-            known = ", ".join(self.names)
+            known = ', '.join(self.names)
             raise ParameterError(
-                f"no tree is called '{name}'", where="forest", cure=f"use one of: {known}"
+                f"no tree is called '{name}'", where='forest', cure=f'use one of: {known}'
             )
         return self._slices[self.names.index(name)]
 
@@ -219,7 +221,7 @@ class Forest:
 
         """
         shape = (self.tree.n_segments, 7)
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        poses = np.empty(shape) if out is None else array_to_fill('out', out, shape)
         for simulator, rows in zip(self.simulators, self._slices, strict=True):
             simulator.place(poses[rows])
         return poses
@@ -239,7 +241,7 @@ class Forest:
 
 
 def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSimulator:
-    """Simulator of one tree where it stands; what is wrong with it names the tree."""
+    """Make the simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:
         return make_simulator(placed, tree.species, settings, tolerance=tolerance)

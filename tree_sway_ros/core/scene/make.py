@@ -50,9 +50,9 @@ def make_simulator(
     """
     chosen = settings_with(settings, changes)
     bare, wood = tree_and_species(tree, species)
-    if chosen.model == "auto":
+    if chosen.model == 'auto':
         return AdaptiveSimulator(bare, wood, chosen, tolerance=tolerance, budget=budget)
-    if chosen.model == "segments":
+    if chosen.model == 'segments':
         return SegmentsSimulator(bare, wood, chosen)
     return SwaySimulator(bare, wood, chosen)
 

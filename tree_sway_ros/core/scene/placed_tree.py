@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees that stand in one place: each with its name, where it stands and which way it is turned."""
+"""Trees that stand in one place: each has a name, a place, and a way in which it is turned."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+import math
 
 import numpy as np
 
@@ -23,7 +23,7 @@ def refuse_nowhere(name: str, x: float, y: float, z: float, yaw: float) -> None:
     """Raise a `ParameterError` for a tree whose place or heading is not finite."""
     if not all(map(math.isfinite, (x, y, z, yaw))):
         raise ParameterError(
-            f"a pose of ({x}, {y}, {z}) m and {yaw} rad", where=name, cure="give finite numbers"
+            f'a pose of ({x}, {y}, {z}) m and {yaw} rad', where=name, cure='give finite numbers'
         )
 
 
@@ -37,7 +37,8 @@ class PlacedTree:
     name
         Its name in the forest.
     tree
-        The tree, in a frame of its own; one with its species, as `open_tree` gives, is taken apart.
+        The tree, in a frame of its own; one with its species, as `open_tree` gives, is taken
+        apart.
     x, y, z
         Where its root node stands in [m].
     yaw
@@ -70,14 +71,12 @@ class PlacedTree:
         """Refuse what is no tree, and what is nowhere."""
         if self.species is not None or not isinstance(self.tree, Tree):
             tree, species = tree_and_species(self.tree, self.species)
-            object.__setattr__(self, "tree", tree)
-            object.__setattr__(self, "species", species)
+            object.__setattr__(self, 'tree', tree)
+            object.__setattr__(self, 'species', species)
         refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
 
     def placed(self) -> Tree:
-        """
-        Return the tree where it stands, in the frame of the forest, under its name in the forest.
-        """
+        """Return the tree where it stands in the forest's frame, under its name there."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         root, here = self.tree.start[0], np.array([self.x, self.y, self.z])
@@ -114,7 +113,7 @@ class PlacedTree:
         return is_in_leaf(species, told if self.leaf_on is None else self.leaf_on)
 
 
-def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
+def joined(trees: Sequence[Tree], name: str = 'forest') -> Tree:
     """
     Join trees in one frame to one record, to be described or drawn as one; a `TreeError` if none.
 
@@ -122,7 +121,7 @@ def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
     be solved.
     """
     if not trees:
-        raise TreeError("no trees", where=name, cure="give at least one")
+        raise TreeError('no trees', where=name, cure='give at least one')
     segment = np.cumsum([0, *(tree.n_segments for tree in trees)]).tolist()
     branch = np.cumsum([0, *(tree.n_branches for tree in trees)]).tolist()
     species = {tree.species for tree in trees}
@@ -138,9 +137,9 @@ def joined(trees: Sequence[Tree], name: str = "forest") -> Tree:
         branch_parent=_moved_on([tree.branch_parent for tree in trees], branch),
         subtree_end=np.concatenate(end),
         source_index=np.concatenate([tree.source_index for tree in trees]),
-        branch_names=tuple(f"{tree.name}/{each}" for tree in trees for each in tree.branch_names),
+        branch_names=tuple(f'{tree.name}/{each}' for tree in trees for each in tree.branch_names),
         name=name,
-        species=species.pop() if len(species) == 1 else "mixed",
+        species=species.pop() if len(species) == 1 else 'mixed',
     )
 
 

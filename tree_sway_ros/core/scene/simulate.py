@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A tree taken through a wind from rest, in one call: what happens without a clock and without ROS.
-"""
+"""A tree taken through a wind from rest, in one call: what happens without clock and ROS."""
 
 from __future__ import annotations
 
@@ -31,7 +29,7 @@ class WindSamples(Protocol):
 
     @property
     def time(self) -> Floats:
-        """Times in [s], rising, (m,)."""
+        """Return the times in [s], rising, (m,)."""
 
     @property
     def velocity(self) -> Floats:
@@ -89,9 +87,7 @@ def simulate(
 
 
 class Rig:
-    """
-    A tree set up once as for `simulate`, to be taken through one wind after the other from rest.
-    """
+    """A tree set up once as for `simulate`, to be taken through wind after wind from rest."""
 
     def __init__(
         self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
@@ -112,10 +108,7 @@ class Rig:
         branches: Sequence[int] | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> SwayRecord:
-        """
-        Let the tree sway in a wind from rest, as `simulate`: the same whatever it went through
-        before.
-        """
+        """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
         simulator = self._at_rest()
         rest = tips_of_poses(self.tree, simulator.place(), chosen)
@@ -161,7 +154,7 @@ class BaseMoment:
     def __init__(self, calibrated: CalibratedTree) -> None:
         """Find the moment per unit of each coordinate of the stem."""
         tree, species, model = calibrated.tree, calibrated.species, calibrated.settings.model
-        layer = calibrated.layer(model if model in ("branch", "subtree") else "coupled")
+        layer = calibrated.layer(model if model in ('branch', 'subtree') else 'coupled')
         stem = layer.models[0]
         beam = stem.beam
         along = beam.tangent[0]
@@ -186,23 +179,23 @@ class BaseMoment:
 def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | None) -> Floats:
     """Mean wind of each step in [m/s], (t, 3)."""
     if not (np.isfinite(rate) and 1.0 <= rate <= 10_000.0):
-        raise ParameterError(f"rate {rate:g} Hz", where="rate", cure="give 1 to 10000")
+        raise ParameterError(f'rate {rate:g} Hz', where='rate', cure='give 1 to 10000')
     if isinstance(wind, WindSamples):
         means = frame_means(wind.time, wind.velocity, 1.0 / rate)
     else:
         means = np.asarray(wind, dtype=np.float64)
     if means.ndim != 2 or means.shape[1:] != (3,) or not len(means):
         raise ParameterError(
-            f"wind of shape {means.shape}",
-            where="wind",
-            cure="give a record of two samples or more, or the mean of each step, (t, 3)",
+            f'wind of shape {means.shape}',
+            where='wind',
+            cure='give a record of two samples or more, or the mean of each step, (t, 3)',
         )
     if not np.isfinite(means).all():
-        raise ParameterError("wind that is not finite", where="wind", cure="leave such rows out")
+        raise ParameterError('wind that is not finite', where='wind', cure='leave such rows out')
     if seconds is None:
         return np.asarray(means)
     if not (np.isfinite(seconds) and seconds > 0.0):
-        raise ParameterError(f"{seconds:g} s", where="seconds", cure="give more than 0")
+        raise ParameterError(f'{seconds:g} s', where='seconds', cure='give more than 0')
     return np.asarray(means[: max(round(seconds * rate), 1)])
 
 
@@ -214,6 +207,6 @@ def _chosen(tree: Tree, branches: Sequence[int] | None) -> Ints:
     wrong = chosen[(chosen < 0) | (chosen >= tree.n_branches)]
     if len(wrong):
         raise ParameterError(
-            f"branch {wrong[0]}", where="branches", cure=f"give 0 to {tree.n_branches - 1}"
+            f'branch {wrong[0]}', where='branches', cure=f'give 0 to {tree.n_branches - 1}'
         )
     return chosen

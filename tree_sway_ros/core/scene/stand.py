@@ -10,12 +10,12 @@ placed only where asked for. A tree may stand still, or be solved on a model of 
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
+import math
 from typing import Any
 
 import numpy as np
@@ -26,30 +26,30 @@ from tree_sway_ros.core.checks import array_to_fill, within
 from tree_sway_ros.core.motion.harmonics import COUNT
 from tree_sway_ros.core.motion.placing import place_standing_at
 from tree_sway_ros.core.motion.records import zeros_in_lines
-from tree_sway_ros.core.motion.standing import STANDING, find_rests, place_standing, step_standing
+from tree_sway_ros.core.motion.standing import find_rests, place_standing, STANDING, step_standing
 from tree_sway_ros.core.motion.wind_basis import (
     CARRIED,
-    WindBasisBank,
     expand_one,
     fill_pace,
     instance_layout,
+    WindBasisBank,
 )
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined, refuse_nowhere
+from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree, refuse_nowhere
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.simulator.simulator import (
+    Counts,
     LOAD_HELD,
     OK,
-    RESTARTED,
-    WIND_REFUSED,
-    Counts,
-    SwaySimulator,
     refuse_time_step,
+    RESTARTED,
+    SwaySimulator,
+    WIND_REFUSED,
 )
-from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
+from tree_sway_ros.core.state.tree_state import digest_of, KeepsState
 from tree_sway_ros.core.tree.species import Species, species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.gust_travel import GustHistory
@@ -97,19 +97,17 @@ class StandTree:
     z: float = 0.0
     scale: float = 1.0
     yaw: float = 0.0
-    fidelity: str = "wind_basis"
+    fidelity: str = 'wind_basis'
 
     def __post_init__(self) -> None:
         """Refuse what is nowhere."""
         refuse_nowhere(self.name, self.x, self.y, self.z, self.yaw)
-        within(f"{self.name}: scale", self.scale, SMALLEST, LARGEST)
+        within(f'{self.name}: scale', self.scale, SMALLEST, LARGEST)
 
 
 @dataclass(frozen=True)
 class StandKind:
-    """
-    What trees of one kind share: the tree, and its species, looked up by the tree's own if None.
-    """
+    """What trees of one kind share: the tree, and its species, by the tree's own if None."""
 
     tree: Tree
     species: Species | None = None
@@ -189,29 +187,29 @@ class Stand(KeepsState):
         self.own = {
             t: _own_simulator(tree, self._kinds[tree.kind], self.settings)
             for t, tree in enumerate(trees)
-            if tree.fidelity not in ("wind_basis", "frozen")
+            if tree.fidelity not in ('wind_basis', 'frozen')
         }
         """Simulators of the trees that are solved on a model of their own, by their numbers."""
         for t in self.own:
-            self._standing["is_still"][t] = 1
-        sizes = [self._models[k].tree.n_segments for k in self._standing["kind"]]
+            self._standing['is_still'][t] = 1
+        sizes = [self._models[k].tree.n_segments for k in self._standing['kind']]
         self._ends = np.cumsum([0, *sizes])
         self.gusts = GustHistory(
-            self._standing["at"], anemometer, convection_ratio=convection_ratio
+            self._standing['at'], anemometer, convection_ratio=convection_ratio
         )
         self._wind, self._dt = np.zeros(3), math.nan
-        self._scratch = [self._allocate() for _ in range(int(within("threads", threads, 1, 64)))]
-        self._pool = ThreadPoolExecutor(threads - 1, "placing") if threads > 1 else None
+        self._scratch = [self._allocate() for _ in range(int(within('threads', threads, 1, 64)))]
+        self._pool = ThreadPoolExecutor(threads - 1, 'placing') if threads > 1 else None
 
     @property
     def model(self) -> str:
         """Models in use."""
-        shared = ["wind_basis"] if not self._standing["is_still"].all() else []
-        return ", ".join([*shared, *dict.fromkeys(sim.model for sim in self.own.values())])
+        shared = ['wind_basis'] if not self._standing['is_still'].all() else []
+        return ', '.join([*shared, *dict.fromkeys(sim.model for sim in self.own.values())])
 
     @property
     def simulators(self) -> tuple[TreeSimulator, ...]:
-        """The simulators of the trees that are solved on a model of their own."""
+        """Return the simulators of the trees that are solved on a model of their own."""
         return tuple(self.own.values())
 
     @property
@@ -223,9 +221,9 @@ class Stand(KeepsState):
     def n_solved(self) -> int:
         """Branches that are solved, of kinds once for each tree."""
         sizes = np.array([model.n_solved for model in self._models])
-        moving = self._standing["is_still"] == 0
+        moving = self._standing['is_still'] == 0
         own = sum(sim.n_solved for sim in self.own.values())
-        return int(sizes[self._standing["kind"][moving]].sum()) + own
+        return int(sizes[self._standing['kind'][moving]].sum()) + own
 
     @property
     def n_copied(self) -> int:
@@ -238,7 +236,7 @@ class Stand(KeepsState):
         return sum(
             self._kinds[tree.kind].tree.n_branches
             for tree in self.trees
-            if tree.fidelity == "frozen"
+            if tree.fidelity == 'frozen'
         )
 
     @property
@@ -249,7 +247,7 @@ class Stand(KeepsState):
     @cached_property
     def tree(self) -> Tree:  # type: ignore[override]
         """All trees in one record, to be described or drawn."""
-        return joined([self.tree_of(t) for t in range(len(self.trees))], "stand")
+        return joined([self.tree_of(t) for t in range(len(self.trees))], 'stand')
 
     def tree_of(self, number: int) -> Tree:
         """Return a tree scaled, turned, and where it stands."""
@@ -259,7 +257,7 @@ class Stand(KeepsState):
     def segments_of(self, name: str) -> slice:
         """Return the rows of a tree in the pose block, as `Forest.segments_of`."""
         if name not in self.names:
-            raise ParameterError(f"no tree is called '{name}'", where="stand")
+            raise ParameterError(f"no tree is called '{name}'", where='stand')
         number = self.names.index(name)
         return slice(int(self._ends[number]), int(self._ends[number + 1]))
 
@@ -285,7 +283,7 @@ class Stand(KeepsState):
     def check_tuning(self, **changes: float) -> Tuning:
         """Refuse: trees of a stand share what they are made of."""
         raise ParameterError(
-            f"a change of {', '.join(changes)} in a stand", where="tune", cure="make it anew"
+            f'a change of {", ".join(changes)} in a stand', where='tune', cure='make it anew'
         )
 
     def tune(self, **changes: float) -> None:
@@ -315,7 +313,7 @@ class Stand(KeepsState):
 
         """
         shape = (self.n_segments, 7)
-        poses = np.zeros(shape) if out is None else array_to_fill("out", out, shape)
+        poses = np.zeros(shape) if out is None else array_to_fill('out', out, shape)
         shares = [np.array_split(rows, len(self._scratch)) for rows in self._rows(which)]
         others = [
             self._pool.submit(self._place, poses, shares, thread)  # type: ignore[union-attr]
@@ -342,7 +340,7 @@ class Stand(KeepsState):
                 )  # fmt: skip
 
     def _allocate(self) -> list[tuple[Any, Any, Floats, Floats]]:
-        """What placing works in, of each kind."""
+        """Make what placing works in, of each kind."""
         scratch = []
         for model, bank in zip(self._models, self._banks, strict=True):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
@@ -354,12 +352,12 @@ class Stand(KeepsState):
     @property
     def held(self) -> tuple[str, ...]:
         """Names of the trees whose wind was held at the limit of their table in the last step."""
-        return tuple(self.names[t] for t in np.flatnonzero(self._standing["is_held"]))
+        return tuple(self.names[t] for t in np.flatnonzero(self._standing['is_held']))
 
     @property
     def told_as(self) -> str:
         """Name that its states bear."""
-        return "stand"
+        return 'stand'
 
     def digest(self) -> str:
         """Digest of all trees, what they are, and how they are modelled."""
@@ -367,7 +365,7 @@ class Stand(KeepsState):
         return digest_of(*kinds, *self.trees, self.settings)
 
     def memory(self) -> tuple[Any, ...]:
-        """Views of what is carried from one step to the next, the wind first."""
+        """Return views of what is carried from one step to the next, the wind first."""
         carried = (self._instances[name] for name in CARRIED)
         own = (array for simulator in self.own.values() for array in _memory_of(simulator))
         return self._wind, *self.gusts.memory(), *carried, *own
@@ -382,7 +380,7 @@ class Stand(KeepsState):
         is_shared = np.ones(len(self.trees), dtype=bool)
         is_shared[list(self.own)] = False
         found = [
-            (model, np.flatnonzero(is_shared & (self._standing["kind"] == kind)))
+            (model, np.flatnonzero(is_shared & (self._standing['kind'] == kind)))
             for kind, model in enumerate(self._models)
         ]
         return [(model, numbers) for model, numbers in found if len(numbers)]
@@ -390,15 +388,15 @@ class Stand(KeepsState):
     def shares(self, numbers: Ints) -> Floats:
         """How much trees of one kind bend in each shape of their table, (t, m + r)."""
         find_rests(self._tables, self._standing, self._instances, numbers)
-        n_modes = self._banks[self._standing["kind"][numbers[0]]].shapes.shape[1]
-        eta, rest = self._instances["eta"], self._instances["rest"]
+        n_modes = self._banks[self._standing['kind'][numbers[0]]].shapes.shape[1]
+        eta, rest = self._instances['eta'], self._instances['rest']
         return np.hstack([eta[numbers, :n_modes], rest[numbers]])
 
     def _rotations(self, number: int) -> Floats:
         """Key rotations of a tree in [rad], (N,)."""
         if number in self.own:
             return self.own[number].rotations()
-        bank, here = self._banks[self._standing["kind"][number]], slice(number, number + 1)
+        bank, here = self._banks[self._standing['kind'][number]], slice(number, number + 1)
         found = np.zeros(len(bank.shapes))
         expand_one(bank.record, self._instances[here], bank.all_shapes, found)
         return found
@@ -406,11 +404,11 @@ class Stand(KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         shape = (self.n_segments, 7)
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        poses = np.empty(shape) if out is None else array_to_fill('out', out, shape)
         first = 0
         for number, here in enumerate(self._standing):
             rows = poses[self._ends[number] : self._ends[number + 1]]
-            kind = int(here["kind"])
+            kind = int(here['kind'])
             own, records = self.own.get(number), self._models[kind].bank
             size = len(own.rotations() if own else self._banks[kind].shapes)
             x, first = rotations[first : first + size], first + size
@@ -418,10 +416,10 @@ class Stand(KeepsState):
                 own.place_rotations(x, rows)
                 continue
             heads, work = self._scratch[0][kind][:2]
-            east, north, up = here["at"].tolist()
+            east, north, up = here['at'].tolist()
             place_standing_at(
                 records.branches, records.segments, heads, work, x, east, north, up,
-                float(here["cosine"]), float(here["sine"]), float(here["scale"]), rows,
+                float(here['cosine']), float(here['sine']), float(here['scale']), rows,
             )  # fmt: skip
         return poses
 
@@ -457,10 +455,10 @@ class Stand(KeepsState):
         numbers = np.arange(n) if which is None else np.unique(np.asarray(which, dtype=np.int64))
         if len(numbers) and not 0 <= numbers[0] <= numbers[-1] < n:
             raise ParameterError(
-                f"tree {numbers[-1]} of a stand of {n}", where="which", cure=f"give 0 to {n - 1}"
+                f'tree {numbers[-1]} of a stand of {n}', where='which', cure=f'give 0 to {n - 1}'
             )
         shared = np.array([t for t in numbers.tolist() if t not in self.own], dtype=np.int64)
-        kinds = self._standing["kind"][shared]
+        kinds = self._standing['kind'][shared]
         return [
             np.ascontiguousarray(np.stack([here, self._ends[here]], axis=1))
             for here in (shared[kinds == kind] for kind in range(len(self._used)))
@@ -470,26 +468,26 @@ class Stand(KeepsState):
         heights = {name: float(np.ptp(kind.tree.end[:, 2])) for name, kind in self._kinds.items()}
         profile = self.settings.profile
         for row, tree in zip(self._standing, self.trees, strict=True):
-            row["kind"] = self._used.index(tree.kind)
-            row["is_still"] = tree.fidelity == "frozen"
-            row["scale"], row["at"] = tree.scale, (tree.x, tree.y, tree.z)
-            row["cosine"], row["sine"] = math.cos(0.5 * tree.yaw), math.sin(0.5 * tree.yaw)
+            row['kind'] = self._used.index(tree.kind)
+            row['is_still'] = tree.fidelity == 'frozen'
+            row['scale'], row['at'] = tree.scale, (tree.x, tree.y, tree.z)
+            row['cosine'], row['sine'] = math.cos(0.5 * tree.yaw), math.sin(0.5 * tree.yaw)
             crown = profile.ground + _CROWN * heights[tree.kind] * np.array([1.0, tree.scale])
             own, scaled = profile.over_anemometer(crown)
-            row["speed"] = scaled / own if own > 0.0 else 1.0
+            row['speed'] = scaled / own if own > 0.0 else 1.0
 
     def _set_step(self, dt: float) -> None:
         """Fill a pace for every kind and scale that there is, to a hundredth."""
         refuse_time_step(dt)
-        scale = np.round(np.log(self._standing["scale"]) / _FINEST_SCALE).astype(np.int64)
-        told = np.stack([self._standing["kind"], scale], axis=1)
+        scale = np.round(np.log(self._standing['scale']) / _FINEST_SCALE).astype(np.int64)
+        told = np.stack([self._standing['kind'], scale], axis=1)
         found, rows = np.unique(told, axis=0, return_inverse=True)
         self._paces = np.zeros(len(found), dtype=self._paces.dtype)
         for pace, (kind, step) in zip(self._paces, found.tolist(), strict=True):
             modal = self._banks[kind].modal
             modal.set_pace(dt / math.exp(step * _FINEST_SCALE))
             fill_pace(pace, modal)
-        self._standing["pace"] = rows.ravel()
+        self._standing['pace'] = rows.ravel()
         self._dt = dt
 
 
@@ -499,18 +497,18 @@ _CROWN = 0.7
 def _refuse(trees: Sequence[StandTree], kinds: Mapping[str, StandKind]) -> None:
     """Refuse no trees, two of one name, and kinds that are not there."""
     if not trees:
-        raise ParameterError("no trees", where="stand", cure="give at least one")
+        raise ParameterError('no trees', where='stand', cure='give at least one')
     name, count = Counter(tree.name for tree in trees).most_common(1)[0]
     if count > 1:
         raise ParameterError(
-            f"{count} trees called '{name}'", where="stand", cure="name each, or none"
+            f"{count} trees called '{name}'", where='stand', cure='name each, or none'
         )
     for tree in trees:
         if tree.kind not in kinds:
             raise ParameterError(
                 f"unknown kind '{tree.kind}'",
                 where=tree.name,
-                cure=f"use one of: {', '.join(kinds)}",
+                cure=f'use one of: {", ".join(kinds)}',
             )
 
 
@@ -524,7 +522,7 @@ def _model_of(name: str, kind: StandKind, settings: Settings) -> SwaySimulator:
     """Make the model that trees of a kind share; what is wrong with it names the kind."""
     try:
         species = kind.species if kind.species is not None else species_named(kind.tree.species)
-        return SwaySimulator(kind.tree, species, replace(settings, model="wind_basis"))
+        return SwaySimulator(kind.tree, species, replace(settings, model='wind_basis'))
     except TreeSwayError as error:
         raise error.inside(name) from error
 

@@ -55,9 +55,9 @@ class SwayRecord:
         """Return the record as comma-separated values under one line of names."""
         columns = [self.time[:, None], self.wind, self.base_moment, self.base_strain]
         columns.append(self.tips.reshape(len(self.time), -1))
-        names = ["time", "wind_x", "wind_y", "wind_z", "moment_x", "moment_y", "moment_z"]
-        names += ["strain_east", "strain_north"]
-        names += [f"{name}_{axis}" for name in self.branch_names for axis in "xyz"]
-        head = ",".join(f'"{name}"' if "," in name else name for name in names)
-        rows = (",".join(f"{value:.9g}" for value in row) for row in np.hstack(columns))
-        return "\n".join((head, *rows, ""))
+        names = ['time', 'wind_x', 'wind_y', 'wind_z', 'moment_x', 'moment_y', 'moment_z']
+        names += ['strain_east', 'strain_north']
+        names += [f'{name}_{axis}' for name in self.branch_names for axis in 'xyz']
+        head = ','.join(f'"{name}"' if ',' in name else name for name in names)
+        rows = (','.join(f'{value:.9g}' for value in row) for row in np.hstack(columns))
+        return '\n'.join((head, *rows, ''))

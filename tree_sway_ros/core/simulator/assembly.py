@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import cast, Protocol, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.branch.model import BranchModel, TreeBeams, enriched_branches
+from tree_sway_ros.core.branch.model import BranchModel, enriched_branches, TreeBeams
 from tree_sway_ros.core.checks import one_of_each
-from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, need_compiler
+from tree_sway_ros.core.kernel import entry_of, need_compiler, WHY_PLAIN
 from tree_sway_ros.core.leaves.foliage import clad_wood
-from tree_sway_ros.core.motion.drag import DragLaw, crown_drag
+from tree_sway_ros.core.motion.drag import crown_drag, DragLaw
 from tree_sway_ros.core.motion.fill_records import (
     branch_records,
     copy_twigs,
@@ -29,8 +29,8 @@ from tree_sway_ros.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway_ros.core.motion.placing import place
-from tree_sway_ros.core.motion.records import WORK, branch_layout
-from tree_sway_ros.core.reduction.matrices import Reduction, reduce_tree
+from tree_sway_ros.core.motion.records import branch_layout, WORK
+from tree_sway_ros.core.reduction.matrices import reduce_tree, Reduction
 from tree_sway_ros.core.reduction.modes import (
     Modes,
     most_driven,
@@ -71,7 +71,7 @@ class Oscillators(Protocol):
 
     @property
     def loads(self) -> Records | None:
-        """Records of `load_fields`; None where only an even wind is known."""
+        """Return the records of `load_fields`; None where only an even wind is known."""
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
         """Key rotations (N, k, f) under moments (N, k) that swing at w [rad/s], (f,)."""
@@ -83,7 +83,7 @@ class Oscillators(Protocol):
         """Advance one step under a mean wind [m/s]; returns how many loads were held."""
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -101,7 +101,7 @@ class Oscillators(Protocol):
         """Go back to rest."""
 
 
-_COUPLED = ("wind_basis", "modes", "coupled")
+_COUPLED = ('wind_basis', 'modes', 'coupled')
 
 USUAL_MODES, TABLE_MODES = 12, 20
 """Modes that are stepped where no number is asked for."""
@@ -160,7 +160,7 @@ class Frozen:
 
     def forces(self) -> Floats:
         """None, (b, 3)."""
-        forces: Floats = self.work["force"]
+        forces: Floats = self.work['force']
         return forces
 
     def reset(self) -> None:
@@ -170,8 +170,7 @@ class Frozen:
 @dataclass(frozen=True)
 class Bank:
     """
-    A tree ready to be stepped and placed: its oscillators, and records of branches, segments and
-    heads.
+    A tree ready to be stepped and placed: oscillators, and records of branches, segments, heads.
 
     Frequencies are without air in [Hz], rising; ``mass`` is of wood and leaves in [kg]; ``frozen``
     is what moves with its parent as one body; ``plain`` tells that nothing is compiled.
@@ -204,7 +203,7 @@ class Bank:
     def place_now(self) -> Callable[[Floats, Floats], None]:
         """Place every segment as the oscillators stand, from a root node (3,) on, as `place`."""
         if self.frozen is None and self.oscillators.is_tabled:
-            tabled = cast("WindBasisBank", self.oscillators)
+            tabled = cast('WindBasisBank', self.oscillators)
             return tabled.placing(self.segments, self.heads)
         return lambda origin, out: self.place(self.oscillators.rotations(), origin, out)
 
@@ -269,7 +268,7 @@ class CalibratedTree:
         if not self.settings.in_leaf or given is None:
             return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), None
         tree = self.tree
-        area = one_of_each("leaf_area", given, tree.n_branches, "branch")
+        area = one_of_each('leaf_area', given, tree.n_branches, 'branch')
         wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
         laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
         return crown_drag(wood, area, clad_wood(tree, species.leaves), *laws)
@@ -309,12 +308,12 @@ class CalibratedTree:
         if model not in MODELS:
             raise ParameterError(
                 f"'{model}' is no model of one set of oscillators",
-                where="model",
-                cure=f"use one of: {', '.join(MODELS)}; make_simulator knows the others",
+                where='model',
+                cure=f'use one of: {", ".join(MODELS)}; make_simulator knows the others',
             )
         layer, settings = self.layer(model), self.settings
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
-        if model == "frozen":
+        if model == 'frozen':
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
         elif model in _COUPLED:
             modes = self._modes(model, n_modes)
@@ -322,7 +321,7 @@ class CalibratedTree:
                 branches, layer.reduction, modes, self.damping_ratio, settings.integrator
             )
             oscillators, frequencies = modal, modes.frequencies
-            if model == "wind_basis":
+            if model == 'wind_basis':
                 from tree_sway_ros.core.motion.wind_basis import WindBasisBank
                 from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
 
@@ -336,10 +335,10 @@ class CalibratedTree:
             from tree_sway_ros.core.tree.similar_twigs import twig_sources
 
             copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
-            bank = self._uncoupled(layer, branches, carries=model == "subtree")
+            bank = self._uncoupled(layer, branches, carries=model == 'subtree')
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
             oscillators = bank
-        solved = int((branches["source"] == np.arange(len(branches))).sum())
+        solved = int((branches['source'] == np.arange(len(branches))).sum())
         segments = layer.segments
         heads = head_records(branches, segments)
         return Bank(
@@ -357,7 +356,7 @@ class CalibratedTree:
 
     def layer(self, model: str) -> Layer:
         """Reduction that a model starts from."""
-        if model == "branch":
+        if model == 'branch':
             return self.alone
         return self.coupled if model in _COUPLED else self.carried
 
@@ -386,7 +385,7 @@ class CalibratedTree:
 
     @cached_property
     def _beams(self) -> TreeBeams:
-        """What the layers share."""
+        """Return what the layers share."""
         species, settings = self.species, self.settings
         return TreeBeams(
             self.tree,
@@ -413,16 +412,14 @@ class CalibratedTree:
         return Layer(models, reduction, records, segment_records(tree, models), mass)
 
     def _modes(self, model: str, count: int | None) -> Modes:
-        """
-        All modes, or those of the slowest that the wind drives most and the static sway they lack.
-        """
+        """All modes, or of the slowest those the wind drives most and the sway that they lack."""
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
-        usual = TABLE_MODES if model == "wind_basis" else USUAL_MODES
+        usual = TABLE_MODES if model == 'wind_basis' else USUAL_MODES
         n_modes = min(usual, n) if count is None else count
-        is_driven = model != "coupled" and self.settings.mode_choice == "driven" and n_modes <= n
+        is_driven = model != 'coupled' and self.settings.mode_choice == 'driven' and n_modes <= n
         candidates = min(n, n_modes + min(3 * n_modes, 24)) if is_driven else n_modes
-        wanted = n if model == "coupled" else candidates
+        wanted = n if model == 'coupled' else candidates
         if self._slowest is None or len(self._slowest.circular) < wanted:
             self._slowest = natural_modes(self.tree, reduction, None if wanted == n else wanted)
         modes = self._slowest.slowest(wanted)
@@ -437,7 +434,7 @@ class CalibratedTree:
         n_static = loads.shape[1]
         if not _FEW_MODES < n_modes < n - n_static:
             return most_driven(modes, even_wind_moments(branches, n), moved, n_modes)
-        if model == "wind_basis":
+        if model == 'wind_basis':
             chosen = most_driven(modes, loads, moved, n_modes - n_static)
         else:
             further = min(n_modes, _FURTHER // n) if n_modes >= USUAL_MODES else 0
@@ -464,7 +461,7 @@ class CalibratedTree:
         if not carries:
             inertia = inertia * np.array([model.inertia_share for model in layer.models])
         damping = 2.0 * self.damping_ratio * np.sqrt(stiffness * inertia)
-        if settings.stiffness == "volume_rule":
+        if settings.stiffness == 'volume_rule':
             volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)

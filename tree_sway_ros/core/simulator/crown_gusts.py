@@ -15,11 +15,11 @@ from functools import partial
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.kernel import WHY_PLAIN, entry_of, kernel
+from tree_sway_ros.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway_ros.core.motion.numpy_passes import into_lanes
 from tree_sway_ros.core.motion.tree_passes import set_gusts
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.core.wind.crown_wind import CrownDelays, CrownWind, crown_delays, push_wind
+from tree_sway_ros.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, push_wind
 
 
 def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
@@ -29,14 +29,13 @@ def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
     middle = 0.5 * (tree.start + tree.end) * area[:, None]
     wood = np.add.reduceat(area, first)
     centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
-    return crown_delays(tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area)
+    return crown_delays(
+        tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area
+    )
 
 
 class CrownGusts:
-    """
-    The wind of a crown, and the loads that it goes to; None for a model that knows even winds
-    alone.
-    """
+    """The wind of a crown and the loads it goes to; None for a model of even winds alone."""
 
     def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
         """Start without wind."""
@@ -44,7 +43,7 @@ class CrownGusts:
         self._loads = loads
         self._compiled: Callable[[float, float, float, float], None] | None = None
         if loads is not None:
-            into_lanes(delays.of_branch, loads["delay"])
+            into_lanes(delays.of_branch, loads['delay'])
             if not WHY_PLAIN:
                 parts = loads, self.wind.record
                 self._compiled = partial(entry_of(_hand_out, *parts, 0.0, 0.0, 0.0, 0.0), *parts)
@@ -60,7 +59,7 @@ class CrownGusts:
             return x, y, z
         apart = self.wind.push(x, y, z, dt)
         if self._loads is not None:
-            into_lanes(apart[self._delays.of_branch], self._loads["gust"])
+            into_lanes(apart[self._delays.of_branch], self._loads['gust'])
             return x, y, z
         ax, ay, az = (self._delays.share @ apart).tolist()
         return x + ax, y + ay, z + az

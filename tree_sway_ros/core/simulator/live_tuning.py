@@ -10,8 +10,8 @@ quotient, which errs by the square of what the shapes would change by.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields, replace
+import math
 
 import numpy as np
 
@@ -68,8 +68,8 @@ class Tuning:
             if name not in _RANGES:
                 raise ParameterError(
                     f"'{name}' cannot change while the tree sways",
-                    where="tune",
-                    cure=f"use one of: {', '.join(_RANGES)}; or make the simulator anew",
+                    where='tune',
+                    cure=f'use one of: {", ".join(_RANGES)}; or make the simulator anew',
                 )
             low, high, unit, above = _RANGES[name]
             within(name, value, low, high, unit, above=above)
@@ -81,15 +81,15 @@ class Tuning:
         return Tuning(**{k: v + share * (getattr(goal, k) - v) for k, v in here.items()})
 
 
-_OF_VOLUMES: tuple[str, ...] = ("volume_stiffness", "volume_damping")
-_OF_BEAMS: tuple[str, ...] = ("damping_ratio", "stiffness_factor", "gravity")
+_OF_VOLUMES: tuple[str, ...] = ('volume_stiffness', 'volume_damping')
+_OF_BEAMS: tuple[str, ...] = ('damping_ratio', 'stiffness_factor', 'gravity')
 
 _RANGES: dict[str, tuple[float, float, str, bool]] = {
-    "damping_ratio": (0.0, 1.0, "", False),
-    "stiffness_factor": (0.1, 10.0, "", False),
-    "gravity": (0.0, 30.0, "m/s^2", False),
-    "volume_stiffness": (0.0, 1e9, "N m/rad/m^3", True),
-    "volume_damping": (0.0, 1e9, "N m s/rad/m^3", True),
+    'damping_ratio': (0.0, 1.0, '', False),
+    'stiffness_factor': (0.1, 10.0, '', False),
+    'gravity': (0.0, 30.0, 'm/s^2', False),
+    'volume_stiffness': (0.0, 1e9, 'N m/rad/m^3', True),
+    'volume_damping': (0.0, 1e9, 'N m s/rad/m^3', True),
 }
 
 
@@ -120,8 +120,8 @@ class LiveTuning:
         self._rest: list[tuple[Floats, Floats, float]] = []
         if isinstance(oscillators, ModalBank):
             shapes = oscillators.shapes
-            weight = np.einsum("im,im->m", shapes, reduction.gravity @ shapes)
-            powers = ("flexibility", -1.0), ("held", -1.0), ("limit", 1.0)
+            weight = np.einsum('im,im->m', shapes, reduction.gravity @ shapes)
+            powers = ('flexibility', -1.0), ('held', -1.0), ('limit', 1.0)
             for name, power in powers:
                 array = getattr(oscillators, name)
                 self._rest.append((array, array.copy(), power))
@@ -134,41 +134,41 @@ class LiveTuning:
         """
         Refuse a tuning that this tree cannot take, with a `ParameterError`.
 
-        That is a tree that would buckle, weight on one that was made without, a value that the rule
-        of stiffness or the table in use does not know, or more stiffness than the integrator may
-        stand.
+        That is a tree that would buckle, weight on one that was made without, a value that the
+        rule of stiffness or the table in use does not know, or more stiffness than the integrator
+        may stand.
         """
         rule = self._settings.stiffness
-        unused = _OF_BEAMS if rule == "volume_rule" else _OF_VOLUMES
+        unused = _OF_BEAMS if rule == 'volume_rule' else _OF_VOLUMES
         for name in (*unused, *(_OF_BEAMS[1:] if self._is_tabled else ())):
             if getattr(goal, name) != getattr(self._made, name):
-                table = " on model 'wind_basis'" if self._is_tabled else ""
+                table = " on model 'wind_basis'" if self._is_tabled else ''
                 raise ParameterError(
                     f"another {name} with stiffness '{rule}'{table}",
                     where=name,
-                    cure="the volume rule takes its two constants, beams take the others, and "
+                    cure='the volume rule takes its two constants, beams take the others, and '
                     "'wind_basis' takes the damping ratio alone",
                 )
         if goal.gravity > 0.0 and not self._settings.gravity > 0.0:
             raise ParameterError(
-                f"gravity {goal.gravity:g} m/s^2 on a tree made without weight",
-                where="gravity",
-                cure="make the tree with its gravity, then change it",
+                f'gravity {goal.gravity:g} m/s^2 on a tree made without weight',
+                where='gravity',
+                cure='make the tree with its gravity, then change it',
             )
         stiffness = self._of_tuning(goal)
         is_stiffer = bool((stiffness > self._stiffness).any())
         if is_stiffer and self._settings.integrator in CONDITIONALLY_STABLE:
             raise ParameterError(
                 f"more stiffness under the integrator '{self._settings.integrator}'",
-                where="stiffness_factor",
-                cure="make the simulator anew, or use an integrator that is always stable",
+                where='stiffness_factor',
+                cure='make the simulator anew, or use an integrator that is always stable',
             )
         if not (stiffness > 0.0).all():
             raise ParameterError(
-                f"a tree that buckles at {goal.stiffness_factor:g} of its stiffness under "
-                f"{goal.gravity:g} m/s^2",
-                where="stiffness_factor",
-                cure="give more stiffness, or less gravity",
+                f'a tree that buckles at {goal.stiffness_factor:g} of its stiffness under '
+                f'{goal.gravity:g} m/s^2',
+                where='stiffness_factor',
+                cure='give more stiffness, or less gravity',
             )
 
     def go_to(self, goal: Tuning) -> None:
@@ -188,14 +188,14 @@ class LiveTuning:
     def _of_tuning(self, tuning: Tuning) -> Floats:
         """Stiffness of each oscillator."""
         made = self._made
-        if self._settings.stiffness == "volume_rule":
+        if self._settings.stiffness == 'volume_rule':
             return np.asarray(self._stiffness * (tuning.volume_stiffness / made.volume_stiffness))
         elastic = self._stiffness - made.gravity * self._per_gravity
         return np.asarray(tuning.stiffness_factor * elastic + tuning.gravity * self._per_gravity)
 
     def _apply(self, tuning: Tuning) -> None:
         stiffness, of = self._of_tuning(tuning), self._of
-        if self._settings.stiffness == "volume_rule":
+        if self._settings.stiffness == 'volume_rule':
             of.damping[:] = self._damping * (tuning.volume_damping / self._made.volume_damping)
         else:
             inertia = of.inertia if isinstance(of, UncoupledBank) else 1.0

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from tree_sway_ros.core.wind.gust_travel import GustHistory
 
-_One = TypeVar("_One", bound="OneTree")
+_One = TypeVar('_One', bound='OneTree')
 
 
 class OneTree:
@@ -19,5 +19,5 @@ class OneTree:
 
     @property
     def simulators(self: _One) -> tuple[_One, ...]:
-        """The simulator of each tree: this one."""
+        """Return the simulator of each tree: this one."""
         return (self,)

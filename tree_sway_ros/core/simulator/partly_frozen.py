@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-A calibrated tree some of whose branches move with their parents: the models between one model and
-the next.
-"""
+"""A calibrated tree some of whose branches move with their parents: between two models."""
 
 from __future__ import annotations
 
@@ -20,8 +17,7 @@ from tree_sway_ros.core.wind.crown_wind import CrownDelays
 
 class PartlyFrozenTree(CalibratedTree):
     """
-    What is left to solve of a calibrated tree, whose layers are shared, when branches are frozen,
-    (b,).
+    What is left to solve of a calibrated tree, its layers shared, when branches (b,) are frozen.
 
     With each goes all that it carries; the stem never does.
     """
@@ -36,7 +32,7 @@ class PartlyFrozenTree(CalibratedTree):
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """Build the oscillators of a model, as `CalibratedTree.bank`, and lay out the frozen."""
         bank = super().bank(model, n_modes)
-        bank.heads["n_bearing"] = bank.heads["n_lanes"]
+        bank.heads['n_bearing'] = bank.heads['n_lanes']
         return replace(
             bank,
             frozen=RigidParts.of(self.pruning, self._whole.layer(model).branches),
@@ -61,18 +57,18 @@ class PartlyFrozenTree(CalibratedTree):
 
     @cached_property
     def carried(self) -> Layer:
-        """Moving branches that carry the others, one shape each."""
+        """Return the moving branches that carry the others, one shape each."""
         return self._pruned(self._whole.carried)
 
     @cached_property
     def coupled(self) -> Layer:
-        """Moving branches that carry the others, those of the enriched ones with further shapes."""
+        """Return the moving branches that carry the others, further shapes for the enriched."""
         return self._pruned(self._whole.coupled)
 
     def _pruned(self, layer: Layer) -> Layer:
         models = [layer.models[branch] for branch in self.pruning.moving]
         branches = moving_records(self.pruning, layer.branches)
-        branches["block"], branches["lane"], _ = lanes(self.tree, models)
+        branches['block'], branches['lane'], _ = lanes(self.tree, models)
         segments = segment_records(self.tree, models)
         return Layer(
             models, self.pruning.reduction(layer.reduction), branches, segments, layer.mass

@@ -31,7 +31,7 @@ class Simulator(Protocol):
 
     @property
     def counts(self) -> Counts:
-        """What was refused or held since the start."""
+        """Return what was refused or held since the start."""
 
     @property
     def n_solved(self) -> int:
@@ -55,7 +55,7 @@ class Simulator(Protocol):
 
     @property
     def simulators(self) -> tuple[TreeSimulator, ...]:
-        """The simulator of each tree."""
+        """Return the simulator of each tree."""
 
     @property
     def gusts(self) -> GustHistory | None:
@@ -84,11 +84,11 @@ class TreeSimulator(Simulator, Protocol):
 
     @property
     def bank(self) -> Bank:
-        """Records of the tree and the oscillators, as `Bank`."""
+        """Return the records of the tree and the oscillators, as `Bank`."""
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` in the order of the rotations, (b,)."""
+        """Return the records of `BRANCH` in the order of the rotations, (b,)."""
 
     def digest(self) -> str:
         """Return a name of all that a state must agree with."""

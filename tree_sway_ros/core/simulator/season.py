@@ -11,7 +11,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 
-LEAVES: dict[str, bool | None] = {"auto": None, "on": True, "off": False}
+LEAVES: dict[str, bool | None] = {'auto': None, 'on': True, 'off': False}
 """What a user may say of leaves; ``auto`` leaves it to the species: evergreens bear them."""
 
 

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Model 5, `segments`: every segment solved, the conventional method, behind the same face as the
-reduced tree.
+Model 5, `segments`: every segment solved, the conventional method, with the reduced tree's face.
 
 It is there to compare with, and for a scene that has the time: its steps cost many times as much
 (`tree-sway chart cost`).
@@ -10,8 +9,8 @@ It is there to compare with, and for a scene that has the time: its steps cost m
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,13 +25,13 @@ from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import (
+    Counts,
     OK,
+    refuse_time_step,
     RESTARTED,
     WIND_REFUSED,
-    Counts,
-    refuse_time_step,
 )
-from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
+from tree_sway_ros.core.state.tree_state import digest_of, KeepsState
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.crown_wind import CrownWind
@@ -53,11 +52,11 @@ class SegmentsSimulator(OneTree, KeepsState):
     @property
     def model(self) -> str:
         """``segments``."""
-        return "segments"
+        return 'segments'
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         """Set the springs of every joint."""
-        if settings.stiffness != "beam":
+        if settings.stiffness != 'beam':
             raise ParameterError(
                 f"stiffness '{settings.stiffness}' on model 'segments'", cure="use 'beam'"
             )
@@ -118,10 +117,10 @@ class SegmentsSimulator(OneTree, KeepsState):
             self._tuning.volume_stiffness,
             self._tuning.volume_damping,
         ):
-            raise ParameterError("the volume rule on model 'segments'", where="tune")
+            raise ParameterError("the volume rule on model 'segments'", where='tune')
         if goal.gravity > 0.0 and not self._tuning.gravity > 0.0:
             raise ParameterError(
-                f"gravity {goal.gravity:g} m/s^2 on a tree without weight", where="gravity"
+                f'gravity {goal.gravity:g} m/s^2 on a tree without weight', where='gravity'
             )
         return goal
 
@@ -141,18 +140,18 @@ class SegmentsSimulator(OneTree, KeepsState):
 
     @cached_property
     def _joined(self) -> tuple[Bank, RotationFit]:
-        """What places key rotations, and what fits them."""
-        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest("coupled")
+        """Make what places key rotations, and what fits them."""
+        bank = CalibratedTree(self.tree, self.species, self.settings).at_rest('coupled')
         return bank, RotationFit(self.tree, bank.branches, bank.segments)
 
     @property
     def bank(self) -> Bank:
-        """What places key rotations: branches and segments of the coupled tree."""
+        """Return what places key rotations: branches and segments of the coupled tree."""
         return self._joined[0]
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        """Return the records of `BRANCH` by which the key rotations are told, (b,)."""
         return self.bank.branches
 
     def digest(self) -> str:
@@ -160,7 +159,7 @@ class SegmentsSimulator(OneTree, KeepsState):
         return digest_of(self.tree, self.species, self.settings)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next, the wind of the last step first."""
+        """Return views of what is carried between steps, the wind of the last step first."""
         crown = () if self._crown is None else self._crown.memory()
         return self.wind, self._model.state.turn, self._model.state.rate, *crown
 
@@ -171,10 +170,10 @@ class SegmentsSimulator(OneTree, KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         shape = (self.tree.n_segments, 7)
-        poses = np.empty(shape) if out is None else array_to_fill("out", out, shape)
+        poses = np.empty(shape) if out is None else array_to_fill('out', out, shape)
         bank = self._joined[0]
         expected = bank.oscillators.rotations().shape
-        rotations = array_to_read("rotations", rotations, expected)
+        rotations = array_to_read('rotations', rotations, expected)
         bank.place(rotations, self.tree.start[0], poses)
         return poses
 

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+import math
 from typing import Any
 
 from tree_sway_ros.core.arrays import Floats
@@ -14,15 +14,15 @@ from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.oscillators.rule_names import DEFAULT, REAL_TIME
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.limits import FASTEST_WIND
-from tree_sway_ros.errors import ParameterError, nearest
+from tree_sway_ros.errors import nearest, ParameterError
 
-MODELS = ("frozen", "branch", "subtree", "wind_basis", "modes", "coupled")
+MODELS = ('frozen', 'branch', 'subtree', 'wind_basis', 'modes', 'coupled')
 """Models of the ladder of models, the least first."""
 
-FIDELITIES = ("auto", *MODELS, "segments")
+FIDELITIES = ('auto', *MODELS, 'segments')
 """Names of the models: ``auto`` chooses among the models, ``segments`` solves every segment."""
 
-STIFFNESS_RULES = ("beam", "volume_rule")
+STIFFNESS_RULES = ('beam', 'volume_rule')
 """Ways to set the stiffness of a branch."""
 
 
@@ -35,8 +35,8 @@ class Settings:
     ----------
     model
         Model: ``frozen``, ``branch`` (the paper's), ``subtree``, ``wind_basis``, ``modes``,
-        ``coupled`` or ``segments``; or ``auto``, which takes the least that will do, and takes some
-        seconds to judge them all.
+        ``coupled`` or ``segments``; or ``auto``, which takes the least that will do, and takes
+        some seconds to judge them all.
     n_modes
         How many coordinates the models ``wind_basis`` and ``modes`` step; if None, 20 and 12, or
         all if there are fewer.
@@ -79,11 +79,11 @@ class Settings:
 
     """
 
-    model: str = "modes"
+    model: str = 'modes'
     n_modes: int | None = None
-    mode_choice: str = "driven"
+    mode_choice: str = 'driven'
     degree: int = 5
-    stiffness: str = "beam"
+    stiffness: str = 'beam'
     volume_stiffness: float = 2.0e5
     volume_damping: float = 2.0e3
     damping_ratio: float | None = None
@@ -93,7 +93,7 @@ class Settings:
     crown_coherence: float = 1.0
     integrator: str = DEFAULT
     twig_tolerance: float = 0.05
-    enrich: str = "limbs"
+    enrich: str = 'limbs'
     root_stiffness: float | None = None
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
@@ -101,41 +101,43 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
-        _one_of("model", self.model, FIDELITIES)
-        _one_of("mode choice", self.mode_choice, ("driven", "slowest"))
-        _one_of("stiffness", self.stiffness, STIFFNESS_RULES)
-        _one_of("integrator", self.integrator, REAL_TIME)
-        _one_of("enrich", self.enrich, ("none", "stem", "limbs", "carriers", "all"))
-        if self.stiffness == "volume_rule" and self.model in ("wind_basis", "modes", "coupled"):
+        _one_of('model', self.model, FIDELITIES)
+        _one_of('mode choice', self.mode_choice, ('driven', 'slowest'))
+        _one_of('stiffness', self.stiffness, STIFFNESS_RULES)
+        _one_of('integrator', self.integrator, REAL_TIME)
+        _one_of('enrich', self.enrich, ('none', 'stem', 'limbs', 'carriers', 'all'))
+        if self.stiffness == 'volume_rule' and self.model in ('wind_basis', 'modes', 'coupled'):
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",
-                where="stiffness",
+                where='stiffness',
                 cure="use it on 'branch' or 'subtree', or stiffness 'beam'",
             )
         if self.in_leaf is False and (self.leaf_mass is not None or self.leaf_area is not None):
             raise ParameterError(
-                "leaves on a bare tree", where="in_leaf", cure="leave in_leaf out, or the leaves"
+                'leaves on a bare tree', where='in_leaf', cure='leave in_leaf out, or the leaves'
             )
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
-            raise ParameterError(f"damping ratio {self.damping_ratio}", cure="give 0 or more")
+            raise ParameterError(f'damping ratio {self.damping_ratio}', cure='give 0 or more')
         if self.root_stiffness is not None and not self.root_stiffness > 0.0:
             raise ParameterError(
-                f"{self.root_stiffness} N m/rad",
-                where="root_stiffness",
-                cure="give a stiffness above 0, infinite for rigid roots",
+                f'{self.root_stiffness} N m/rad',
+                where='root_stiffness',
+                cure='give a stiffness above 0, infinite for rigid roots',
             )
         if self.n_modes is not None and self.n_modes < 1:
-            raise ParameterError(f"{self.n_modes} modes", where="n_modes", cure="ask for 1 or more")
+            raise ParameterError(
+                f'{self.n_modes} modes', where='n_modes', cure='ask for 1 or more'
+            )
         if self.degree not in (1, 3, 5):
-            raise ParameterError(f"degree {self.degree}", where="degree", cure="use 1, 3 or 5")
-        within("crown_coherence", self.crown_coherence, 0.0, 1.0)
-        within("max_wind", self.max_wind, 0.0, FASTEST_WIND, "m/s", above=True)
-        for name in ("volume_stiffness", "volume_damping"):
+            raise ParameterError(f'degree {self.degree}', where='degree', cure='use 1, 3 or 5')
+        within('crown_coherence', self.crown_coherence, 0.0, 1.0)
+        within('max_wind', self.max_wind, 0.0, FASTEST_WIND, 'm/s', above=True)
+        for name in ('volume_stiffness', 'volume_damping'):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
-                raise ParameterError(f"{name} {value}", cure="give a finite number above 0")
+                raise ParameterError(f'{name} {value}', cure='give a finite number above 0')
         if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
-            raise ParameterError(f"gravity {self.gravity} m/s^2", cure="give 0 or more")
+            raise ParameterError(f'gravity {self.gravity} m/s^2', cure='give 0 or more')
 
 
 def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
@@ -146,18 +148,18 @@ def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Sett
     """
     if not isinstance(settings, Settings | None):
         raise ParameterError(
-            f"a {type(settings).__name__}, where Settings are asked for",
-            where="settings",
-            cure="give Settings(...), or its fields as keywords",
+            f'a {type(settings).__name__}, where Settings are asked for',
+            where='settings',
+            cure='give Settings(...), or its fields as keywords',
         )
     known = Settings.__dataclass_fields__
     for name in changes:
         if name not in known:
-            cure = nearest(name, known) or f"there are: {', '.join(known)}"
+            cure = nearest(name, known) or f'there are: {", ".join(known)}'
             raise ParameterError(f"unknown setting '{name}'", cure=cure)
     return replace(settings or Settings(), **changes)
 
 
 def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:
     if value not in known:
-        raise ParameterError(f"unknown {what} '{value}'", cure=f"use one of: {', '.join(known)}")
+        raise ParameterError(f"unknown {what} '{value}'", cure=f'use one of: {", ".join(known)}')

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+import math
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +21,7 @@ from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
-from tree_sway_ros.core.state.tree_state import KeepsState, digest_of
+from tree_sway_ros.core.state.tree_state import digest_of, KeepsState
 from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -157,14 +157,12 @@ class SwaySimulator(OneTree, KeepsState):
         return self.bank.mass
 
     def frequencies(self, count: int = 10) -> Floats:
-        """
-        Lowest natural frequencies of the model in use in [Hz], without air, (count,) or fewer.
-        """
+        """Lowest natural frequencies of the model in [Hz], without air, (count,) or fewer."""
         return self.bank.frequencies[:count]
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        """Return the records of `BRANCH` by which the key rotations are told, (b,)."""
         return self.bank.branches
 
     def digest(self) -> str:
@@ -172,7 +170,7 @@ class SwaySimulator(OneTree, KeepsState):
         return digest_of(self.tree, self.species, self.settings)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Views of what is carried from one step to the next, the wind of the last step first."""
+        """Return views of what is carried between steps, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
         return self._wind, *self.bank.oscillators.memory(), *crown
 
@@ -183,7 +181,7 @@ class SwaySimulator(OneTree, KeepsState):
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         out = self._to_fill(out)
-        read = array_to_read("rotations", rotations, self._expected)
+        read = array_to_read('rotations', rotations, self._expected)
         self.bank.place(read, self._origin, out)
         return out
 
@@ -203,8 +201,8 @@ class SwaySimulator(OneTree, KeepsState):
         -------
         int
             0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept),
-            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and `RESTARTED`
-            (the motion was not finite: the tree goes on from rest).
+            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and
+            `RESTARTED` (the motion was not finite: the tree goes on from rest).
 
         Raises
         ------
@@ -278,7 +276,7 @@ class SwaySimulator(OneTree, KeepsState):
         if out is None:
             return np.empty(self._poses.shape)
         if out is not self._filled:
-            self._filled = array_to_fill("out", out, self._poses.shape)
+            self._filled = array_to_fill('out', out, self._poses.shape)
         return out
 
     @property
@@ -294,12 +292,9 @@ class SwaySimulator(OneTree, KeepsState):
 
     @property
     def base_moment(self) -> Floats:
-        """
-        Moment of the last step's wind about the root node, of all branches where they stand at
-        rest, in [N m], (3,).
-        """
-        couple, force = self.bank.branches["couple"], self.bank.oscillators.forces()
-        moment: Floats = np.einsum("bij,bj->i", couple, force)
+        """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
+        couple, force = self.bank.branches['couple'], self.bank.oscillators.forces()
+        moment: Floats = np.einsum('bij,bj->i', couple, force)
         return moment
 
     def motion(self) -> tuple[Floats, Floats]:
@@ -385,4 +380,6 @@ _pressure = fused(pressure)
 def refuse_time_step(dt: float) -> None:
     """Refuse a time step [s] that is not finite and above 0."""
     if not (math.isfinite(dt) and dt > 0.0):
-        raise ParameterError(f"time step of {dt} s", where="step", cure="give a finite one above 0")
+        raise ParameterError(
+            f'time step of {dt} s', where='step', cure='give a finite one above 0'
+        )

@@ -47,7 +47,7 @@ class Swaying(Protocol):
 
     @property
     def joints(self) -> Records:
-        """Records of `BRANCH` that the key rotations are told by, (b,)."""
+        """Return the records of `BRANCH` by which the key rotations are told, (b,)."""
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step of dt [s] in a wind [m/s]."""
@@ -99,7 +99,7 @@ def state_basis(
     """
     if n_coordinates is not None and n_coordinates < 1:
         raise ParameterError(
-            f"{n_coordinates} coordinates", where="state_basis", cure="ask for 1 or more"
+            f'{n_coordinates} coordinates', where='state_basis', cure='ask for 1 or more'
         )
     before = simulator.state()
     runs = [
@@ -148,10 +148,7 @@ def _run(
 
 
 def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Floats]:
-    """
-    Shapes by falling share in the motion of the tips, (N, m), and the projection back to them,
-    (m, N).
-    """
+    """Shapes by falling share in the motion of the tips, (N, m), and the way back, (m, N)."""
     shapes, projections = [], []
     for rotations in runs:
         tips = tip_motion(joints, rotations).reshape(-1, rotations.shape[1])
@@ -168,20 +165,18 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
 
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:
-    """
-    Moments on the coordinates (N, m) under forces on the tips (b, 3, m): `tip_motion` transposed.
-    """
-    moments = np.zeros((int(joints["n_coordinates"].sum()), forces.shape[-1]))
-    wrench = np.concatenate([forces, np.cross(joints["tip"][:, :, None], forces, axis=1)], axis=1)
+    """Moments on coordinates (N, m) under forces on tips (b, 3, m): `tip_motion` transposed."""
+    moments = np.zeros((int(joints['n_coordinates'].sum()), forces.shape[-1]))
+    wrench = np.concatenate([forces, np.cross(joints['tip'][:, :, None], forces, axis=1)], axis=1)
     for b in range(len(joints) - 1, -1, -1):
         joint = joints[b]
-        k, i = int(joint["n_coordinates"]), int(joint["coordinate"])
-        moments[i : i + k] += joint["reach"][:k] @ forces[b]
-        if joint["parent"] >= 0:
-            parent = joints[joint["parent"]]
-            k, i = int(parent["n_coordinates"]), int(parent["coordinate"])
-            moments[i : i + k] += joint["twist"][:k] @ wrench[b]
-            wrench[joint["parent"]] += wrench[b]
+        k, i = int(joint['n_coordinates']), int(joint['coordinate'])
+        moments[i : i + k] += joint['reach'][:k] @ forces[b]
+        if joint['parent'] >= 0:
+            parent = joints[joint['parent']]
+            k, i = int(parent['n_coordinates']), int(parent['coordinate'])
+            moments[i : i + k] += joint['twist'][:k] @ wrench[b]
+            wrench[joint['parent']] += wrench[b]
     return moments
 
 

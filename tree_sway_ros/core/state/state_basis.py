@@ -4,16 +4,16 @@
 A tree's shape as a few numbers: a basis of the key rotations.
 
 However many branches a tree has, wind moves them together. A handful of coordinates holds all
-shapes that it takes in any wind: ``x = B c``, ``c = P x``. A coordinate is measured by what it does
-to the tips of all branches, so that what is left out is what is seen least (proper orthogonal
+shapes that it takes in any wind: ``x = B c``, ``c = P x``. A coordinate is measured by what it
+does to the tips of all branches, so that what is left out is what is seen least (proper orthogonal
 decomposition; Holmes et al. 2012, *Turbulence, Coherent Structures, Dynamical Systems and
 Symmetry*, 3.1).
 """
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
+import hashlib
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +26,10 @@ from tree_sway_ros.core.state.full_scale import FULL_SCALE
 @dataclass(frozen=True)
 class BasisError:
     """
-    How far segments are from where the model has them, over a run that the basis was not made from.
+    How far segments are from where the model has them, over a run the basis was not made from.
 
-    Of all segments and times in [m]: what the basis leaves out, the same with coordinates as int16,
-    and the motion of the segments from rest.
+    Of all segments and times in [m]: what the basis leaves out, the same with coordinates as
+    int16, and the motion of the segments from rest.
     """
 
     rms: float
@@ -73,7 +73,7 @@ class StateBasis:
         return out
 
     def rotations(self, coordinates: Floats) -> Floats:
-        """Key rotations (N,) in [rad] of coordinates (m,); the same bits on every machine alike."""
+        """Key rotations in [rad], (N,), of coordinates (m,); the same bits on machines alike."""
         out = np.empty(len(self.matrix))
         _products(self.matrix, coordinates, out)
         return out

@@ -9,10 +9,10 @@ tree, settings and model it belongs to, by a digest of all of them, and is refus
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+import hashlib
+import json
 from typing import Any
 
 import numpy as np
@@ -43,21 +43,21 @@ class TreeState:
 
     def to_bytes(self) -> bytes:
         """Return one line of JSON, then the values as little-endian float64."""
-        head = {name: getattr(self, name) for name in ("tree", "digest", "model", "version")}
-        return json.dumps(head).encode() + b"\n" + self.values.astype("<f8").tobytes()
+        head = {name: getattr(self, name) for name in ('tree', 'digest', 'model', 'version')}
+        return json.dumps(head).encode() + b'\n' + self.values.astype('<f8').tobytes()
 
     @staticmethod
     def from_bytes(data: bytes) -> TreeState:
         """Read what `to_bytes` wrote; a `StateError` for no state, or one of another version."""
-        head, _, values = data.partition(b"\n")
+        head, _, values = data.partition(b'\n')
         try:
             told = json.loads(head[:_LARGEST_HEAD])
-            version = told["version"]
-            tree, digest, model = (str(told[name]) for name in ("tree", "digest", "model"))
-            numbers = np.frombuffer(values, dtype="<f8").astype(np.float64)
+            version = told['version']
+            tree, digest, model = (str(told[name]) for name in ('tree', 'digest', 'model'))
+            numbers = np.frombuffer(values, dtype='<f8').astype(np.float64)
         except (ValueError, KeyError, TypeError) as error:
             raise StateError(
-                f"{len(data)} bytes that hold no state", cure="give those of to_bytes"
+                f'{len(data)} bytes that hold no state', cure='give those of to_bytes'
             ) from error
         refuse_version(version)
         return TreeState(tree, digest, model, numbers)
@@ -67,9 +67,9 @@ def refuse_version(version: object) -> None:
     """Refuse, with a `StateError`, a state of another version than `VERSION`."""
     if version != VERSION:
         raise StateError(
-            f"a state of version {version}",
-            where="state",
-            cure=f"this program reads version {VERSION}; run the same release at both ends",
+            f'a state of version {version}',
+            where='state',
+            cure=f'this program reads version {VERSION}; run the same release at both ends',
         )
 
 
@@ -79,7 +79,7 @@ def digest_of(*told: Any) -> str:
     for each in told:
         for field in fields(each):
             value = getattr(each, field.name)
-            if field.name in ("name", "source_index"):
+            if field.name in ('name', 'source_index'):
                 continue
             digest.update(field.name.encode())
             is_array = isinstance(value, np.ndarray)
@@ -88,9 +88,7 @@ def digest_of(*told: Any) -> str:
 
 
 class KeepsState:
-    """
-    A simulator whose state can be kept, set and placed; bases of this class give what it asks for.
-    """
+    """A simulator whose state can be kept, set and placed, for classes that give what it asks."""
 
     tree: Tree
 
@@ -109,7 +107,7 @@ class KeepsState:
         raise NotImplementedError
 
     def memory(self) -> Sequence[Floats]:
-        """Views of all arrays that are carried from one step to the next."""
+        """Return views of all arrays that are carried from one step to the next."""
         raise NotImplementedError
 
     def rotations(self) -> Floats:
@@ -136,19 +134,19 @@ class KeepsState:
         arrays = self.memory()
         n_values = sum(array.size for array in arrays)
         for what, theirs, own in (
-            ("tree", state.tree, self.told_as),
-            ("model", state.model, self.model),
-            ("settings", state.digest, self.digest()),
-            ("number of values", len(state.values), n_values),
+            ('tree', state.tree, self.told_as),
+            ('model', state.model, self.model),
+            ('settings', state.digest, self.digest()),
+            ('number of values', len(state.values), n_values),
         ):
             if theirs != own:
                 raise StateError(
                     f"a state of {what} '{theirs}', and this is '{own}'",
                     where=self.told_as,
-                    cure="set the state of the same tree with the same species, settings and model",
+                    cure='set a state of the same tree with the same species, settings and model',
                 )
         if not np.isfinite(state.values).all():
-            raise StateError("a state that is not finite", where=self.told_as)
+            raise StateError('a state that is not finite', where=self.told_as)
         first = 0
         for array in arrays:
             array[...] = state.values[first : first + array.size].reshape(array.shape)

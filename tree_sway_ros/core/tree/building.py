@@ -29,8 +29,8 @@ def tree_from_segments(
     parent: ArrayLike | None = None,
     branch: ArrayLike | None = None,
     branch_names: Sequence[str] | None = None,
-    name: str = "tree",
-    species: str = "broadleaf",
+    name: str = 'tree',
+    species: str = 'broadleaf',
     labels: Sequence[str] | None = None,
 ) -> Tree:
     """
@@ -71,12 +71,12 @@ def tree_from_segments(
     if parent is None:
         parents = _parents_by_nodes(starts, ends)
     else:
-        parents = _integers(parent, n, "parent")
+        parents = _integers(parent, n, 'parent')
     depth_order = _checked_parents(parents, labels)
     if branch is None:
         keys = _branches_by_continuation(starts, ends, diameters, parents, depth_order)
     else:
-        keys = _integers(branch, n, "branch")
+        keys = _integers(branch, n, 'branch')
     chains = _chains(keys, parents, depth_order, labels)
     ordered = _depth_first(chains, keys, parents)
 
@@ -107,7 +107,7 @@ def tree_from_segments(
 
 
 def _label(index: int, labels: Sequence[str] | None) -> str:
-    return labels[index] if labels is not None else f"segment {index}"
+    return labels[index] if labels is not None else f'segment {index}'
 
 
 def _checked_geometry(
@@ -120,31 +120,31 @@ def _checked_geometry(
         diameters = np.stack([diameters, diameters], axis=1)
     n = len(starts)
     if n == 0:
-        raise TreeError("a tree of no segments", cure="give at least one segment")
+        raise TreeError('a tree of no segments', cure='give at least one segment')
     if starts.shape != (n, 3) or ends.shape != (n, 3) or diameters.shape != (n, 2):
         raise TreeError(
-            f"start {starts.shape}, end {ends.shape} and diameter {diameters.shape} do not match",
-            cure="give (n, 3), (n, 3) and (n,) or (n, 2)",
+            f'start {starts.shape}, end {ends.shape} and diameter {diameters.shape} do not match',
+            cure='give (n, 3), (n, 3) and (n,) or (n, 2)',
         )
     everything = np.hstack([starts, ends, diameters])
     for index in np.flatnonzero(~np.isfinite(everything).all(axis=1))[:1]:
         raise TreeError(
-            f"a number that is not finite: {everything[index].tolist()}",
+            f'a number that is not finite: {everything[index].tolist()}',
             where=_label(int(index), labels),
-            cure="give start, end and diameter as finite numbers in metres",
+            cure='give start, end and diameter as finite numbers in metres',
         )
     length = np.linalg.norm(ends - starts, axis=1)
     for index in np.flatnonzero(length < 1e-9)[:1]:
         raise TreeError(
-            f"zero length (start and end are both {starts[index].tolist()})",
+            f'zero length (start and end are both {starts[index].tolist()})',
             where=_label(int(index), labels),
-            cure="remove the segment or move its end",
+            cure='remove the segment or move its end',
         )
     for index in np.flatnonzero((diameters <= 0.0).any(axis=1))[:1]:
         raise TreeError(
-            f"diameter {diameters[index].tolist()} m is not positive",
+            f'diameter {diameters[index].tolist()} m is not positive',
             where=_label(int(index), labels),
-            cure="give a diameter above 0; a pointed tip may be .0001",
+            cure='give a diameter above 0; a pointed tip may be .0001',
         )
     return starts, ends, diameters
 
@@ -152,14 +152,12 @@ def _checked_geometry(
 def _integers(values: ArrayLike, n: int, what: str) -> Ints:
     array = np.asarray(values)
     if array.shape != (n,) or not np.issubdtype(array.dtype, np.integer):
-        raise TreeError(f"{what} must be {n} integers, not {array.shape} of {array.dtype}")
+        raise TreeError(f'{what} must be {n} integers, not {array.shape} of {array.dtype}')
     return array.astype(np.int64)
 
 
 def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
-    """
-    Sit each segment on the one whose end node is nearest to its start, within 1e-4 of the size.
-    """
+    """Sit each segment on the one whose end is nearest to its start, within 1e-4 of the size."""
     from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
 
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
@@ -177,26 +175,26 @@ def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
     n = len(parents)
     for index in np.flatnonzero((parents < -1) | (parents >= n))[:1]:
         raise TreeError(
-            f"orphan: its parent {parents[index]} does not exist",
+            f'orphan: its parent {parents[index]} does not exist',
             where=_label(int(index), labels),
-            cure=f"name a parent from 0 to {n - 1}, or -1 for the root",
+            cure=f'name a parent from 0 to {n - 1}, or -1 for the root',
         )
     roots = np.flatnonzero(parents == -1)
     if len(roots) > 1:
         raise TreeError(
-            f"{len(roots)} roots: a forest of trees that are not connected, or orphans",
+            f'{len(roots)} roots: a forest of trees that are not connected, or orphans',
             where=_label(int(roots[1]), labels),
-            cure=f"give it a parent, as only {_label(int(roots[0]), labels)} may stand on the "
-            f"ground, "
-            "or make each tree its own",
+            cure=f'give it a parent, as only {_label(int(roots[0]), labels)} may stand on the '
+            f'ground, '
+            'or make each tree its own',
         )
     order = parents_first(parents.tolist())
     if len(order) < n:
         lost = int(np.setdiff1d(np.arange(n), order)[0])
         raise TreeError(
-            "cyclic: following its parents never reaches a root",
+            'cyclic: following its parents never reaches a root',
             where=_label(lost, labels),
-            cure="break the cycle; exactly one segment has parent -1",
+            cure='break the cycle; exactly one segment has parent -1',
         )
     return np.array(order, dtype=np.int64)
 
@@ -204,9 +202,7 @@ def _checked_parents(parents: Ints, labels: Sequence[str] | None) -> Ints:
 def _branches_by_continuation(
     starts: Floats, ends: Floats, diameters: Floats, parents: Ints, depth_order: Ints
 ) -> Ints:
-    """
-    Number branches: at each node the thickest child goes on with the branch, straightest on a tie.
-    """
+    """Follow each branch through its nodes: on to the thickest child, the straightest on a tie."""
     n = len(parents)
     direction = ends - starts
     direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -242,9 +238,9 @@ def _chains(
         chain = members.setdefault(int(keys[segment]), [])
         if chain and parents[segment] != chain[-1]:
             raise TreeError(
-                f"branch {keys[segment]} is not one chain: the segment before is not its parent",
+                f'branch {keys[segment]} is not one chain: the segment before is not its parent',
                 where=_label(int(segment), labels),
-                cure="give the side shoot a branch of its own",
+                cure='give the side shoot a branch of its own',
             )
         chain.append(int(segment))
     return {key: np.array(chain, dtype=np.int64) for key, chain in members.items()}
@@ -271,9 +267,9 @@ def _depth_first(chains: dict[int, NDArray[np.int64]], keys: Ints, parents: Ints
 
 def _names(ordered: list[int], branch_names: Sequence[str] | None) -> tuple[str, ...]:
     if branch_names is None:
-        return tuple("stem" if i == 0 else f"b{i}" for i in range(len(ordered)))
+        return tuple('stem' if i == 0 else f'b{i}' for i in range(len(ordered)))
     if len(branch_names) != len(ordered):
-        raise TreeError(f"{len(branch_names)} branch names for {len(ordered)} branches")
+        raise TreeError(f'{len(branch_names)} branch names for {len(ordered)} branches')
     by_key = dict(zip(sorted(ordered), branch_names, strict=True))
     return tuple(by_key[key] for key in ordered)
 

@@ -17,11 +17,11 @@ class GrownTree(Protocol):
 
     @property
     def tree(self) -> Tree:
-        """The segments."""
+        """Return the segments."""
 
     @property
     def species(self) -> Species:
-        """The wood."""
+        """Return the wood."""
 
 
 def tree_and_species(
@@ -42,16 +42,16 @@ def tree_and_species(
         if isinstance(tree, GrownTree):
             return tree_and_species(tree.tree, tree.species if species is None else species)
         raise ParameterError(
-            f"a {type(tree).__name__}, where a tree is asked for",
-            where="tree",
-            cure="give what open_tree, grow or tree_from_segments returns",
+            f'a {type(tree).__name__}, where a tree is asked for',
+            where='tree',
+            cure='give what open_tree, grow or tree_from_segments returns',
         )
     if species is None:
         return tree, species_named(tree.species)
     if not isinstance(species, Species):
         raise ParameterError(
-            f"a {type(species).__name__}, where a Species is asked for",
-            where="species",
+            f'a {type(species).__name__}, where a Species is asked for',
+            where='species',
             cure="leave it out or give species_named('oak'); settings go in as settings=...",
         )
     return tree, species

@@ -5,8 +5,8 @@ Leaves of a species: how large, how many, how heavy, how quick to flutter.
 
 Fresh mass is dry mass over dry-matter content. The mean of 85 woody species of Estonia is 68.6
 g/m^2 dry (Niinemets & Kull 1994); leaves of woody plants are about 0.35 dry matter. Needles carry
-two to three times that per square metre. Leaf area follows the conducting section of the stem (pipe
-model: Shinozaki et al. 1964); its ratio varies by three orders of magnitude over the world's
+two to three times that per square metre. Leaf area follows the conducting section of the stem
+(pipe model: Shinozaki et al. 1964); its ratio varies by three orders of magnitude over the world's
 species (Mencuccini et al. 2019), so ratios are estimates within a factor of two, and so are
 frequencies. Areas are of one side.
 """

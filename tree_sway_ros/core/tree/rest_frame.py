@@ -32,10 +32,7 @@ def quaternions_from_x(direction: Floats) -> Floats:
 
 
 def ends_of_poses(poses: ArrayLike, length: ArrayLike) -> tuple[Floats, Floats]:
-    """
-    Root-side and tip-side nodes [m], (n, 3) each, of segments of a length [m] from a pose block (n,
-    7).
-    """
+    """Root-side and tip-side nodes [m], (n, 3), of segments of lengths [m] at poses (n, 7)."""
     block = np.asarray(poses, dtype=np.float64)
     start = block[:, :3]
     x, y, z, w = block[:, 3:].T

@@ -4,8 +4,8 @@
 Twigs that copy: of many alike, the necessary few are solved and the others reuse their solution.
 
 The paper's rule (Kanda & Ohya, 3.3) made definite: a branch of one segment that carries nothing
-copies another such on the same parent whose length, thickness and direction agree with its own to a
-tolerance.
+copies another such on the same parent whose length, thickness and direction agree with its own to
+a tolerance.
 """
 
 from __future__ import annotations

@@ -9,19 +9,19 @@ Modulus and density are of green wood: ForestGALES species tables, the BIOMASS w
 and the field table of Jackson et al. (2019). Drag in leaf is C U^-N between 4 and 20 m/s: Mayhead
 (1973) for conifers, Vollsinger et al. (2005) for broadleaves. Ash, sycamore, walnut, Ficus and a
 broadleaf of no known species take the mean of the three measured broadleaves, Goldcrest takes
-spruce's. Entries marked as estimates have no measurement behind them. Where leaves come from stands
-in `leaf_traits`.
+spruce's. Entries marked as estimates have no measurement behind them. Where leaves come from
+stands in `leaf_traits`.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import partial
+import math
 from typing import Any
 
-from tree_sway_ros.core.tree.leaf_traits import BROAD_LEAVES, NEEDLES, LeafTraits
-from tree_sway_ros.errors import SpeciesError, nearest
+from tree_sway_ros.core.tree.leaf_traits import BROAD_LEAVES, LeafTraits, NEEDLES
+from tree_sway_ros.errors import nearest, SpeciesError
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class Species:
         1.2.
     shear_ratio
         Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
-        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the twist
-        of stems alone.
+        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the
+        twist of stems alone.
     root_stiffness
         Stiffness of the roots against tilting of the stem in [N m/rad]; infinite where they do not
         give way. Belongs to one tree; `typical_root_stiffness` tells that of a size.
@@ -77,7 +77,7 @@ class Species:
     root_stiffness: float = math.inf
     leaves: LeafTraits = BROAD_LEAVES
     bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
-    habit: str = "broadleaf"
+    habit: str = 'broadleaf'
     is_estimate: bool = False
 
     def damping(self, in_leaf: bool) -> float:
@@ -100,41 +100,41 @@ def _species(
     key: str, title: str, modulus: float, density: float, drag: tuple[float, float], **told: Any
 ) -> Species:
     """One row of the table; the drag is C and N of the law in leaf."""
-    told |= {"drag_coefficient": drag[0], "drag_exponent": drag[1]}
+    told |= {'drag_coefficient': drag[0], 'drag_exponent': drag[1]}
     return Species(key, title, modulus, density, **told)
 
 
-_conifer = partial(_species, habit="conifer")
+_conifer = partial(_species, habit='conifer')
 _estimate = partial(_species, is_estimate=True)
 _BROADLEAF, _SPRUCE = (2.345, 0.877), (2.35, 0.51)
 
 _TABLE = {s.key: s for s in (
-    _estimate("benjamina", "Ficus benjamina", 8.3e9, 950.0, _BROADLEAF, habit="pot",
+    _estimate('benjamina', 'Ficus benjamina', 8.3e9, 950.0, _BROADLEAF, habit='pot',
               leaves=LeafTraits(0.05, 4400.0, 0.20, 5.0, True, green=(0.22, 0.45, 0.16)),
               bark=(0.52, 0.48, 0.42)),
-    _estimate("goldcrest", "Cupressus macrocarpa 'Goldcrest'", 6.0e9, 950.0, _SPRUCE, habit="pot",
+    _estimate('goldcrest', "Cupressus macrocarpa 'Goldcrest'", 6.0e9, 950.0, _SPRUCE, habit='pot',
               leaves=LeafTraits(0.03, 1800.0, 0.45, 7.0, True, True, green=(0.63, 0.70, 0.22)),
               bark=(0.46, 0.32, 0.24)),
-    _estimate("broadleaf", "a broadleaf of no known species", 9.0e9, 900.0, _BROADLEAF),
-    _conifer("spruce", "Norway spruce", 6.3e9, 850.0, _SPRUCE,
+    _estimate('broadleaf', 'a broadleaf of no known species', 9.0e9, 900.0, _BROADLEAF),
+    _conifer('spruce', 'Norway spruce', 6.3e9, 850.0, _SPRUCE,
              leaves=_needles(0.20, 0.36, 0.22), bark=(0.42, 0.29, 0.22)),
-    _conifer("sitka", "Sitka spruce", 5.9e9, 850.0, _SPRUCE,
+    _conifer('sitka', 'Sitka spruce', 5.9e9, 850.0, _SPRUCE,
              leaves=_needles(0.26, 0.40, 0.30), bark=(0.42, 0.37, 0.36)),
-    _conifer("pine", "Scots pine", 7.3e9, 850.0, (3.07, 0.75), bark=(0.66, 0.40, 0.24),
+    _conifer('pine', 'Scots pine', 7.3e9, 850.0, (3.07, 0.75), bark=(0.66, 0.40, 0.24),
              leaves=LeafTraits(0.12, 1000.0, 0.55, 5.0, True, True, green=(0.28, 0.42, 0.28))),
-    _conifer("douglas_fir", "Douglas-fir", 8.3e9, 850.0, (2.40, 0.70),
+    _conifer('douglas_fir', 'Douglas-fir', 8.3e9, 850.0, (2.40, 0.70),
              leaves=_needles(0.22, 0.38, 0.20), bark=(0.38, 0.29, 0.24)),
-    _species("birch", "birch", 9.9e9, 900.0, (1.9627, 0.881), bark=(0.86, 0.85, 0.81),
+    _species('birch', 'birch', 9.9e9, 900.0, (1.9627, 0.881), bark=(0.86, 0.85, 0.81),
              leaves=LeafTraits(0.045, 4000.0, 0.16, 5.0, green=(0.40, 0.57, 0.22))),
-    _species("oak", "oak", 9.4e9, 1010.0, (2.6575, 0.846), bark=(0.36, 0.31, 0.26),
+    _species('oak', 'oak', 9.4e9, 1010.0, (2.6575, 0.846), bark=(0.36, 0.31, 0.26),
              leaves=LeafTraits(0.09, 1900.0, 0.20, 3.5)),
-    _species("beech", "beech", 9.8e9, 1158.0, (2.4141, 0.904), bark=(0.55, 0.56, 0.54),
+    _species('beech', 'beech', 9.8e9, 1158.0, (2.4141, 0.904), bark=(0.55, 0.56, 0.54),
              leaves=LeafTraits(0.065, 3000.0, 0.17, 4.5, green=(0.25, 0.48, 0.18))),
-    _species("ash", "ash", 9.5e9, 801.0, _BROADLEAF, bark=(0.52, 0.50, 0.44),
+    _species('ash', 'ash', 9.5e9, 801.0, _BROADLEAF, bark=(0.52, 0.50, 0.44),
              leaves=LeafTraits(0.06, 2700.0, 0.18, 4.5, green=(0.34, 0.55, 0.24))),
-    _species("sycamore", "sycamore", 8.4e9, 721.0, _BROADLEAF, bark=(0.50, 0.45, 0.41),
+    _species('sycamore', 'sycamore', 8.4e9, 721.0, _BROADLEAF, bark=(0.50, 0.45, 0.41),
              leaves=LeafTraits(0.13, 2600.0, 0.18, 3.0, green=(0.27, 0.45, 0.17))),
-    _species("walnut", "walnut", 11.3e9, 805.0, _BROADLEAF, bark=(0.46, 0.43, 0.40),
+    _species('walnut', 'walnut', 11.3e9, 805.0, _BROADLEAF, bark=(0.46, 0.43, 0.40),
              leaves=LeafTraits(0.10, 2500.0, 0.21, 3.0, green=(0.36, 0.53, 0.20))),
 )}  # fmt: skip
 
@@ -150,12 +150,12 @@ def species_named(key: str) -> Species:
 
     """
     if not isinstance(key, str):
-        what = f"a {type(key).__name__}, where the key of a species is asked for"
+        what = f'a {type(key).__name__}, where the key of a species is asked for'
         raise SpeciesError(what, cure="give its key, as 'oak'")
     try:
         return _TABLE[key]
     except KeyError:
-        cure = f"{nearest(key, _TABLE)} use one of: {', '.join(sorted(_TABLE))}".lstrip()
+        cure = f'{nearest(key, _TABLE)} use one of: {", ".join(sorted(_TABLE))}'.lstrip()
         raise SpeciesError(f"unknown species '{key}'", cure=cure) from None
 
 
@@ -174,9 +174,9 @@ def typical_root_stiffness(stem_mass: float) -> float:
     Stiffness against tilting in [N m/rad] of the roots of a tree with a stem of so many [kg].
 
     Conifers go over at a moment in proportion to the mass of their stem (winching tests on near
-    2,000 trees: Nicoll et al. 2006), of 77 to 146 N m per kg in four species (Byrne 2005), of which
-    120 is taken. They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust &
-    Krisans 2023, Forests 14, 533). Soils differ by a factor of two. That broadleaves are like
+    2,000 trees: Nicoll et al. 2006), of 77 to 146 N m per kg in four species (Byrne 2005), of
+    which 120 is taken. They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust
+    & Krisans 2023, Forests 14, 533). Soils differ by a factor of two. That broadleaves are like
     conifers is assumed.
     """
     return 0.4 * 120.0 * stem_mass / math.radians(0.25)

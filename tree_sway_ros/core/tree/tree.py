@@ -3,9 +3,10 @@
 """
 The tree: read-only arrays of segments, grouped in branches, in depth-first order.
 
-Order is the data structure here. Segments of a branch are contiguous; branches stand in depth-first
-order, so that a branch comes after its parent and everything it carries is one contiguous slice.
-Sums over subtrees are then one backward pass and joining from the root is one forward pass.
+Order is the data structure here. Segments of a branch are contiguous; branches stand in
+depth-first order, so that a branch comes after its parent and everything it carries is one
+contiguous slice. Sums over subtrees are then one backward pass and joining from the root is one
+forward pass.
 
 Symbols: n segments, b branches. SI units; z points up, the frame is ENU (REP-103).
 """
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.tree.rest_frame import quaternions_from_x
 
-_Number = TypeVar("_Number", np.float64, np.int64)
+_Number = TypeVar('_Number', np.float64, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +65,8 @@ class Tree:
     subtree_end: Ints
     source_index: Ints
     branch_names: tuple[str, ...]
-    name: str = "tree"
-    species: str = "broadleaf"
+    name: str = 'tree'
+    species: str = 'broadleaf'
 
     def __post_init__(self) -> None:
         """Make every array read-only."""
@@ -75,12 +76,12 @@ class Tree:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments."""
+        """Return the number of segments."""
         return len(self.start)
 
     @property
     def n_branches(self) -> int:
-        """Number of branches."""
+        """Return the number of branches."""
         return len(self.branch_parent)
 
     @cached_property
@@ -90,7 +91,7 @@ class Tree:
 
     @cached_property
     def direction(self) -> Floats:
-        """Unit vector along each segment at rest, (n, 3)."""
+        """Return the unit vector along each segment at rest, (n, 3)."""
         return _read_only((self.end - self.start) / self.length[:, None])
 
     @cached_property
@@ -108,7 +109,7 @@ class Tree:
         """
         parent = self.segment_parent
         chord = self.end[parent] - self.start[parent]
-        along = np.einsum("ij,ij->i", self.start - self.start[parent], chord)
+        along = np.einsum('ij,ij->i', self.start - self.start[parent], chord)
         place = np.clip(along / self.length[parent] ** 2, 0.0, 1.0)
         return _read_only(np.where(parent < 0, 1.0, place))
 
@@ -143,7 +144,7 @@ class Tree:
     def segment_names(self) -> tuple[str, ...]:
         """Name of each segment: its branch's name and its place in it, as ``stem/3``."""
         return tuple(
-            f"{name}/{i}"
+            f'{name}/{i}'
             for branch, name in enumerate(self.branch_names)
             for i in range(int(self.branch_first[branch + 1] - self.branch_first[branch]))
         )

@@ -5,9 +5,9 @@ From samples of a sensor to what a solver needs: the mean of the wind over each 
 
 The samples become a curve. `linear` joins them by straight lines, which can be drawn only once the
 next sample is there: the curve runs one sensor period late, and later still by as much as samples
-are seen to arrive after the solver has passed their stamp. `hold` keeps each sample until the next.
-The solver gets the exact mean of the curve over its step, which keeps second order where a sample
-of it would not.
+are seen to arrive after the solver has passed their stamp. `hold` keeps each sample until the
+next. The solver gets the exact mean of the curve over its step, which keeps second order where a
+sample of it would not.
 
 What the solver has been given is never redrawn, so that nothing jumps in `linear`, whatever comes
 late, early or not at all: a short dropout is held; a long one decays to calm; after either, what
@@ -30,7 +30,7 @@ from tree_sway_ros.errors import ParameterError
 
 Floats = NDArray[np.float64]
 
-INTERPOLATIONS = ("linear", "hold")
+INTERPOLATIONS = ('linear', 'hold')
 
 CLOCK_RESET = 1.0
 """
@@ -70,7 +70,7 @@ class WindAverage:
 
     def __init__(
         self,
-        interpolation: str = "linear",
+        interpolation: str = 'linear',
         timeout: float = 2.0,
         decay: float = 3.0,
         *,
@@ -81,14 +81,14 @@ class WindAverage:
         if interpolation not in INTERPOLATIONS:
             raise ParameterError(
                 f"unknown interpolation '{interpolation}'",
-                where="interpolation",
-                cure=f"use one of: {', '.join(INTERPOLATIONS)}",
+                where='interpolation',
+                cure=f'use one of: {", ".join(INTERPOLATIONS)}',
             )
-        self._is_linear = interpolation == "linear"
-        self._timeout = within("timeout", timeout, 0.0, 3600.0, "s", above=True)
-        self._decay = within("decay", decay, 0.0, 3600.0, "s", above=True)
-        self._blend = min(within("blend", blend, 0.0, 60.0, "s", above=True), self._timeout)
-        self._curve = WindCurve(not self._is_linear, int(within("capacity", capacity, 8, 1e6)))
+        self._is_linear = interpolation == 'linear'
+        self._timeout = within('timeout', timeout, 0.0, 3600.0, 's', above=True)
+        self._decay = within('decay', decay, 0.0, 3600.0, 's', above=True)
+        self._blend = min(within('blend', blend, 0.0, 60.0, 's', above=True), self._timeout)
+        self._curve = WindCurve(not self._is_linear, int(within('capacity', capacity, 8, 1e6)))
         self.refused = 0
         self.reset()
 
@@ -128,7 +128,7 @@ class WindAverage:
             If the sample is not three numbers.
 
         """
-        x, y, z = three_numbers("wind", vector)
+        x, y, z = three_numbers('wind', vector)
         if not all(map(math.isfinite, (time, x, y, z))):
             self.refused += 1
             return False
@@ -147,7 +147,9 @@ class WindAverage:
         if self._timing.is_dropout(silence):
             self._start_anew(time, (x, y, z), silence)
         elif self._timing.period is None:
-            self._curve.append(max(time, passed), self._curve.last)  # the first holds to the second
+            self._curve.append(
+                max(time, passed), self._curve.last
+            )  # the first holds to the second
         self._timing.note_interval(gap)
         self._timing.note_lateness(max(0.0, passed - time), gap)
         self._draw_to(time, passed, (x, y, z))
@@ -176,7 +178,7 @@ class WindAverage:
 
         """
         if not (math.isfinite(start) and start <= end < math.inf):
-            raise ParameterError(f"no step from {start} to {end}", where="wind average")
+            raise ParameterError(f'no step from {start} to {end}', where='wind average')
         if self._passed is not None and end < self._passed - CLOCK_RESET:
             self._set_clock_back(start)
         self._clamp_clock(start)
@@ -198,13 +200,13 @@ class WindAverage:
         # Another thread may ask: what changes under it is read once.
         newest, timing = self._newest, self._timing
         if newest is None:
-            return "none"
+            return 'none'
         if time - newest <= timing.longest_live + timing.lateness:
-            return "live"
+            return 'live'
         overdue = time - newest - timing.lateness - timing.longest_hold
         if overdue <= 0.0:
-            return "holding"
-        return "decaying" if overdue <= _STALE_DECAYS * self._decay else "stale"
+            return 'holding'
+        return 'decaying' if overdue <= _STALE_DECAYS * self._decay else 'stale'
 
     @property
     def _decay_start(self) -> float:

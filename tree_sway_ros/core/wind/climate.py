@@ -1,17 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The wind of the last while as a choice of model needs to know it: how its load swings, and how fast.
+The wind of the last while as a choice of model needs it: how its load swings, and how fast.
 
 A load goes with ``|U| U``. Of a wind that is only described its mean and covariance in the plane
-are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral time
-(von Karman, 1948). A wind that was measured has a spectrum of its own.
+are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's integral
+time (von Karman, 1948). A wind that was measured has a spectrum of its own.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
@@ -52,8 +52,7 @@ class WindClimate:
         mean_speed: float, intensity: float, bearing: float = 0.0, integral_time: float = 5.0
     ) -> WindClimate:
         """
-        Take a wind that is only described: a mean speed [m/s] towards a bearing from x towards y in
-        [rad].
+        Take a wind that is only described: a mean [m/s] towards a bearing from x to y in [rad].
 
         The intensity is that along the wind; across it 0.8 of that is taken (IEC 61400-1). A gust
         lasts for the integral time [s].
@@ -75,8 +74,7 @@ class WindClimate:
 
     def power(self, frequencies: Floats) -> Floats:
         """
-        Mean square of the load's swings at frequencies [Hz], rising from 0, (f,); [m^4/s^4], (f, 2,
-        2).
+        Mean square of the load's swings [m^4/s^4], (f, 2, 2), at frequencies [Hz] from 0, (f,).
 
         A record stands for itself with calm before and after it, so that what sets in with it is
         counted too: what a linear model answers to this power is no less than the mean square of
@@ -90,7 +88,7 @@ class WindClimate:
         n = len(self.record)
         lines = np.fft.rfft(self.record, 2 * n, axis=0)
         lines[1:-1] *= math.sqrt(2.0)
-        squares = np.einsum("fi,fj->ijf", lines.conj(), lines).real / (2 * n * n)
+        squares = np.einsum('fi,fj->ijf', lines.conj(), lines).real / (2 * n * n)
         below, share = _between(np.arange(n + 1) * self.rate / (2 * n), frequencies)
         power = np.empty((len(frequencies), 2, 2))
         for i, j in np.ndindex(2, 2):
@@ -112,9 +110,7 @@ class ClimateTracker:
         self._x = self._y = self._way = self._open = 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
-        """
-        Take in the wind (3,) in [m/s] of a step of dt [s]; plain numbers, as it is done every step.
-        """
+        """Take in the wind [m/s] of a step of dt [s]; plain numbers, as it is done every step."""
         u, v, w = wind.tolist()
         speed, left = math.sqrt(u * u + v * v + w * w), min(dt, self._memory)
         while left > 0.0:
@@ -131,7 +127,7 @@ class ClimateTracker:
 
     @property
     def climate(self) -> WindClimate:
-        """What is remembered."""
+        """Return what is remembered."""
         cells = np.roll(self._cells, -self._count, axis=0)[max(-self._count, -len(self._cells)) :]
         cells = cells if self._count else cells[:0]
         if self._open > 0.0 or not len(cells):
@@ -164,7 +160,7 @@ def _of_loads(loads: Floats, speed: float, rate: float) -> WindClimate:
 
 def _between(lines: Floats, frequencies: Floats) -> tuple[Ints, Floats]:
     """Which frequency is next below each line, (k,), and how far it is towards the one above."""
-    below = np.searchsorted(frequencies, lines, side="right") - 1
+    below = np.searchsorted(frequencies, lines, side='right') - 1
     below = np.minimum(below, len(frequencies) - 2)
     low, high = frequencies[below], frequencies[below + 1]
     return below, np.minimum((lines - low) / (high - low), 1.0)

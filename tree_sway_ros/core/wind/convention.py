@@ -10,10 +10,10 @@ round.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,7 +28,7 @@ CALM_SPEED = 0.05
 
 
 def velocity_of_bearing(
-    speed: float, bearing: float, direction_convention: str = "from"
+    speed: float, bearing: float, direction_convention: str = 'from'
 ) -> tuple[float, float, float]:
     """
     Velocity east, north, up to which a wind blows in [m/s], by speed and bearing.
@@ -64,33 +64,33 @@ class WindConvention:
 
     """
 
-    direction_convention: str = "to"
+    direction_convention: str = 'to'
     speed_scale: float = 1.0
     yaw_offset: float = 0.0
     plane_normal: Sequence[float] = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
         """Refuse what cannot be read."""
-        if self.direction_convention not in ("to", "from"):
+        if self.direction_convention not in ('to', 'from'):
             raise ParameterError(
                 f"unknown convention '{self.direction_convention}'",
-                where="direction_convention",
+                where='direction_convention',
                 cure="use 'to' (blows to, as ROS) or 'from' (comes from, as meteorology)",
             )
-        within("speed_scale", self.speed_scale, 0.0, 1e3, "m/s", above=True)
-        within("yaw_offset", self.yaw_offset, -4.0 * math.pi, 4.0 * math.pi, "rad")
+        within('speed_scale', self.speed_scale, 0.0, 1e3, 'm/s', above=True)
+        within('yaw_offset', self.yaw_offset, -4.0 * math.pi, 4.0 * math.pi, 'rad')
         normal = np.asarray(self.plane_normal, dtype=np.float64)
         if normal.shape != (3,) or not np.isfinite(normal).all() or np.abs(normal).max() < 1e-12:
             raise ParameterError(
-                f"{tuple(self.plane_normal)} has no direction",
-                where="plane_normal",
-                cure="use three numbers that are not all zero, such as (0, 0, 1)",
+                f'{tuple(self.plane_normal)} has no direction',
+                where='plane_normal',
+                cure='use three numbers that are not all zero, such as (0, 0, 1)',
             )
-        object.__setattr__(self, "plane_normal", tuple(normal.tolist()))
+        object.__setattr__(self, 'plane_normal', tuple(normal.tolist()))
 
     @cached_property
     def normal(self) -> Floats:
-        """Unit normal of the force plane, (3,)."""
+        """Return the unit normal of the force plane, (3,)."""
         normal = np.asarray(self.plane_normal)
         normal = normal / np.abs(normal).max()  # so that no square vanishes or overflows
         return np.asarray(normal / np.linalg.norm(normal))
@@ -101,7 +101,8 @@ class WindConvention:
         return x, y, z
 
     def _enu(self, u: float, v: float, w: float, scale: float) -> Floats:
-        # Scalars, not a matrix: infinities turn into NaN without a warning, for the gate to refuse.
+        # Scalars, not a matrix: infinities turn into NaN without a warning, for the gate to
+        # refuse.
         sine, cosine = math.sin(self.yaw_offset), math.cos(self.yaw_offset)
         u, v, w = scale * float(u), scale * float(v), scale * float(w)
         return np.array([cosine * u - sine * v, sine * u + cosine * v, w])
@@ -109,7 +110,7 @@ class WindConvention:
     @property
     def sign(self) -> float:
         """Of a component that points where the wind blows to."""
-        return 1.0 if self.direction_convention == "to" else -1.0
+        return 1.0 if self.direction_convention == 'to' else -1.0
 
     def velocity(self, u: float, v: float, w: float = 0.0) -> Floats:
         """
@@ -189,18 +190,18 @@ class WindConvention:
 
     def describe(self) -> str:
         """Return one line that says how the wind is read."""
-        sense = "blows TO" if self.direction_convention == "to" else "comes FROM"
-        unit = "m/s" if self.speed_scale == 1.0 else f"{self.speed_scale:g} m/s a unit"
-        text = f"reading wind as: {sense}, ENU, {unit}"
+        sense = 'blows TO' if self.direction_convention == 'to' else 'comes FROM'
+        unit = 'm/s' if self.speed_scale == 1.0 else f'{self.speed_scale:g} m/s a unit'
+        text = f'reading wind as: {sense}, ENU, {unit}'
         if self.yaw_offset != 0.0:
-            text += f", turned by {math.degrees(self.yaw_offset):g} degrees"
+            text += f', turned by {math.degrees(self.yaw_offset):g} degrees'
         if not np.array_equal(self.normal, (0.0, 0.0, 1.0)):
-            text += ", on the plane across ({:g}, {:g}, {:g})".format(*self.normal)
+            text += ', on the plane across ({:g}, {:g}, {:g})'.format(*self.normal)
         return text
 
 
 def _quaternion_of_axes(along: Floats, normal: tuple[float, float, float]) -> Floats:
-    """Unit quaternion w, x, y, z, (4,), that turns x and z into these unit vectors, each (3,)."""
+    """Return the unit quaternion w, x, y, z that turns x and z into these unit vectors, (3,)."""
     (xx, xy, xz), (zx, zy, zz) = along.tolist(), normal
     yx, yy, yz = zy * xz - zz * xy, zz * xx - zx * xz, zx * xy - zy * xx
     # Four times its product with itself: each row is the quaternion times one of its components.

@@ -11,15 +11,15 @@ fades with f r / U as the source has it. Long gusts reach all limbs alike. Of sh
 feels, in the mean over limbs, ``c^2 + (1 - c)^2`` of the power, as an area does of gusts smaller
 than itself.
 
-Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and the
-same in every run. Delays follow the mean wind as in `gust_travel`.
+Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and
+the same in every run. Delays follow the mean wind as in `gust_travel`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cached_property, partial
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,8 +29,8 @@ from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.kernel import entry_of, kernel
 from tree_sway_ros.core.wind.gust_travel import (
-    LARGEST_STRETCH,
     follow_mean,
+    LARGEST_STRETCH,
     remember,
 )
 
@@ -41,10 +41,10 @@ USUAL_COHERENCE = 0.3
 """
 Share of a gust that reaches the whole crown at once, where gusts reach limb after limb.
 
-Gusts of the first frequency of a tree (0.5 to 1 Hz) at 7 m/s have by the source a root coherence of
-0.03 to 0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one. With it
-the strain of the stems of grown trees falls above their first frequency as that of real ones
-(``tree-sway chart validation --only slopes``).
+Gusts of the first frequency of a tree (0.5 to 1 Hz) at 7 m/s have by the source a root coherence
+of 0.03 to 0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one.
+With it the strain of the stems of grown trees falls above their first frequency as that of real
+ones (``tree-sway chart validation --only slopes``).
 
 """
 
@@ -61,17 +61,17 @@ _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 _LAYOUT = np.dtype(
     [
-        ("run", "f8", (_CAPACITY, 4)),  # time and run of the wind, as `remember` has them
-        ("at", "i8", (2,)),
-        ("mean", "f8", (3,)),
-        ("delay", "f8"),  # the longest [s]
-        ("behind", "f8", (N_DELAYS, 3)),  # run of each delay behind the wind's [m]
-        ("apart", "f8", (N_DELAYS, 3)),  # wind of each delay less the wind [m/s]
-        ("spread", "f8"),
-        ("coherence", "f8"),
+        ('run', 'f8', (_CAPACITY, 4)),  # time and run of the wind, as `remember` has them
+        ('at', 'i8', (2,)),
+        ('mean', 'f8', (3,)),
+        ('delay', 'f8'),  # the longest [s]
+        ('behind', 'f8', (N_DELAYS, 3)),  # run of each delay behind the wind's [m]
+        ('apart', 'f8', (N_DELAYS, 3)),  # wind of each delay less the wind [m/s]
+        ('spread', 'f8'),
+        ('coherence', 'f8'),
     ]
 )
-_CARRIED = "run", "at", "mean", "delay", "behind"
+_CARRIED = 'run', 'at', 'mean', 'delay', 'behind'
 
 
 class CrownDelays(NamedTuple):
@@ -148,25 +148,24 @@ class CrownWind:
     def __init__(self, spread: float, coherence: float) -> None:
         """Start without wind."""
         self.record = np.zeros(1, dtype=_LAYOUT)
-        self.record["spread"] = spread
-        self.record["coherence"] = within("crown_coherence", coherence, 0.0, 1.0)
+        self.record['spread'] = spread
+        self.record['coherence'] = within('crown_coherence', coherence, 0.0, 1.0)
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
-        Take the mean wind [m/s] of a step of dt [s]; how that of each delay differs, (`N_DELAYS`,
-        3).
+        Take the mean wind [m/s] of a step of dt [s]; return what each delay adds, (`N_DELAYS`, 3).
 
         It is the same array each time.
         """
         self._compiled(x, y, z, dt)
-        return np.asarray(self.record["apart"][0])
+        return np.asarray(self.record['apart'][0])
 
     @cached_property
     def _compiled(self) -> Callable[[float, float, float, float], None]:
         return partial(entry_of(push_wind, self.record, 0.0, 0.0, 0.0, 0.0), self.record)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return tuple(self.record[name] for name in _CARRIED)
 
     def follow(self, other: CrownWind) -> None:
@@ -178,7 +177,7 @@ class CrownWind:
         """Forget the wind."""
         for array in self.memory():
             array[...] = 0
-        self.record["apart"] = 0.0
+        self.record['apart'] = 0.0
 
 
 @kernel

@@ -41,7 +41,7 @@ class WindCurve:
         self._knots.clear()
 
     def append(self, time: float, value: Vector) -> None:
-        """Add a knot at the end; it replaces a last one at the same time, and is dropped before."""
+        """Add a knot at the end; it replaces one of the same time, and is dropped if earlier."""
         if self._knots and time <= self._knots[-1][0]:
             if time < self._knots[-1][0]:
                 return
@@ -49,9 +49,7 @@ class WindCurve:
         self._knots.append((time, value))
 
     def cut(self, time: float) -> None:
-        """
-        Drop what comes after a time in [s], and be level from there: the past stays as it was.
-        """
+        """Drop what comes after a time in [s], and be level from there; the past is as it was."""
         if self._knots and self.end > time:
             value = self.value(time)
             while self._knots and self._knots[-1][0] >= time:
@@ -79,8 +77,7 @@ class WindCurve:
 
     def mean(self, start: float, end: float, share: tuple[float, float] = (1.0, 1.0)) -> Vector:
         """
-        Exact mean [m/s] of the curve from ``start`` to a later ``end`` in [s]; there must be a
-        knot.
+        Exact mean [m/s] of the curve from ``start`` to a later ``end`` in [s], given a knot.
 
         It is multiplied by the two shares at start and end, and evenly in between.
         """

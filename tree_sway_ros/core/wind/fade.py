@@ -12,10 +12,7 @@ from tree_sway_ros.core.wind.curve import Vector, WindCurve
 
 @dataclass(frozen=True)
 class Fade:
-    """
-    A mix of a steady wind [m/s] and a curve, whose share rises from 0 at ``start`` to 1 at ``end``
-    [s].
-    """
+    """A mix of a steady wind and a curve [m/s], its share 0 to 1 from ``start`` to ``end`` [s]."""
 
     before: Vector
     start: float

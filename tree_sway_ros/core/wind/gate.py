@@ -11,17 +11,17 @@ m/s^2: 39 % at 20 Hz in 12 m/s). What stays away for `longest_refusal` is no spi
 is let in.
 
 Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival,
-much older than it, a duplicate, out of order) is counted by its cause; in its place stands the time
-of arrival, less the delay of the sample before, so that the times of a mixed stream go on evenly. A
-stamp ahead is believed only if those before it were nearly as far ahead: a single one would shut
-out the good samples that follow it. All times are whole nanoseconds of one clock.
+much older than it, a duplicate, out of order) is counted by its cause; in its place stands the
+time of arrival, less the delay of the sample before, so that the times of a mixed stream go on
+evenly. A stamp ahead is believed only if those before it were nearly as far ahead: a single one
+would shut out the good samples that follow it. All times are whole nanoseconds of one clock.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from enum import Enum
+import math
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike
@@ -61,13 +61,13 @@ CLOCK_RESET = SECOND
 class Reason(str, Enum):
     """Why a sample was refused, or ``accepted``."""
 
-    ACCEPTED = "accepted"
-    NOT_FINITE = "not_finite"
-    SENTINEL = "sentinel"
-    TOO_FAST = "too_fast"
-    SPIKE = "spike"
-    REPEATED = "repeated"
-    NO_TIME = "no_time"
+    ACCEPTED = 'accepted'
+    NOT_FINITE = 'not_finite'
+    SENTINEL = 'sentinel'
+    TOO_FAST = 'too_fast'
+    SPIKE = 'spike'
+    REPEATED = 'repeated'
+    NO_TIME = 'no_time'
 
 
 class Verdict(NamedTuple):
@@ -88,14 +88,17 @@ class GateCounts:
     accepted
         Samples that got in.
     not_finite, sentinel, too_fast, spike, repeated, no_time
-        Samples refused: not a number or infinite; a sensor's code for no reading; above the largest
-        speed; too far from the last good one; a message sent twice; no time after the last one.
+        Samples refused: not a number or infinite; a sensor's code for no reading; above the
+        largest speed; too far from the last good one; a message sent twice; no time after the last
+        one.
     forced
         Accepted ones that were let in because refusing had lasted long enough.
-    zero_stamp, ahead_stamp, future_stamp, old_stamp, duplicate_stamp, out_of_order, overtaken_stamp
-        Stamps not believed, though the sample itself may be good: none at all; ahead of the arrival
-        by up to `LARGEST_LEAD`, and by more; older than `LONGEST_TRANSPORT`; that of the sample
-        before; before that of the sample before; not after the time given to the sample before.
+    zero_stamp, ahead_stamp, future_stamp, old_stamp, duplicate_stamp, out_of_order,
+    overtaken_stamp
+        Stamps not believed, though the sample itself may be good: none at all; ahead of the
+        arrival by up to `LARGEST_LEAD`, and by more; older than `LONGEST_TRANSPORT`; that of the
+        sample before; before that of the sample before; not after the time given to the sample
+        before.
     clock_back
         Times the clock was set back.
     frozen, sluggish
@@ -124,7 +127,7 @@ class GateCounts:
 
     @property
     def refused(self) -> int:
-        """Samples refused, for any reason."""
+        """Return the number of samples refused, for any reason."""
         return (
             self.not_finite
             + self.sentinel
@@ -172,13 +175,13 @@ class WindGate:
         jump_fraction: float = 0.25,
     ) -> None:
         """Open the gate with no sample seen."""
-        self._max_speed = within("max_speed", max_speed, 0.0, FASTEST_WIND, "m/s", above=True)
-        self._max_rate = within("max_rate", max_rate, 0.0, 1e4, "m/s^2", above=True)
-        refusal = within("longest_refusal", longest_refusal, 0.0, 60.0, "s")
-        frozen = within("frozen_after", frozen_after, 0.0, 1e5, "s", above=True)
+        self._max_speed = within('max_speed', max_speed, 0.0, FASTEST_WIND, 'm/s', above=True)
+        self._max_rate = within('max_rate', max_rate, 0.0, 1e4, 'm/s^2', above=True)
+        refusal = within('longest_refusal', longest_refusal, 0.0, 60.0, 's')
+        frozen = within('frozen_after', frozen_after, 0.0, 1e5, 's', above=True)
         self._longest_refusal, self._frozen_after = round(SECOND * refusal), round(SECOND * frozen)
-        self._jump_floor = within("jump_floor", jump_floor, 0.0, 100.0, "m/s")
-        self._jump_fraction = within("jump_fraction", jump_fraction, 0.0, 10.0)
+        self._jump_floor = within('jump_floor', jump_floor, 0.0, 100.0, 'm/s')
+        self._jump_fraction = within('jump_fraction', jump_fraction, 0.0, 10.0)
         self.counts = GateCounts()
         self.reset()
 
@@ -219,11 +222,11 @@ class WindGate:
         vector
             Wind in [m/s], (3,), before any projection; the axes do not matter.
         arrival
-            Time that it arrived in [ns], on the clock of the stamps; None if the stamp is all there
-            is.
+            Time that it arrived in [ns], on the clock of the stamps; None if the stamp is all
+            there is.
         lead
-            How far stamps may be ahead of the arrival in [ns]: 0 on a clock that runs, up to a tick
-            of simulated time, which stands still in between.
+            How far stamps may be ahead of the arrival in [ns]: 0 on a clock that runs, up to a
+            tick of simulated time, which stands still in between.
 
         Returns
         -------
@@ -237,7 +240,7 @@ class WindGate:
             If the sample is not three numbers.
 
         """
-        x, y, z = three_numbers("wind", vector)
+        x, y, z = three_numbers('wind', vector)
         is_repeated = 0 < stamp == self._last_stamp and (x, y, z) == self._seen
         time = self._time_of(stamp, arrival, lead)
         if is_repeated:
@@ -277,19 +280,19 @@ class WindGate:
     def _fault(self, stamp: int, arrival: int, lead: int) -> str:
         """Say why a stamp is not believed, by the name of its count; empty if it is."""
         if stamp <= 0 < arrival:
-            return "zero_stamp"
+            return 'zero_stamp'
         if stamp > arrival + LARGEST_LEAD:
-            return "future_stamp"
+            return 'future_stamp'
         usual = 0 if self._time is None or self._arrival is None else self._time - self._arrival
         if stamp > arrival + max(lead, max(usual, 0) + LEAD_GROWTH):
-            return "ahead_stamp"
+            return 'ahead_stamp'
         if stamp < arrival - LONGEST_TRANSPORT:
-            return "old_stamp"
+            return 'old_stamp'
         if stamp == self._last_stamp:
-            return "duplicate_stamp"
+            return 'duplicate_stamp'
         if self._stamp is not None and stamp <= self._stamp:
-            return "out_of_order"
-        return "overtaken_stamp" if self._time is not None and stamp <= self._time else ""
+            return 'out_of_order'
+        return 'overtaken_stamp' if self._time is not None and stamp <= self._time else ''
 
     def _judge(self, time: int, x: float, y: float, z: float) -> Reason:
         if not is_wind(x, y, z, self._max_speed):

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Gusts travel: a tree feels the wind of the anemometer as long ago as the wind takes from there to
-the tree.
+Gusts travel: a tree feels the wind of the anemometer as long ago as it takes from there.
 
 Turbulence is carried along by the mean wind and changes little on the way (Taylor 1938), so a tree
 at x feels ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the speed at which
@@ -80,14 +79,14 @@ class GustHistory:
         """Allocate the history; nothing is allocated later."""
         points = np.array(places, dtype=np.float64).reshape(-1, 3)
         if not np.isfinite(points).all():
-            raise ParameterError("a place that is not finite", where="places", cure="give metres")
+            raise ParameterError('a place that is not finite', where='places', cure='give metres')
         self._from_first = anemometer is None
-        origin = np.zeros(3) if anemometer is None else three_numbers("anemometer", anemometer)
+        origin = np.zeros(3) if anemometer is None else three_numbers('anemometer', anemometer)
         self._along = points[:, :2] - np.array(origin)[:2]
-        self._ratio = within("convection_ratio", convection_ratio, 0.1, math.inf)
-        self._averaging = within("averaging_time", averaging_time, 0.0, 3600.0, "s", above=True)
-        self._memory = within("memory", memory, 0.0, 600.0, "s")
-        self._run = np.zeros((int(within("capacity", capacity, 8, 1e6)), 4))
+        self._ratio = within('convection_ratio', convection_ratio, 0.1, math.inf)
+        self._averaging = within('averaging_time', averaging_time, 0.0, 3600.0, 's', above=True)
+        self._memory = within('memory', memory, 0.0, 600.0, 's')
+        self._run = np.zeros((int(within('capacity', capacity, 8, 1e6)), 4))
         # Two times that follow each other are together longer than this, so that all are longer
         # than the memory and the steps at its ends.
         self._finest = 2.0 * self._memory / (len(self._run) - 4)
@@ -108,9 +107,7 @@ class GustHistory:
 
     @property
     def n_forgotten(self) -> int:
-        """
-        Places so far downwind that the history is too short; they feel the oldest wind there is.
-        """
+        """Places so far downwind that they feel the oldest wind of a history too short."""
         return int((self._wanted > self._memory).sum())
 
     @property
@@ -120,16 +117,15 @@ class GustHistory:
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """
-        Take the mean wind of a step of dt [s] at the anemometer in [m/s], (3,), and find that of
-        each place.
+        Take the mean wind (3,) of a step of dt [s] at the anemometer in [m/s]; find each place's.
 
         It is (t, 3), the same array each time. A `ParameterError` tells of a number that is not
         finite, or a step that is not above 0.
         """
-        x, y, z = three_numbers("wind", wind_mean)
+        x, y, z = three_numbers('wind', wind_mean)
         if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):
             raise ParameterError(
-                f"wind ({x}, {y}, {z}) m/s over {dt} s", cure="give finite numbers"
+                f'wind ({x}, {y}, {z}) m/s over {dt} s', cure='give finite numbers'
             )
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
@@ -141,7 +137,7 @@ class GustHistory:
         return self._felt
 
     def memory(self) -> tuple[Any, ...]:
-        """Views of what is carried from one step to the next."""
+        """Return views of what is carried from one step to the next."""
         return self._run, self._at, self._mean, self._wanted, self._delay, self._felt
 
     def reset(self) -> None:
@@ -184,10 +180,7 @@ def remember(
 
 @kernel
 def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
-    """
-    A plain mean while there is little wind to average, then a running one; its span stands beside
-    it.
-    """
+    """Take a plain mean while there is little wind, then a running one; its span is beside it."""
     mean[2] = min(mean[2] + dt, max(averaging, dt))
     weight = dt / mean[2]
     mean[0] += weight * (x - mean[0])
@@ -196,13 +189,12 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
 
 @kernel
 def _feel(
-    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats, ratio: float,
+    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats,
+    ratio: float,
     memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats,
     felt: Floats,
 ) -> None:  # fmt: skip
-    """
-    Let delays follow the mean wind, and take the mean of the history over each place's own step.
-    """
+    """Let delays follow the mean wind; average the history over each place's own step."""
     now = run[at[0], 0]
     speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)
     first = math.inf if from_first else 0.0

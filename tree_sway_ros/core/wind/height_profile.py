@@ -4,15 +4,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import ParameterError
 
-PROFILES = ("none", "power", "log")
+PROFILES = ('none', 'power', 'log')
 """Kinds of profile."""
 
 
@@ -37,7 +37,7 @@ class WindProfile:
 
     """
 
-    kind: str = "none"
+    kind: str = 'none'
     anemometer_height: float = 10.0
     exponent: float = 0.14
     roughness: float = 0.03
@@ -47,17 +47,17 @@ class WindProfile:
         """Refuse what has no wind."""
         if self.kind not in PROFILES:
             raise ParameterError(
-                f"unknown wind profile '{self.kind}'", cure=f"use one of: {', '.join(PROFILES)}"
+                f"unknown wind profile '{self.kind}'", cure=f'use one of: {", ".join(PROFILES)}'
             )
         if not self.anemometer_height > 0.0:
             raise ParameterError(
-                f"anemometer height {self.anemometer_height} m", cure="give one above 0"
+                f'anemometer height {self.anemometer_height} m', cure='give one above 0'
             )
-        if self.kind == "log" and not 0.0 < self.roughness < self.anemometer_height:
+        if self.kind == 'log' and not 0.0 < self.roughness < self.anemometer_height:
             raise ParameterError(
-                f"roughness length {self.roughness} m with an anemometer at "
-                f"{self.anemometer_height} m",
-                cure="give one above 0 and below the anemometer",
+                f'roughness length {self.roughness} m with an anemometer at '
+                f'{self.anemometer_height} m',
+                cure='give one above 0 and below the anemometer',
             )
 
     def over_anemometer(self, z: Floats) -> Floats:
@@ -76,9 +76,9 @@ class WindProfile:
 
         """
         height = np.maximum(np.asarray(z, dtype=np.float64) - self.ground, 0.0)
-        if self.kind == "none":
+        if self.kind == 'none':
             return np.ones_like(height)
-        if self.kind == "power":
+        if self.kind == 'power':
             power: Floats = (height / self.anemometer_height) ** self.exponent
             return power
         above = np.maximum(height / self.roughness, 1.0)

@@ -17,8 +17,7 @@ from tree_sway_ros.core.wind.limits import FASTEST_WIND
 
 class GoodWind(NamedTuple):
     """
-    A sample that is good: its time [ns], after that of the one before, and velocity to which it
-    blows.
+    A good sample: its time [ns], after that before, and the velocity to which it blows.
 
     That is ENU in [m/s], on the force plane, (3,).
     """
@@ -47,7 +46,7 @@ class WindIntake:
 
     @property
     def counts(self) -> GateCounts:
-        """What was accepted and refused, by reason."""
+        """Return what was accepted and refused, by reason."""
         return self.gate.counts
 
     def offer(
@@ -60,8 +59,7 @@ class WindIntake:
         rotation: Floats | None = None,
     ) -> GoodWind | None:
         """
-        Take a sample, (3,), along the source's axes, in its unit and sign; None if refused, and
-        counted.
+        Take a sample, (3,), in the source's axes, unit and sign; None if refused, and counted.
 
         Times are as for `WindGate.offer`; the rotation (3, 3) is from the source's frame into the
         trees'.

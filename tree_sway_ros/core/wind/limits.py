@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from tree_sway_ros.core.arrays import Floats
 
 FASTEST_WIND = 150.0
-"""Speed in [m/s] above which nothing is wind; the record gust is 113 m/s (Courtney et al. 2012)."""
+"""Speed in [m/s] above which nothing is wind; the record gust is 113 m/s (Courtney et al.
+2012)."""
 
 
 def is_wind(x: float, y: float, z: float, limit: float = FASTEST_WIND) -> bool:

@@ -43,7 +43,7 @@ class ResponseWatch:
         self._count = 0
 
     def add(self, time: int, sample: Vector) -> bool:
-        """Take a sample in [m/s], at a time in [ns]; return whether the sensor is found out now."""
+        """Take a sample in [m/s], at a time in [ns]; return whether it finds the sensor out."""
         if self._kept and time - self._kept[-1][0] < _LAG - _ROUNDING:
             return False
         self._kept = [*self._kept[-2:], (time, sample)]

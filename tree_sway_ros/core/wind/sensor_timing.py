@@ -17,9 +17,7 @@ _CATCH_UP = 0.25  # at most this part of an interval: a backlog is played out a 
 
 
 class SensorTiming:
-    """
-    Period and lateness of a sensor; a sample holds for ``timeout`` [s], at least three periods.
-    """
+    """Period and lateness of a sensor; a sample holds for ``timeout`` [s], at least 3 periods."""
 
     def __init__(self, timeout: float) -> None:
         """Start without an interval."""

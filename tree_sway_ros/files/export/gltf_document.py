@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-_COMPONENTS = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
-_SHAPES = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
+_COMPONENTS = {'uint8': 5121, 'uint16': 5123, 'uint32': 5125, 'float32': 5126}
+_SHAPES = {(): 'SCALAR', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
@@ -22,7 +22,7 @@ class GltfDocument:
 
     def __init__(self, generator: str) -> None:
         """Begin with nothing in it."""
-        self._json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
+        self._json: dict[str, Any] = {'asset': {'version': '2.0', 'generator': generator}}
         self._bytes = bytearray()
 
     def add(self, kind: str, **properties: Any) -> int:
@@ -45,17 +45,17 @@ class GltfDocument:
         or `ELEMENT_ARRAY_BUFFER` (indices). Bounds are told of positions and times.
         """
         view = self.add(
-            "bufferViews",
+            'bufferViews',
             buffer=0,
             byteOffset=len(self._bytes),
             byteLength=array.nbytes,
             target=target,
         )
-        self._bytes += np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes()
-        self._bytes += b"\0" * (-len(self._bytes) % 4)
+        self._bytes += np.ascontiguousarray(array).astype(array.dtype.newbyteorder('<')).tobytes()
+        self._bytes += b'\0' * (-len(self._bytes) % 4)
         columns = array.reshape(len(array), -1)
         return self.add(
-            "accessors",
+            'accessors',
             bufferView=view,
             componentType=_COMPONENTS[array.dtype.name],
             normalized=True if array.dtype == np.uint8 else None,
@@ -67,16 +67,16 @@ class GltfDocument:
 
     def glb(self) -> bytes:
         """Return the document in the binary form."""
-        buffers = [{"byteLength": len(self._bytes)}]
-        text = json.dumps({**self._json, "buffers": buffers}, separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
+        buffers = [{'byteLength': len(self._bytes)}]
+        text = json.dumps({**self._json, 'buffers': buffers}, separators=(',', ':')).encode()
+        text += b' ' * (-len(text) % 4)
         size = 12 + 8 + len(text) + 8 + len(self._bytes)
-        head = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON")
-        return head + text + struct.pack("<I4s", len(self._bytes), b"BIN\0") + bytes(self._bytes)
+        head = struct.pack('<4sII', b'glTF', 2, size) + struct.pack('<I4s', len(text), b'JSON')
+        return head + text + struct.pack('<I4s', len(self._bytes), b'BIN\0') + bytes(self._bytes)
 
     def gltf(self) -> bytes:
         """Return the document as JSON with its bytes in base64."""
-        data = base64.b64encode(self._bytes).decode("ascii")
-        uri = f"data:application/octet-stream;base64,{data}"
-        buffers = [{"byteLength": len(self._bytes), "uri": uri}]
-        return json.dumps({**self._json, "buffers": buffers}).encode()
+        data = base64.b64encode(self._bytes).decode('ascii')
+        uri = f'data:application/octet-stream;base64,{data}'
+        buffers = [{'byteLength': len(self._bytes), 'uri': uri}]
+        return json.dumps({**self._json, 'buffers': buffers}).encode()

@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.leaves.foliage import LeafClusters
-from tree_sway_ros.core.state.find_basis import MARGIN, Swaying, state_basis
+from tree_sway_ros.core.state.find_basis import MARGIN, state_basis, Swaying
 from tree_sway_ros.core.state.state_basis import StateBasis
 from tree_sway_ros.core.tree.species import bark_color, leaf_traits
 from tree_sway_ros.core.tree.tree import Tree
@@ -32,9 +32,9 @@ from tree_sway_ros.files.export.gltf_document import (
     ELEMENT_ARRAY_BUFFER,
     GltfDocument,
 )
-from tree_sway_ros.files.export.tree_mesh import TreeMesh, leaf_mesh, wood_mesh
+from tree_sway_ros.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
-_GENERATOR = "tree_sway_ros"
+_GENERATOR = 'tree_sway_ros'
 _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 _MAX_JOINTS = 65536
 _BREEZE, _SECONDS, _RATE, _DT = 6.0, 20.0, 15, 1.0 / 60.0
@@ -64,32 +64,32 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     """
     if tree.n_segments > _MAX_JOINTS:
         raise FormatError(
-            f"{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin",
+            f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin',
             where=tree.name,
-            cure="convert its trees one by one",
+            cure='convert its trees one by one',
         )
     document, poses = GltfDocument(_GENERATOR), tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))
-    root = document.add("nodes", name=tree.name, rotation=_Y_UP, children=joints)
+    root = document.add('nodes', name=tree.name, rotation=_Y_UP, children=joints)
     for name, pose in zip(tree.segment_names, poses.tolist(), strict=True):
-        document.add("nodes", name=name, translation=pose[:3], rotation=pose[3:])
+        document.add('nodes', name=name, translation=pose[:3], rotation=pose[3:])
     inverse = document.add_array(_inverse_matrices(poses))
-    skin = document.add("skins", joints=joints, skeleton=root, inverseBindMatrices=inverse)
+    skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=inverse)
     primitives = []
     for material, mesh in _meshes(tree, leaves):
         primitive = _primitive(document, material, tree.species, mesh, poses)
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
         weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
         joint[:, 0], weight[:, 0] = mesh.segment, 255
-        primitive["attributes"] |= {
-            "JOINTS_0": document.add_array(joint, target=ARRAY_BUFFER),
-            "WEIGHTS_0": document.add_array(weight, target=ARRAY_BUFFER),
+        primitive['attributes'] |= {
+            'JOINTS_0': document.add_array(joint, target=ARRAY_BUFFER),
+            'WEIGHTS_0': document.add_array(weight, target=ARRAY_BUFFER),
         }
         primitives.append(primitive)
-    body = document.add("meshes", name=tree.name, primitives=primitives)
+    body = document.add('meshes', name=tree.name, primitives=primitives)
     # A viewer ignores where the node of a skinned mesh is: it stands beside the joints.
-    shown = document.add("nodes", name=f"{tree.name} mesh", mesh=body, skin=skin)
-    document.add("scenes", nodes=[root, shown])
+    shown = document.add('nodes', name=f'{tree.name} mesh', mesh=body, skin=skin)
+    document.add('scenes', nodes=[root, shown])
     document.set(scene=0)
     return document
 
@@ -98,7 +98,8 @@ def morphing_tree(
     simulator: Swaying, leaves: LeafClusters | None = None
 ) -> tuple[GltfDocument, LinearForm]:
     """
-    Return a tree, as a simulator on any model has it, as a mesh with a morph target per coordinate.
+    Return a tree, as a simulator on any model has it, as a mesh with a morph target per
+    coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
     the basis; 1 is as far as it goes in a storm. An animation plays a breeze.
@@ -107,24 +108,24 @@ def morphing_tree(
     unit = basis.scale / MARGIN
     document, rest = GltfDocument(_GENERATOR), tree.rest_poses
     steps = [_swung(simulator, basis, k, unit[k]) for k in range(basis.n_coordinates)]
-    names = tuple(f"sway {k + 1}" for k in range(basis.n_coordinates))
+    names = tuple(f'sway {k + 1}' for k in range(basis.n_coordinates))
     primitives = []
     for material, mesh in _meshes(tree, leaves):
         primitive = _primitive(document, material, tree.species, mesh, rest)
-        primitive["targets"] = [
-            {"POSITION": document.add_array(change, target=ARRAY_BUFFER, bounds=True)}
+        primitive['targets'] = [
+            {'POSITION': document.add_array(change, target=ARRAY_BUFFER, bounds=True)}
             for change in (_change(mesh, step).astype(np.float32) for step in steps)
         ]
         primitives.append(primitive)
     body = document.add(
-        "meshes",
+        'meshes',
         name=tree.name,
         primitives=primitives,
         weights=[0.0] * len(names),
-        extras={"targetNames": list(names), "unit": unit.tolist(), "basis": basis.digest},
+        extras={'targetNames': list(names), 'unit': unit.tolist(), 'basis': basis.digest},
     )
-    shown = document.add("nodes", name=tree.name, mesh=body, rotation=_Y_UP)
-    document.add("scenes", nodes=[shown])
+    shown = document.add('nodes', name=tree.name, mesh=body, rotation=_Y_UP)
+    document.add('scenes', nodes=[shown])
     document.set(scene=0)
     weights, poses = _breeze(simulator, basis, unit)
     _add_animation(document, shown, weights)
@@ -132,34 +133,34 @@ def morphing_tree(
 
 
 def _meshes(tree: Tree, leaves: LeafClusters | None) -> list[tuple[str, TreeMesh]]:
-    wood = ("bark", wood_mesh(tree))
-    return [wood] if leaves is None else [wood, ("leaves", leaf_mesh(leaves))]
+    wood = ('bark', wood_mesh(tree))
+    return [wood] if leaves is None else [wood, ('leaves', leaf_mesh(leaves))]
 
 
 def _primitive(
     document: GltfDocument, material: str, species: str, mesh: TreeMesh, poses: Floats
 ) -> dict[str, Any]:
     """Part of a mesh at rest, in the frame of the tree."""
-    is_bark = material == "bark"
+    is_bark = material == 'bark'
     color = bark_color(species) if is_bark else leaf_traits(species).green
     normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
     points = mesh.placed(poses).astype(np.float32)
     return {
-        "attributes": {
-            "POSITION": document.add_array(points, target=ARRAY_BUFFER, bounds=True),
-            "NORMAL": document.add_array(normals.astype(np.float32), target=ARRAY_BUFFER),
+        'attributes': {
+            'POSITION': document.add_array(points, target=ARRAY_BUFFER, bounds=True),
+            'NORMAL': document.add_array(normals.astype(np.float32), target=ARRAY_BUFFER),
         },
-        "indices": document.add_array(
+        'indices': document.add_array(
             mesh.triangles.ravel().astype(np.uint32), target=ELEMENT_ARRAY_BUFFER
         ),
-        "material": document.add(
-            "materials",
+        'material': document.add(
+            'materials',
             name=material,
             doubleSided=None if is_bark else True,
             pbrMetallicRoughness={
-                "baseColorFactor": [*(round(c**2.2, 3) for c in color), 1.0],
-                "metallicFactor": 0.0,
-                "roughnessFactor": 1.0,
+                'baseColorFactor': [*(round(c**2.2, 3) for c in color), 1.0],
+                'metallicFactor': 0.0,
+                'roughnessFactor': 1.0,
             },
         ),
     }
@@ -170,7 +171,7 @@ def _inverse_matrices(poses: Floats) -> Any:
     rotation = Rotation.from_quat(poses[:, 3:]).as_matrix()
     columns = np.zeros((len(poses), 4, 4))
     columns[:, :3, :3] = rotation  # columns of the transpose
-    columns[:, 3, :3] = -np.einsum("nij,ni->nj", rotation, poses[:, :3])
+    columns[:, 3, :3] = -np.einsum('nij,ni->nj', rotation, poses[:, :3])
     columns[:, 3, 3] = 1.0
     return columns.astype(np.float32)
 
@@ -207,12 +208,12 @@ def _breeze(simulator: Swaying, basis: StateBasis, unit: Floats) -> tuple[Floats
 def _add_animation(document: GltfDocument, node: int, weights: Floats) -> None:
     times = np.arange(len(weights), dtype=np.float32) / np.float32(_RATE)
     sampler = {
-        "input": document.add_array(times, bounds=True),
-        "output": document.add_array(weights.ravel().astype(np.float32)),
-        "interpolation": "LINEAR",
+        'input': document.add_array(times, bounds=True),
+        'output': document.add_array(weights.ravel().astype(np.float32)),
+        'interpolation': 'LINEAR',
     }
-    channel = {"sampler": 0, "target": {"node": node, "path": "weights"}}
-    document.add("animations", name="breeze", samplers=[sampler], channels=[channel])
+    channel = {'sampler': 0, 'target': {'node': node, 'path': 'weights'}}
+    document.add('animations', name='breeze', samplers=[sampler], channels=[channel])
 
 
 def _linear_form(

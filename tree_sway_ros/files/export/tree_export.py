@@ -22,8 +22,8 @@ from tree_sway_ros.files.export.tree_mesh import SIDES, wood_mesh
 from tree_sway_ros.files.export.yaml_writing import yaml_of_tree
 from tree_sway_ros.files.whole_file import whole_file, write_text_whole
 
-GLTF_SUFFIXES = (".glb", ".gltf")
-_SUFFIXES = (".yaml", ".yml", ".obj", *GLTF_SUFFIXES)
+GLTF_SUFFIXES = ('.glb', '.gltf')
+_SUFFIXES = ('.yaml', '.yml', '.obj', *GLTF_SUFFIXES)
 
 
 def write_tree(
@@ -61,33 +61,33 @@ def write_tree(
         raise FormatError(
             f"cannot write '{Path(path).suffix}'",
             where=str(path),
-            cure=f"use {', '.join(_SUFFIXES)}",
+            cure=f'use {", ".join(_SUFFIXES)}',
         )
     if suffix in GLTF_SUFFIXES:
         write_gltf(path, skinned_tree(tree, leaves))
     else:
-        text = obj_of_tree(tree) if suffix == ".obj" else yaml_of_tree(tree, species)
+        text = obj_of_tree(tree) if suffix == '.obj' else yaml_of_tree(tree, species)
         write_text_whole(path, text)
 
 
 def write_gltf(path: str | Path, document: GltfDocument) -> None:
     """Write a document, in the binary form if the suffix is ``.glb``."""
-    binary = Path(path).suffix.lower() == ".glb"
+    binary = Path(path).suffix.lower() == '.glb'
     with whole_file(path) as partial:
         partial.write_bytes(document.glb() if binary else document.gltf())
 
 
 def obj_of_tree(tree: Tree) -> str:
     """Return the shape at rest as Wavefront OBJ, one object per segment, z up, in metres."""
-    mesh, name = wood_mesh(tree), " ".join(tree.name.split())
+    mesh, name = wood_mesh(tree), ' '.join(tree.name.split())
     # The two rings of the side; those of the ends, which differ in their normals, are the same.
     size = 4 * SIDES
     points = mesh.placed(tree.rest_poses).reshape(tree.n_segments, size, 3)[:, : 2 * SIDES]
     triangles = mesh.triangles[: size - 4] % (2 * SIDES)
-    lines, first = [f"# {name}: z up, metres"], 1
+    lines, first = [f'# {name}: z up, metres'], 1
     for segment, rings in zip(tree.segment_names, points.tolist(), strict=True):
-        lines.append(f"o {'_'.join(segment.split())}")
-        lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in rings]
-        lines += [f"f {a} {b} {c}" for a, b, c in (triangles + first).tolist()]
+        lines.append(f'o {"_".join(segment.split())}')
+        lines += [f'v {x:.9g} {y:.9g} {z:.9g}' for x, y, z in rings]
+        lines += [f'f {a} {b} {c}' for a, b, c in (triangles + first).tolist()]
         first += len(rings)
-    return "\n".join(lines) + "\n"
+    return '\n'.join(lines) + '\n'

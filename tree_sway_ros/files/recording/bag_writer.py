@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tree_sway_ros.errors import FormatError, MissingDependencyError, ParameterError
 
-FORMATS = ("mcap", "sqlite3")
+FORMATS = ('mcap', 'sqlite3')
 """Kinds of storage."""
 
 
@@ -33,18 +33,18 @@ class BagWriter:
 
     """
 
-    def __init__(self, path: Path, format: str = "mcap") -> None:
+    def __init__(self, path: Path, format: str = 'mcap') -> None:
         try:
             from rosbags.rosbag2 import StoragePlugin, Writer
-            from rosbags.typesys import Stores, get_typestore
+            from rosbags.typesys import get_typestore, Stores
         except ImportError as error:
             raise MissingDependencyError(
-                "bags need rosbags", where=str(path), cure="pip install rosbags"
+                'bags need rosbags', where=str(path), cure='pip install rosbags'
             ) from error
         if format not in FORMATS:
-            raise ParameterError(f"unknown format '{format}'", cure=f"use {' or '.join(FORMATS)}")
+            raise ParameterError(f"unknown format '{format}'", cure=f'use {" or ".join(FORMATS)}')
         if path.exists():
-            raise FormatError("it is there already", where=str(path), cure="name another folder")
+            raise FormatError('it is there already', where=str(path), cure='name another folder')
         self._writer = Writer(path, version=9, storage_plugin=StoragePlugin[format.upper()])
         self._types = get_typestore(Stores.ROS2_JAZZY)
         self._connections: dict[str, object] = {}

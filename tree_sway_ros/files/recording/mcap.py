@@ -4,17 +4,17 @@
 
 from __future__ import annotations
 
-import mmap
-import struct
 from collections.abc import Callable, Mapping
+import mmap
 from pathlib import Path
+import struct
 from typing import Any
 
-_MAGIC = b"\x89MCAP0\r\n"
+_MAGIC = b'\x89MCAP0\r\n'
 _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _DATA_END = 0x03, 0x04, 0x05, 0x06, 0x0F
-_HEAD, _IDS, _MESSAGE_HEAD = struct.Struct("<BQ"), struct.Struct("<HH"), struct.Struct("<HIQQ")
-_CHUNK_HEAD = struct.Struct("<QQQI")  # times, size, checksum
-_NUMBER, _LONG = struct.Struct("<I"), struct.Struct("<Q")
+_HEAD, _IDS, _MESSAGE_HEAD = struct.Struct('<BQ'), struct.Struct('<HH'), struct.Struct('<HIQQ')
+_CHUNK_HEAD = struct.Struct('<QQQI')  # times, size, checksum
+_NUMBER, _LONG = struct.Struct('<I'), struct.Struct('<Q')
 
 Note = Callable[[int, bytes], None]
 
@@ -29,14 +29,16 @@ def read_mcap(
 
     Parameters
     ----------
+    path
+        The file.
     take
-        Called with each topic and its type; returns what is called with the time [ns] and the bytes
-        of each of its messages, or None for none.
+        Called with each topic and its type; returns what is called with the time [ns] and the
+        bytes of each of its messages, or None for none.
     unpack
         What undoes a compression, by its name.
 
     """
-    with path.open("rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+    with path.open('rb') as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
         records = _Records(take, unpack)
         with memoryview(data) as view, view[len(_MAGIC) :] as rest:
             records.read(rest)
@@ -92,8 +94,8 @@ class _Records:
         elif kind == _CHANNEL:
             channel, schema = _IDS.unpack_from(body)
             topic, at = _text(body, _IDS.size)
-            if channel not in self._notes and _text(body, at)[0] == "cdr":
-                self._notes[channel] = self._take(topic, self._schemas.get(schema, ""))
+            if channel not in self._notes and _text(body, at)[0] == 'cdr':
+                self._notes[channel] = self._take(topic, self._schemas.get(schema, ''))
         elif kind == _DATA_END:
             self.is_ended = True
 
@@ -102,4 +104,4 @@ def _text(body: Any, at: int) -> tuple[str, int]:
     """Read a string, and where it ends."""
     (size,) = _NUMBER.unpack_from(body, at)
     end = at + _NUMBER.size + size
-    return bytes(body[at + _NUMBER.size : end]).decode("utf-8"), end
+    return bytes(body[at + _NUMBER.size : end]).decode('utf-8'), end

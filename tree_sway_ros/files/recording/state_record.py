@@ -1,12 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The recorded state of a tree: its description and `tree_state` as the messages that were sent."""
+"""The recorded state of a tree: its description and `tree_state` as the messages that were
+sent.
+"""
 
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass
 from pathlib import Path
+import struct
 
 import numpy as np
 
@@ -14,9 +16,9 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.files.recording.bag_reader import read_bag
 
-STATE_TYPE = "sensor_msgs/msg/JointState"
-DESCRIPTION_TYPE = "std_msgs/msg/String"
-_STAMP = struct.Struct("<iI")
+STATE_TYPE = 'sensor_msgs/msg/JointState'
+DESCRIPTION_TYPE = 'std_msgs/msg/String'
+_STAMP = struct.Struct('<iI')
 _AFTER_HEAD = 4  # of CDR, whose third and fourth bytes are options
 
 
@@ -38,12 +40,12 @@ class StateRecord:
     notes: tuple[str, ...] = ()
 
 
-def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
+def read_state_record(path: Path, name: str = 'tree_state') -> StateRecord:
     """
     Read the state and the description of a bag, its folder or its file.
 
-    ``name`` is the topic of the state, or the end of its name; the description is looked for beside
-    it.
+    ``name`` is the topic of the state, or the end of its name; the description is looked for
+    beside it.
 
     Raises
     ------
@@ -55,18 +57,18 @@ def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
     """
     source = str(path)
     bag = read_bag(path, (STATE_TYPE, DESCRIPTION_TYPE))
-    end = f"/{name.lstrip('/')}"
-    topics = [t for t, kind in bag.types.items() if kind == STATE_TYPE and f"/{t}".endswith(end)]
-    topic = topics[0] if topics else ""
-    described = bag.messages.get(f"{topic.rpartition('/')[0]}/tree_description", [])
-    description = described[-1][1] if described else b""
+    end = f'/{name.lstrip("/")}'
+    topics = [t for t, kind in bag.types.items() if kind == STATE_TYPE and f'/{t}'.endswith(end)]
+    topic = topics[0] if topics else ''
+    described = bag.messages.get(f'{topic.rpartition("/")[0]}/tree_description', [])
+    description = described[-1][1] if described else b''
     sent = [data for _, data in bag.messages.get(topic, [])]
     found = [(_stamp(data), data) for data in sent if len(data) >= _AFTER_HEAD + _STAMP.size]
     if not found or b'"state"' not in description:
         raise FormatError(
             f"no '{name}' with the description that it is read by",
             where=source,
-            cure="record both: tree-sway record",
+            cure='record both: tree-sway record',
         )
     kept = [found[0]]
     for each in found[1:]:
@@ -80,7 +82,7 @@ def read_state_record(path: Path, name: str = "tree_state") -> StateRecord:
         description,
         source,
         len(sent) - len(kept),
-        (f"{topic}: {len(kept)} states", *([f"damaged: {bag.damage}"] if bag.damage else [])),
+        (f'{topic}: {len(kept)} states', *([f'damaged: {bag.damage}'] if bag.damage else [])),
     )
 
 

@@ -31,17 +31,17 @@ def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
         return scene
     if not 0 <= shard < shards:
         raise ParameterError(
-            f"shard {shard} of {shards}", where="shard", cure=f"give 0 to {shards - 1}"
+            f'shard {shard} of {shards}', where='shard', cure=f'give 0 to {shards - 1}'
         )
     if not isinstance(scene, ForestFile):
         raise ParameterError(
             f"'{scene.tree.name}' is one tree",
-            where="shards",
-            cure="leave shards at 1, or give the file of a forest or a stand",
+            where='shards',
+            cure='leave shards at 1, or give the file of a forest or a stand',
         )
     if shards > len(scene.trees):
         raise ParameterError(
-            f"{shards} shards of {len(scene.trees)} trees", where="shards", cure="ask for fewer"
+            f'{shards} shards of {len(scene.trees)} trees', where='shards', cure='ask for fewer'
         )
     reached = np.cumsum([each.tree.n_segments for each in scene.trees])
     marks = reached[-1] * np.arange(shards + 1) / shards

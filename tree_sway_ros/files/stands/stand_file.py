@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
-from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree, scaled_tree
+from tree_sway_ros.core.scene.stand import scaled_tree, Stand, StandKind, StandTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
@@ -44,7 +44,7 @@ class StandFile(ForestFile):
         self,
         settings: Settings | None = None,
         *,
-        fidelity: str = "wind_basis",
+        fidelity: str = 'wind_basis',
         tolerance: float = 0.005,
         progress: Callable[[int], object] = lambda done: None,
         **changes: Any,

@@ -1,17 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories have.
+A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories
+have.
 
 Trees of one species are scaled from few that are grown: heights of a species within a factor of
-three share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a tree
-without a name is called after its row, one without a yaw is turned at random.
+three share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a
+tree without a name is called after its row, one without a yaw is turned at random.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+import math
 from pathlib import Path
 from typing import Any
 
@@ -24,12 +25,12 @@ from tree_sway_ros.core.simulator.settings import FIDELITIES
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.errors import FormatError, ParameterError, TreeSwayError
 from tree_sway_ros.files.file_format import has_columns
-from tree_sway_ros.files.stands.stand_file import StandFile, stand_file
-from tree_sway_ros.files.table_file import TextTable, parse_table
+from tree_sway_ros.files.stands.stand_file import stand_file, StandFile
+from tree_sway_ros.files.table_file import parse_table, TextTable
 from tree_sway_ros.files.text_file import read_head, read_lines
 from tree_sway_ros.files.trees.yaml.forest_file import refuse_same_names
 
-COLUMNS = ("x", "y", "species", "height")
+COLUMNS = ('x', 'y', 'species', 'height')
 """Columns that a stand has."""
 
 _CLASS = 3.0
@@ -46,8 +47,8 @@ def read_stand_table(
     """
     Read a stand from a table; where no kind stands for a species, its trees are grown.
 
-    The seed is that of the trees that are grown, and of how trees are turned; further arguments are
-    those of `ForestFile`.
+    The seed is that of the trees that are grown, and of how trees are turned; further arguments
+    are those of `ForestFile`.
 
     Raises
     ------
@@ -59,40 +60,40 @@ def read_stand_table(
 
     """
     table = parse_table(read_lines(path), str(path))
-    x, y, height = table.strict(["x", "y", "height"]).T
-    species = _texts(table, "species")
-    names = _texts(table, "name") or [f"tree{row + 1}" for row in range(len(x))]
+    x, y, height = table.strict(['x', 'y', 'height']).T
+    species = _texts(table, 'species')
+    names = _texts(table, 'name') or [f'tree{row + 1}' for row in range(len(x))]
     refuse_same_names(names, table.where)
     given = dict(kinds or {})
     classes = _height_classes(species, height)
     standing, made = [], dict[str, StandKind]()
     rng = np.random.default_rng(seed)
-    z = _numbers(table, "z", np.zeros(len(x)))
-    yaw = _numbers(table, "yaw", rng.uniform(0.0, 2.0 * np.pi, len(x)))
-    fidelity = _texts(table, "fidelity") or ["wind_basis"] * len(x)
+    z = _numbers(table, 'z', np.zeros(len(x)))
+    yaw = _numbers(table, 'yaw', rng.uniform(0.0, 2.0 * np.pi, len(x)))
+    fidelity = _texts(table, 'fidelity') or ['wind_basis'] * len(x)
     for row, kind in enumerate(species):
         where = table.where(row)
         if not height[row] > 0.0:
-            raise FormatError(f"a height of {height[row]:g} m", where=where, cure="above 0")
+            raise FormatError(f'a height of {height[row]:g} m', where=where, cure='above 0')
         if fidelity[row] not in FIDELITIES:
             raise FormatError(
                 f"unknown fidelity '{fidelity[row]}'",
                 where=where,
-                cure=f"use one of: {', '.join(FIDELITIES)}",
+                cure=f'use one of: {", ".join(FIDELITIES)}',
             )
         try:
             if kind in given:
                 called, of_kind = kind, given[kind]
             else:
                 size = classes[row]
-                called = f"{kind} {size:.3g} m"
+                called = f'{kind} {size:.3g} m'
                 of_kind = made.get(called) or _grown(kind, float(size), seed)
             made[called] = of_kind
             scale = height[row] / float(np.ptp(of_kind.tree.end[:, 2]))
             if not SMALLEST <= scale <= LARGEST:
                 raise ParameterError(
                     f"{height[row]:g} m is {scale:.3g} times the height of '{called}'",
-                    cure=f"give {SMALLEST:g} to {LARGEST:g} times",
+                    cure=f'give {SMALLEST:g} to {LARGEST:g} times',
                 )
             at = float(x[row]), float(y[row]), float(z[row])
             standing.append(
@@ -100,7 +101,7 @@ def read_stand_table(
             )
         except TreeSwayError as error:
             raise error.at(where) from None
-    told = {"name": path.stem, "source": str(path)} | told
+    told = {'name': path.stem, 'source': str(path)} | told
     return stand_file(standing=tuple(standing), kinds=made, **told)
 
 
@@ -129,7 +130,7 @@ def _texts(table: TextTable, column: str) -> list[str]:
     texts = table.cells(table.index_of(column), range(len(table.texts)))
     for row, text in enumerate(texts):
         if not text:
-            raise FormatError(f"no {column}", where=table.where(row), cure="fill the cell")
+            raise FormatError(f'no {column}', where=table.where(row), cure='fill the cell')
     return texts
 
 

@@ -28,7 +28,7 @@ from tree_sway_ros.files.yaml_document import begins_with_key, packaged_schema, 
 
 def is_stand_yaml(path: Path) -> bool:
     """Whether a file looks like a stand: YAML with ``stand`` at its outermost."""
-    return begins_with_key(path, "stand")
+    return begins_with_key(path, 'stand')
 
 
 def read_stand_yaml(path: Path, open_tree: Callable[[str | Path], TreeFile]) -> StandFile:
@@ -43,23 +43,23 @@ def read_stand_yaml(path: Path, open_tree: Callable[[str | Path], TreeFile]) -> 
         A kind that cannot be opened; with the line.
 
     """
-    document = read_yaml(read_text(path), str(path), packaged_schema("stand_schema.json"))
+    document = read_yaml(read_text(path), str(path), packaged_schema('stand_schema.json'))
     values = document.values
     kinds = {}
-    for number, entry in enumerate(values.get("kinds", ())):
-        beside = path.parent / path_of(entry["tree"])
+    for number, entry in enumerate(values.get('kinds', ())):
+        beside = path.parent / path_of(entry['tree'])
         try:
-            opened = open_tree(beside if beside.is_file() else entry["tree"])
+            opened = open_tree(beside if beside.is_file() else entry['tree'])
         except TreeSwayError as error:
-            raise error.at(document.where("kinds", number)) from error
-        kinds[entry["species"]] = StandKind(opened.tree, opened.species)
-    anemometer = values.get("anemometer")
+            raise error.at(document.where('kinds', number)) from error
+        kinds[entry['species']] = StandKind(opened.tree, opened.species)
+    anemometer = values.get('anemometer')
     return read_stand_table(
-        path.parent / path_of(values["stand"]),
+        path.parent / path_of(values['stand']),
         kinds,
-        seed=values.get("seed", 0),
-        name=values.get("name", path.stem),
+        seed=values.get('seed', 0),
+        name=values.get('name', path.stem),
         source=str(path),
         anemometer=None if anemometer is None else tuple(anemometer),
-        convection_ratio=values.get("convection_ratio", 1.0),
+        convection_ratio=values.get('convection_ratio', 1.0),
     )

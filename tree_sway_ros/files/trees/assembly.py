@@ -23,8 +23,8 @@ MAX_COORDINATE = 1e8
 def nearest_axis(start: Floats, end: Floats, point: Floats) -> tuple[int, float]:
     """Return which of some axes from start to end (n, 3) is nearest to a point, how far in [m]."""
     axis = end - start
-    squared = np.maximum(np.einsum("ij,ij->i", axis, axis), 1e-24)
-    along = np.clip(np.einsum("ij,ij->i", point - start, axis) / squared, 0.0, 1.0)
+    squared = np.maximum(np.einsum('ij,ij->i', axis, axis), 1e-24)
+    along = np.clip(np.einsum('ij,ij->i', point - start, axis) / squared, 0.0, 1.0)
     distance = np.linalg.norm(start + along[:, None] * axis - point, axis=1)
     best = int(np.argmin(distance))
     return best, float(distance[best])
@@ -39,15 +39,15 @@ def checked_order(parent: ArrayLike, labels: Sequence[str]) -> list[int]:
     above, n = np.asarray(parent, dtype=np.int64), len(labels)
     for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
         raise TreeError(
-            "orphan: its parent does not exist", where=labels[index], cure="name one that does"
+            'orphan: its parent does not exist', where=labels[index], cure='name one that does'
         )
     order = parents_first(above.tolist())
     if len(order) < n:
         lost = int(np.setdiff1d(np.arange(n), order)[0])
         raise TreeError(
-            "cyclic: following its parents never reaches a root",
+            'cyclic: following its parents never reaches a root',
             where=labels[lost],
-            cure="break the cycle; one without a parent carries all others",
+            cure='break the cycle; one without a parent carries all others',
         )
     return order
 
@@ -70,7 +70,7 @@ class SegmentTable:
     branch_names: list[str] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
 
-    def build(self, source: str, name: str, species: str = "broadleaf") -> Tree:
+    def build(self, source: str, name: str, species: str = 'broadleaf') -> Tree:
         """
         Build the tree.
 
@@ -84,13 +84,13 @@ class SegmentTable:
 
         """
         if not self.start:
-            raise FormatError("no segments", where=source, cure="give at least one segment")
+            raise FormatError('no segments', where=source, cure='give at least one segment')
         extreme = np.abs(np.hstack([self.start, self.end, self.diameter])).max(axis=1)
         for index in np.flatnonzero(extreme > MAX_COORDINATE)[:1]:
             raise TreeError(
-                f"a coordinate of {extreme[index]:.3g} m",
+                f'a coordinate of {extreme[index]:.3g} m',
                 where=self.labels[index],
-                cure="give metres; check that the columns are what they should be",
+                cure='give metres; check that the columns are what they should be',
             )
         try:
             return tree_from_segments(

@@ -20,15 +20,15 @@ class FileUnits:
 
     length_unit: float = 1.0
     diameter_unit: float = 1.0
-    up: str = "z"
+    up: str = 'z'
 
     def __post_init__(self) -> None:
         """Refuse what is no unit and no axis."""
-        units = {"length_unit": self.length_unit, "diameter_unit": self.diameter_unit}
+        units = {'length_unit': self.length_unit, 'diameter_unit': self.diameter_unit}
         for name, unit in units.items():
             if not 1e-6 <= unit <= 1e3:
-                raise ParameterError(f"{name} is {unit:g} m", cure="give 0.01 for cm")
-        if self.up not in ("z", "y"):
+                raise ParameterError(f'{name} is {unit:g} m', cure='give 0.01 for cm')
+        if self.up not in ('z', 'y'):
             raise ParameterError(f"up is '{self.up}'", cure="use 'z' or 'y'")
 
     def of_tree(self, content: TreeFile) -> TreeFile:
@@ -55,6 +55,6 @@ class FileUnits:
 
     def _positions(self, nodes: Floats) -> Floats:
         turned = np.asarray(nodes, dtype=np.float64)
-        if self.up == "y":
+        if self.up == 'y':
             turned = turned[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
         return np.ascontiguousarray(self.length_unit * turned)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway_ros.core.leaves.foliage import LeafClusters, leaf_clusters
+from tree_sway_ros.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
+import math
 
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
 from tree_sway_ros.files.trees.imported_tree import TreeFile

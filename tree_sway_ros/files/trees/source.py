@@ -7,15 +7,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES, builtin_tree
+from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway_ros.core.tree.species import species_keys, species_named
-from tree_sway_ros.errors import FormatError, ParameterError, nearest
+from tree_sway_ros.errors import FormatError, nearest, ParameterError
 from tree_sway_ros.files.stands.stand_table import is_stand_table, read_stand_table
 from tree_sway_ros.files.stands.stand_yaml import is_stand_yaml, read_stand_yaml
 from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
-from tree_sway_ros.files.trees.yaml.forest_file import ForestFile, forest_of_files
+from tree_sway_ros.files.trees.yaml.forest_file import forest_of_files, ForestFile
 from tree_sway_ros.files.trees.yaml.forest_yaml import is_forest, read_forest
 
 
@@ -46,7 +46,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
         if options:
             raise ParameterError(
                 f"option '{next(iter(options))}' for a built-in tree",
-                cure="leave it out: it has no file",
+                cure='leave it out: it has no file',
             )
         tree = builtin_tree(text, seed)
         return TreeFile(tree, species_named(tree.species), text)
@@ -54,12 +54,12 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     if not path.exists():
         guess = nearest(text, BUILTIN_TREES)
         if text in species_keys():
-            guess = f"it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml;"
-        cure = f"{guess} give a file, or one of {', '.join(BUILTIN_TREES)}".lstrip()
+            guess = f'it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml;'
+        cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
         raise FormatError(f"no tree '{text}'", cure=cure)
     if is_forest(path):
         raise FormatError(
-            "a forest, where one tree is asked for", where=text, cure="name one of its trees"
+            'a forest, where one tree is asked for', where=text, cure='name one of its trees'
         )
     return read_tree(path, **options).checked()
 
@@ -91,7 +91,7 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeF
             raise ParameterError(
                 f"option '{next(iter(options))}' for a forest",
                 where=str(path),
-                cure="convert its trees first, and name the new files in the forest",
+                cure='convert its trees first, and name the new files in the forest',
             )
         if is_forest(path):
             return read_forest(path, open_tree)

@@ -9,10 +9,10 @@ format is one module in `formats`, with a `TreeFormat`.
 
 from __future__ import annotations
 
-import pkgutil
 from dataclasses import fields, replace
 from importlib import import_module
 from pathlib import Path
+import pkgutil
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
@@ -27,7 +27,7 @@ from tree_sway_ros.files.trees.tree_format import TreeFormat
 TREE_FORMATS: tuple[TreeFormat, ...] = tuple(
     each
     for module in pkgutil.iter_modules(formats.__path__)
-    for each in vars(import_module(f"{formats.__name__}.{module.name}")).values()
+    for each in vars(import_module(f'{formats.__name__}.{module.name}')).values()
     if isinstance(each, TreeFormat)
 )
 """Every format, in the order of modules and of what stands in them."""
@@ -41,7 +41,9 @@ def options_of(known: TreeFormat) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*known.own_options, *shared)))
 
 
-def read_trees(path: str | Path, format: str | None = None, **options: Any) -> tuple[TreeFile, ...]:
+def read_trees(
+    path: str | Path, format: str | None = None, **options: Any
+) -> tuple[TreeFile, ...]:
     """
     Read every tree of a file, of a format that is named or found from content and suffix.
 
@@ -60,7 +62,7 @@ def read_trees(path: str | Path, format: str | None = None, **options: Any) -> t
 
     """
     path = path_of(path)
-    chosen = format_of(path, format, TREE_FORMATS, "tree")
+    chosen = format_of(path, format, TREE_FORMATS, 'tree')
     chosen.refuse_others(options, options_of(chosen))
     _check_kinds(chosen, options)
     own = {name: options.pop(name) for name in chosen.own_options if name in options}
@@ -82,7 +84,7 @@ def read_tree(path: str | Path, format: str | None = None, **options: Any) -> Tr
     first, *others = read_trees(path, format, **options)
     if not others:
         return first
-    return replace(first, notes=(*first.notes, f"the file holds {len(others)} more trees"))
+    return replace(first, notes=(*first.notes, f'the file holds {len(others)} more trees'))
 
 
 def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
@@ -92,13 +94,13 @@ def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
     for name, kind in chosen.read.__annotations__.items():
         kinds[name] = kind.__name__ if isinstance(kind, type) else str(kind)
     for name, value in options.items():
-        wanted = kinds[name].split(" ")[0]
+        wanted = kinds[name].split(' ')[0]
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         fits, kind = {
-            "float": (is_number, "a number"),
-            "int": (is_number and float(value).is_integer(), "a whole number"),
-            "bool": (isinstance(value, bool), "true or false"),
-            "str": (isinstance(value, str), "a text"),
+            'float': (is_number, 'a number'),
+            'int': (is_number and float(value).is_integer(), 'a whole number'),
+            'bool': (isinstance(value, bool), 'true or false'),
+            'str': (isinstance(value, str), 'a text'),
         }[wanted]
-        if not (fits or (value is None and "None" in kinds[name])):
-            raise ParameterError(f"option {name} is '{value}'", cure=f"give {kind}")
+        if not (fits or (value is None and 'None' in kinds[name])):
+            raise ParameterError(f"option {name} is '{value}'", cure=f'give {kind}')

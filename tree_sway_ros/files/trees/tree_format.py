@@ -21,4 +21,4 @@ class TreeFormat(FileFormat):
     @property
     def gives_cylinders(self) -> bool:
         """Whether the reader gives cylinders, which take the options of all such formats."""
-        return "Cylinders" in str(self.read.__annotations__["return"])
+        return 'Cylinders' in str(self.read.__annotations__['return'])

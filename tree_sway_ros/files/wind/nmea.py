@@ -9,7 +9,8 @@ NMEA 0183: the wind sentences of an instrument on a mast or a boat.
   boat, and still counted from the bow. On a mast that stands still the two are one.
 - ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from
   magnetic north.
-- ``$--VWR,angle,L|R,speed,N,speed,M,speed,K`` and ``$--VWT``: apparent and true wind, left or right
+- ``$--VWR,angle,L|R,speed,N,speed,M,speed,K`` and ``$--VWT``: apparent and true wind, left or
+right
   of the bow.
 
 The bow has to be told: option ``heading``. A mast instrument aligned to north has 0. A wrong
@@ -18,25 +19,25 @@ checksum, a status that is not A, an empty field: the sentence is refused.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from functools import partial
 from math import pi
 from pathlib import Path
+import re
 
 from tree_sway_ros.core.wind.convention import velocity_of_bearing
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.text_file import finite
 from tree_sway_ros.files.wind.record import WindRecord
-from tree_sway_ros.files.wind.sensor_line import SensorLine, line_of, read_sensor_log
-from tree_sway_ros.files.wind.units import Velocity, degrees_to_bearing
+from tree_sway_ros.files.wind.sensor_line import line_of, read_sensor_log, SensorLine
+from tree_sway_ros.files.wind.units import degrees_to_bearing, Velocity
 
-SENTENCES = ("MWD", "MWV T", "VWT", "MWV R", "VWR")
+SENTENCES = ('MWD', 'MWV T', 'VWT', 'MWV R', 'VWR')
 """What can be read, in the order of preference: least depends on the motion of the boat first."""
 
 _KNOT = 1852.0 / 3600.0
-_UNITS = {"N": _KNOT, "K": 1.0 / 3.6, "M": 1.0, "S": 0.44704}
-_SENTENCE = re.compile(r"\$[A-Z]{2}(MWV|MWD|VWR|VWT),([^*]*)(\*.*)?", re.ASCII | re.DOTALL)
+_UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
+_SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|VWR|VWT),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
 
 
 def parse_nmea(
@@ -49,6 +50,8 @@ def parse_nmea(
 
     Parameters
     ----------
+    line
+        The line, without its end.
     heading
         Of the bow, clockwise from true north, in [rad].
     declination
@@ -57,32 +60,33 @@ def parse_nmea(
         Whether to refuse a sentence without a checksum, which is optional in the standard.
 
     """
-    sentence = _SENTENCE.match(line, max(line.rfind("$"), 0))
+    sentence = _SENTENCE.match(line, max(line.rfind('$'), 0))
     if sentence is None:
         return None
     name, content, check = sentence.groups()
-    fields = content.strip().split(",")
-    if name == "MWV":
-        reference = fields[1] if len(fields) > 1 else ""
-        if reference not in ("R", "T"):
+    fields = content.strip().split(',')
+    if name == 'MWV':
+        reference = fields[1] if len(fields) > 1 else ''
+        if reference not in ('R', 'T'):
             return None
-        name = f"MWV {reference}"
+        name = f'MWV {reference}'
     told = None if check is None else check[1:].strip().upper()
     body = line[sentence.start() + 1 : sentence.start(3)]
-    own_angle = declination if name == "MWD" else heading
+    own_angle = declination if name == 'MWD' else heading
     read = partial(_READERS[name[:3]], fields, own_angle)
     return line_of(name, len(line), told, [body], read, need_checksum=need_checksum)
 
 
 def read_nmea_wind(
     path: Path,
-    sentence: str = "auto",
+    sentence: str = 'auto',
     rate: float = 1.0,
     heading: float = 0.0,
     declination: float = 0.0,
 ) -> WindRecord:
     """
-    Read the wind of an NMEA 0183 log, whose sentences are taken as evenly spaced, ``rate`` in [Hz].
+    Read the wind of an NMEA 0183 log, whose sentences are taken as evenly spaced, ``rate`` in
+    [Hz].
 
     The sentence is one of `SENTENCES`, or ``auto``: the first of these with a good one; others are
     passed over. ``heading`` and ``declination`` are those of `parse_nmea`.
@@ -95,19 +99,19 @@ def read_nmea_wind(
         If an option is not what it can be.
 
     """
-    if sentence not in (*SENTENCES, "auto"):
-        raise ParameterError(f"sentence is '{sentence}'", cure=f"use auto, {', '.join(SENTENCES)}")
-    wanted: Sequence[str] = SENTENCES if sentence == "auto" else (sentence,)
+    if sentence not in (*SENTENCES, 'auto'):
+        raise ParameterError(f"sentence is '{sentence}'", cure=f'use auto, {", ".join(SENTENCES)}')
+    wanted: Sequence[str] = SENTENCES if sentence == 'auto' else (sentence,)
     parse = partial(parse_nmea, heading=heading, declination=declination)
-    bow = f"directions count from the bow, taken to head {heading * 180.0 / pi:g} degrees"
+    bow = f'directions count from the bow, taken to head {heading * 180.0 / pi:g} degrees'
     kind, record = read_sensor_log(path, parse, wanted, rate)
-    return record if kind == "MWD" else record.with_note(bow)
+    return record if kind == 'MWD' else record.with_note(bow)
 
 
 def _mwv(fields: list[str], heading: float) -> Velocity | str:
     if len(fields) < 5:
-        return f"{len(fields)} fields of 5"
-    if fields[4] != "A":
+        return f'{len(fields)} fields of 5'
+    if fields[4] != 'A':
         return f"status is '{fields[4][:8]}', not A"
     angle, speed, unit = finite(fields[0]), finite(fields[2]), _UNITS.get(fields[3])
     bearing = None if angle is None else degrees_to_bearing(angle)
@@ -118,7 +122,7 @@ def _mwv(fields: list[str], heading: float) -> Velocity | str:
 
 def _mwd(fields: list[str], declination: float) -> Velocity | str:
     if len(fields) < 8:
-        return f"{len(fields)} fields of 8"
+        return f'{len(fields)} fields of 8'
     true, magnetic, knots, speed = (finite(fields[i]) for i in (0, 2, 4, 6))
     if speed is None and knots is not None:
         speed = knots * _KNOT
@@ -133,19 +137,19 @@ def _mwd(fields: list[str], declination: float) -> Velocity | str:
 
 def _vwr(fields: list[str], heading: float) -> Velocity | str:
     """Angle up to half a turn, left or right; the first speed that is there counts."""
-    angle, side = finite(fields[0]), fields[1] if len(fields) > 1 else ""
+    angle, side = finite(fields[0]), fields[1] if len(fields) > 1 else ''
     speeds = (
         (finite(speed), _UNITS.get(unit))
         for speed, unit in zip(fields[2::2], fields[3::2], strict=False)
     )
     speed = next((s * unit for s, unit in speeds if s is not None and unit is not None), None)
-    if angle is None or not 0.0 <= angle <= 180.0 or side not in ("L", "R"):
+    if angle is None or not 0.0 <= angle <= 180.0 or side not in ('L', 'R'):
         return f"angle '{fields[0][:8]}', side '{side[:8]}'"
     if speed is None or speed < 0.0:
-        return "no speed" if speed is None else f"speed is {speed:g} m/s"
+        return 'no speed' if speed is None else f'speed is {speed:g} m/s'
     turn = angle * pi / 180.0
-    return velocity_of_bearing(speed, heading + (turn if side == "R" else -turn))
+    return velocity_of_bearing(speed, heading + (turn if side == 'R' else -turn))
 
 
-_READERS = {"MWV": _mwv, "MWD": _mwd, "VWR": _vwr, "VWT": _vwr}
+_READERS = {'MWV': _mwv, 'MWD': _mwd, 'VWR': _vwr, 'VWT': _vwr}
 """Readers of the fields of a sentence, which also take the heading, or the declination for MWD."""

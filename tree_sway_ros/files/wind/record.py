@@ -52,7 +52,7 @@ class WindRecord:
     velocity: Floats
     source: str
     refused: int = 0
-    first_refused: str = ""
+    first_refused: str = ''
     epoch: float | None = None
     notes: tuple[str, ...] = ()
 
@@ -86,14 +86,14 @@ class WindRows:
     """
 
     source: str
-    row_name: str = "line"
+    row_name: str = 'line'
     # Arrays and not lists: a day at 20 Hz is 1.7 million rows.
-    time: array[float] = field(default_factory=lambda: array("d"))
-    velocity: array[float] = field(default_factory=lambda: array("d"))
-    number: array[int] = field(default_factory=lambda: array("q"))
+    time: array[float] = field(default_factory=lambda: array('d'))
+    velocity: array[float] = field(default_factory=lambda: array('d'))
+    number: array[int] = field(default_factory=lambda: array('q'))
     refused: int = 0
-    first_refused: str = ""
-    _first_number: float = float("inf")
+    first_refused: str = ''
+    _first_number: float = float('inf')
 
     def add(self, number: int, time: float, velocity: tuple[float, float, float]) -> None:
         """Take a row."""
@@ -106,7 +106,7 @@ class WindRows:
         self.refused += 1
         if number < self._first_number:
             self._first_number = number
-            self.first_refused = f"{self.row_name} {number}: {reason}"
+            self.first_refused = f'{self.row_name} {number}: {reason}'
 
     def add_block(self, numbers: Ints, velocity: Floats) -> None:
         """Take many rows, whose times are filled in later."""
@@ -119,7 +119,7 @@ class WindRows:
         epoch: float | None = None,
         notes: tuple[str, ...] = (),
         yaw: float = 0.0,
-        direction_convention: str = "to",
+        direction_convention: str = 'to',
     ) -> WindRecord:
         """
         Check times and speeds and return the record, its velocities turned as of `WindConvention`.
@@ -130,20 +130,20 @@ class WindRows:
         time = np.array(self.time, dtype=np.float64)
         velocity = np.array(self.velocity, dtype=np.float64).reshape(-1, 3)
         velocity = WindConvention(direction_convention, yaw_offset=yaw).velocities(velocity)
-        speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
+        speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):
-            self.refuse(self.number[index], f"{speed[index]:.3g} m/s at {time[index]:g} s")
+            self.refuse(self.number[index], f'{speed[index]:.3g} m/s at {time[index]:g} s')
         late = ~increasing(time[good])
         for index in np.flatnonzero(good)[late]:
-            self.refuse(self.number[index], "its time is out of order")
+            self.refuse(self.number[index], 'its time is out of order')
         kept = np.flatnonzero(good)[~late]
         if len(kept) == 0:
-            first = f"; first {self.first_refused}" if self.refused else ""
+            first = f'; first {self.first_refused}' if self.refused else ''
             raise FormatError(
-                f"no good row of wind, {self.refused} refused{first}",
+                f'no good row of wind, {self.refused} refused{first}',
                 where=self.source,
-                cure="check that the file holds wind",
+                cure='check that the file holds wind',
             )
         time, velocity = time[kept], np.ascontiguousarray(velocity[kept])
         return WindRecord(
@@ -170,7 +170,7 @@ def increasing(time: Floats) -> NDArray[np.bool_]:
             ends.append(value)
         else:
             ends[rank[index]] = value
-    wanted, bound = len(ends) - 1, float("inf")
+    wanted, bound = len(ends) - 1, float('inf')
     for index in range(len(time) - 1, -1, -1):
         keep[index] = rank[index] == wanted and time[index] < bound
         if keep[index]:

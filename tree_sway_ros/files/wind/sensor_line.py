@@ -1,6 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A line that an anemometer says: the wind in it, or why it is refused; checksums and log files."""
+"""A line that an anemometer says: the wind in it, or why it is refused; checksums and log
+files.
+"""
 
 from __future__ import annotations
 
@@ -22,14 +24,15 @@ MAX_LINE = 1024
 @dataclass(frozen=True, slots=True)
 class SensorLine:
     """
-    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why it is refused.
+    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why it is
+    refused.
 
     ``kind`` is the sentence or format that it is of.
     """
 
     kind: str
     velocity: Velocity | None
-    refusal: str = ""
+    refusal: str = ''
 
 
 ParseLine = Callable[[str], SensorLine | None]
@@ -38,7 +41,7 @@ ParseLine = Callable[[str], SensorLine | None]
 
 def checksum_of(body: str) -> str:
     """Exclusive or of the bytes of a text, as two hexadecimal digits."""
-    return f"{reduce(xor, body.encode('utf-8', 'replace'), 0):02X}"
+    return f'{reduce(xor, body.encode("utf-8", "replace"), 0):02X}'
 
 
 def line_of(
@@ -55,11 +58,11 @@ def line_of(
     it; `told` is the checksum that stands in it, of one of these bodies, None without one.
     """
     if length > MAX_LINE:
-        found: Velocity | str = f"a line of {length} characters"
+        found: Velocity | str = f'a line of {length} characters'
     elif told is None and need_checksum:
-        found = "no checksum"
+        found = 'no checksum'
     elif told is not None and told not in map(checksum_of, bodies):
-        found = "wrong checksum"
+        found = 'wrong checksum'
     else:
         found = read()
     return SensorLine(kind, None, found) if isinstance(found, str) else SensorLine(kind, found)
@@ -84,7 +87,7 @@ def read_sensor_log(
 
     """
     if not rate > 0.0:
-        raise ParameterError(f"rate is {rate:g} Hz", cure="give more than 0")
+        raise ParameterError(f'rate is {rate:g} Hz', cure='give more than 0')
     found: dict[str, WindRows] = {}
     for number, line in enumerate(read_lines(path), start=1):
         said = parse(line)
@@ -98,10 +101,10 @@ def read_sensor_log(
     there = [kind for kind in kinds if kind in found]
     if not there:
         raise FormatError(
-            f"no sentence {' or '.join(kinds)}",
+            f'no sentence {" or ".join(kinds)}',
             where=str(path),
             cure="log the wind instrument's output",
         )
     best = next((kind for kind in there if found[kind].time), there[0])
-    spaced = f"{best} sentences have no time of their own and are taken at {rate:g} Hz"
+    spaced = f'{best} sentences have no time of their own and are taken at {rate:g} Hz'
     return best, found[best].record(notes=(spaced, *notes))

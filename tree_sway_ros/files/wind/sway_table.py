@@ -14,35 +14,35 @@ and never filled in.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
+import re
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.table_file import TextTable, parse_table
+from tree_sway_ros.files.table_file import parse_table, TextTable
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.wind.table import TIME_NAMES
 from tree_sway_ros.files.wind.units import TIME_UNITS
 
 _QUANTITY = {
-    "displacement": re.compile(
-        r"(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]"
+    'displacement': re.compile(
+        r'(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]'
     ),
-    "tilt": re.compile(r"(tilt|inclination|angle|rotation|r)(_?[xyz123])?|roll|pitch|yaw"),
-    "rate": re.compile(r"(gyro|rate|angular_velocity|angular_rate|omega|w|g)_?[xyz123]|gyro|rate"),
-    "acceleration": re.compile(r"(acceleration|accel|acc|a)(_?[xyz123])?"),
+    'tilt': re.compile(r'(tilt|inclination|angle|rotation|r)(_?[xyz123])?|roll|pitch|yaw'),
+    'rate': re.compile(r'(gyro|rate|angular_velocity|angular_rate|omega|w|g)_?[xyz123]|gyro|rate'),
+    'acceleration': re.compile(r'(acceleration|accel|acc|a)(_?[xyz123])?'),
 }
 _UNITS = {
-    "displacement": {"m": 1.0, "cm": 0.01, "mm": 0.001},
-    "tilt": {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180.0, "degrees": pi / 180.0, "°": pi / 180.0},
-    "rate": {"rad/s": 1.0, "deg/s": pi / 180.0, "°/s": pi / 180.0, "dps": pi / 180.0},
-    "acceleration": {
-        **{"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m s-2": 1.0, "mm/s^2": 1e-3},
-        **{"g": 9.80665, "mg": 9.80665e-3},
+    'displacement': {'m': 1.0, 'cm': 0.01, 'mm': 0.001},
+    'tilt': {'rad': 1.0, 'mrad': 1e-3, 'deg': pi / 180.0, 'degrees': pi / 180.0, '°': pi / 180.0},
+    'rate': {'rad/s': 1.0, 'deg/s': pi / 180.0, '°/s': pi / 180.0, 'dps': pi / 180.0},
+    'acceleration': {
+        **{'m/s^2': 1.0, 'm/s2': 1.0, 'm/s²': 1.0, 'm s-2': 1.0, 'mm/s^2': 1e-3},
+        **{'g': 9.80665, 'mg': 9.80665e-3},
     },
 }
 MAX_VALUE = 1e12
@@ -93,16 +93,16 @@ def read_csv_sway(path: Path) -> SwayRecord:
     motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
     if clock is None or not motion:
         raise FormatError(
-            f"no {'time' if clock is None else 'motion'} among {', '.join(table.columns[:20])}",
+            f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
             where=table.where(),
-            cure="name the columns time, x, y or time, tilt_x or time, ax, ay in the header",
+            cure='name the columns time, x, y or time, tilt_x or time, ax, ay in the header',
         )
     quantities = sorted({quantity for _, quantity in motion})
     if len(quantities) > 1:
         raise FormatError(
-            f"{' and '.join(quantities)} in one file",
+            f'{" and ".join(quantities)} in one file',
             where=table.where(),
-            cure="keep the columns of one quantity",
+            cure='keep the columns of one quantity',
         )
     units = _UNITS[quantities[0]]
     factors = [table.factor(table.headings[i][1], units, 1.0) for i, _ in motion]
@@ -110,9 +110,9 @@ def read_csv_sway(path: Path) -> SwayRecord:
     values = table.strict(names)
     for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
         raise FormatError(
-            f"{names[column]} is {values[row, column]:.3g}, which nothing measures",
+            f'{names[column]} is {values[row, column]:.3g}, which nothing measures',
             where=table.where(row),
-            cure="mend the cell or remove the row",
+            cure='mend the cell or remove the row',
         )
     times = _times(table, clock)
     return SwayRecord(times, values * factors, quantities[0], tuple(names), source)
@@ -130,12 +130,12 @@ def _times(table: TextTable, clock: int) -> Floats:
         raise FormatError(
             f"time is '{stamps[row][:40]}', neither seconds nor a date",
             where=table.where(row),
-            cure="mend the cell or remove the row",
+            cure='mend the cell or remove the row',
         )
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
         raise FormatError(
-            f"time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}",
+            f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}',
             where=table.where(row + 1),
-            cure="put the rows in the order of time, each time once",
+            cure='put the rows in the order of time, each time once',
         )
     return times

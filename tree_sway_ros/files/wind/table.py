@@ -26,24 +26,24 @@ import numpy as np
 
 from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.table_file import Column, TextTable, parse_table, split_row
+from tree_sway_ros.files.table_file import Column, parse_table, split_row, TextTable
 from tree_sway_ros.files.text_file import read_lines
 from tree_sway_ros.files.wind.record import WindRecord, WindRows
 from tree_sway_ros.files.wind.units import ANGLE_UNITS, SPEED_UNITS, TIME_UNITS
 
 TIME_NAMES = (
-    *("time", "t", "timestamp", "stamp", "datetime", "date_time", "seconds", "secs", "elapsed"),
+    *('time', 't', 'timestamp', 'stamp', 'datetime', 'date_time', 'seconds', 'secs', 'elapsed'),
 )
 """What a column of times may be called."""
 
 _COMPONENTS = (
-    ("u", "x", "ux", "ux_avg", "east", "vx", "velocity_x", "wind_u", "wind_x"),
-    ("v", "y", "uy", "uy_avg", "north", "vy", "velocity_y", "wind_v", "wind_y"),
-    ("w", "z", "uz", "uz_avg", "up", "vz", "velocity_z", "wind_w", "wind_z"),
+    ('u', 'x', 'ux', 'ux_avg', 'east', 'vx', 'velocity_x', 'wind_u', 'wind_x'),
+    ('v', 'y', 'uy', 'uy_avg', 'north', 'vy', 'velocity_y', 'wind_v', 'wind_y'),
+    ('w', 'z', 'uz', 'uz_avg', 'up', 'vz', 'velocity_z', 'wind_w', 'wind_z'),
 )
-_SPEED = ("speed", "wind_speed", "windspeed", "ws", "wspd")
+_SPEED = ('speed', 'wind_speed', 'windspeed', 'ws', 'wspd')
 _DIRECTION = (
-    *("direction", "dir", "wind_direction", "winddirection", "wind_dir", "winddir", "wd", "wdir"),
+    *('direction', 'dir', 'wind_direction', 'winddirection', 'wind_dir', 'winddir', 'wd', 'wdir'),
 )
 
 
@@ -58,7 +58,7 @@ def read_csv_wind(
     north to the sensor's zero, likewise. A `FormatError` tells of a column that is missing, a unit
     that is not known, or no good row.
     """
-    WindConvention(direction_convention or "to")  # refused before the file is read
+    WindConvention(direction_convention or 'to')  # refused before the file is read
     return _wind(parse_table(read_lines(path), str(path)), direction_convention, yaw)
 
 
@@ -72,13 +72,13 @@ def read_toa5_wind(
     Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant of them if no columns are
     named.
 
-    ``yaw`` and the convention are as of `read_csv_wind`. A `FormatError` tells of what is not TOA5,
-    of no such columns, or no good row.
+    ``yaw`` and the convention are as of `read_csv_wind`. A `FormatError` tells of what is not
+    TOA5, of no such columns, or no good row.
     """
-    WindConvention(direction_convention or "to")  # refused before the file is read
-    lines, split = read_lines(path), partial(split_row, separator=",")
-    if len(lines) < 4 or not lines[0].lstrip('"').startswith("TOA5"):
-        raise FormatError("not TOA5: its 4 header lines are missing", where=f"{path}:1")
+    WindConvention(direction_convention or 'to')  # refused before the file is read
+    lines, split = read_lines(path), partial(split_row, separator=',')
+    if len(lines) < 4 or not lines[0].lstrip('"').startswith('TOA5'):
+        raise FormatError('not TOA5: its 4 header lines are missing', where=f'{path}:1')
     kept = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
     texts = [lines[number - 1] for number in kept]
     names, units = tuple(split(lines[1])), tuple(split(lines[2]))
@@ -91,7 +91,7 @@ def _wind(
     table: TextTable, convention: str | None, yaw: float, chosen: list[int] | None = None
 ) -> WindRecord:
     """Wind of a table, from the columns chosen or those of the usual names."""
-    clock = table.find(TIME_NAMES, {**TIME_UNITS, "ts": 1.0})
+    clock = table.find(TIME_NAMES, {**TIME_UNITS, 'ts': 1.0})
     if chosen is None:
         found = [table.find(names, SPEED_UNITS) for names in _COMPONENTS]
     else:
@@ -104,10 +104,10 @@ def _wind(
         found = [table.find(_SPEED, SPEED_UNITS), table.find(_DIRECTION, ANGLE_UNITS, pi / 180.0)]
     if clock is None or None in found[:2]:
         raise FormatError(
-            "no time with u and v, or with speed and direction, among "
-            f"{', '.join(table.columns[:20])}",
+            'no time with u and v, or with speed and direction, among '
+            f'{", ".join(table.columns[:20])}',
             where=table.where(),
-            cure="name the columns so in the header, or by the option columns of TOA5",
+            cure='name the columns so in the header, or by the option columns of TOA5',
         )
     columns = [column for column in found if column is not None]
     indices = [column.index for column in columns]
@@ -122,13 +122,13 @@ def _wind(
     else:
         speed, bearing = values[:, 0], values[:, 1] - yaw
         for row in np.flatnonzero(good & (speed < 0.0)).tolist():
-            rows.refuse(table.numbers[row], f"speed is {speed[row]:g}")
+            rows.refuse(table.numbers[row], f'speed is {speed[row]:g}')
         good &= speed >= 0.0
-        against = 1.0 if convention == "to" else -1.0
+        against = 1.0 if convention == 'to' else -1.0
         velocity = against * (speed * np.array([np.sin(bearing), np.cos(bearing), 0.0 * speed])).T
-        convention, yaw = "to", 0.0
+        convention, yaw = 'to', 0.0
     kept = np.flatnonzero(good)
     seconds, epoch = table.seconds(table.cells(clock.index, kept.tolist()), clock.factor)
     rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
-    rows.time = array("d", seconds.tolist())
-    return rows.record(epoch=epoch, yaw=yaw, direction_convention=convention or "to")
+    rows.time = array('d', seconds.tolist())
+    return rows.record(epoch=epoch, yaw=yaw, direction_convention=convention or 'to')

@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from tree_sway_ros.files.file_format import FileFormat, contains, format_of
+from tree_sway_ros.files.file_format import contains, FileFormat, format_of
 from tree_sway_ros.files.text_file import path_of
 from tree_sway_ros.files.wind.bag import read_bag_wind
 from tree_sway_ros.files.wind.nmea import read_nmea_wind
@@ -21,26 +21,26 @@ from tree_sway_ros.files.wind.sonic_ascii import read_sonic_wind
 from tree_sway_ros.files.wind.table import read_csv_wind, read_toa5_wind
 
 WIND_FORMATS = (
-    FileFormat("toa5", (".dat", ".toa5"), contains(r'\A"?TOA5"?,'), read_toa5_wind),
-    FileFormat("nmea", (".nmea", ".log"), contains(r"\$[A-Z]{5},"), read_nmea_wind),
+    FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_toa5_wind),
+    FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
     FileFormat(
-        "sonic",
+        'sonic',
         (),
-        contains(r"^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,|S2? +[\d.]+,? +D +\d)"),
+        contains(r'^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,|S2? +[\d.]+,? +D +\d)'),
         read_sonic_wind,
     ),
     FileFormat(
-        "bag", (".db3", ".mcap"), contains(r"\A(SQLite format 3\0|\ufffdMCAP0\r\n)"), read_bag_wind
+        'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
     ),
     FileFormat(
-        "csv",
-        (".csv", ".tsv", ".txt"),
-        contains(r"(?i)^[^#\n]*\b(time|t|timestamp|stamp|datetime)\b[^\n]*[,;\t]"),
+        'csv',
+        ('.csv', '.tsv', '.txt'),
+        contains(r'(?i)^[^#\n]*\b(time|t|timestamp|stamp|datetime)\b[^\n]*[,;\t]'),
         read_csv_wind,
     ),
 )
 
-EXAMPLES = ("canopy",)
+EXAMPLES = ('canopy',)
 """Winds that come with the package: five minutes of a sonic anemometer over a canopy, 20 Hz."""
 
 
@@ -67,8 +67,8 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
     """
     path = path_of(path)
     if str(path) in EXAMPLES and not path.exists():
-        path = Path(str(files("tree_sway_ros.files.wind").joinpath(f"{path}.csv")))
-    chosen = format_of(path, format, WIND_FORMATS, "wind", folder="bag")
+        path = Path(str(files('tree_sway_ros.files.wind').joinpath(f'{path}.csv')))
+    chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
     chosen.refuse_others(options, chosen.own_options)
     record: WindRecord = chosen.read(path, **options)
     return record

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 import asyncio
-import importlib
-import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import aclosing, suppress
+import importlib
+import threading
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError
@@ -39,7 +39,7 @@ class LineSource:
         silence: float = 10.0,
         first_pause: float = FIRST_PAUSE,
     ) -> None:
-        self._serial = _pyserial() if address.kind == "serial" else None
+        self._serial = _pyserial() if address.kind == 'serial' else None
         self._address = address
         self._take = take
         self._log = log
@@ -49,11 +49,11 @@ class LineSource:
         self._task: asyncio.Task[None] | None = None
         self._is_ending = False
         self._ending = asyncio.Event()
-        self._thread = threading.Thread(target=self._run, name="instrument", daemon=True)
+        self._thread = threading.Thread(target=self._run, name='instrument', daemon=True)
         self.is_up = False
         self.links = 0
         self.lines = 0
-        self.failure = ""
+        self.failure = ''
 
     def start(self) -> None:
         """Start listening."""
@@ -88,27 +88,27 @@ class LineSource:
                 async with aclosing(_READERS[self._address.kind](self)) as chunks:
                     while not self._is_ending:
                         data = await asyncio.wait_for(anext(chunks), self._silence)
-                        for line in lines.feed(data, is_whole=self._address.kind == "udp"):
+                        for line in lines.feed(data, is_whole=self._address.kind == 'udp'):
                             self.lines += 1
                             self._take(line)
             except asyncio.TimeoutError:
-                self._lose(f"nothing for {self._silence:g} s")
+                self._lose(f'nothing for {self._silence:g} s')
             except StopAsyncIteration:
-                self._lose("closed by the other side")
+                self._lose('closed by the other side')
             except Exception as error:  # an instrument may fail in any way, and is tried again
-                self._lose(f"{type(error).__name__}: {error}")
+                self._lose(f'{type(error).__name__}: {error}')
             pause = self._first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
             with suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(self._ending.wait(), pause)
 
     def _gain(self) -> None:
-        self.is_up, self.failure = True, ""
+        self.is_up, self.failure = True, ''
         self.links += 1
-        self._log(f"listening to {self._address}")
+        self._log(f'listening to {self._address}')
 
     def _lose(self, why: str) -> None:
         if self.is_up or why != self.failure:
-            self._log(f"{self._address}: {why}; trying again")
+            self._log(f'{self._address}: {why}; trying again')
         self.is_up, self.failure = False, why
 
     async def _tcp(self) -> AsyncIterator[bytes]:
@@ -122,7 +122,7 @@ class LineSource:
 
     async def _udp(self) -> AsyncIterator[bytes]:
         queue: asyncio.Queue[bytes] = asyncio.Queue(_BACKLOG)
-        place = (self._address.place or "0.0.0.0", self._address.number)
+        place = (self._address.place or '0.0.0.0', self._address.number)
         transport, _ = await self._loop.create_datagram_endpoint(
             lambda: _Datagrams(queue), local_addr=place
         )
@@ -156,17 +156,17 @@ class _Datagrams(asyncio.DatagramProtocol):
 
 
 _READERS: dict[str, Callable[[LineSource], Any]] = {
-    "tcp": LineSource._tcp,
-    "udp": LineSource._udp,
-    "serial": LineSource._port,
+    'tcp': LineSource._tcp,
+    'udp': LineSource._udp,
+    'serial': LineSource._port,
 }
 
 
 def _pyserial() -> Any:
     try:
-        return importlib.import_module("serial")
+        return importlib.import_module('serial')
     except ImportError:
         raise MissingDependencyError(
-            "a serial port needs pyserial, which is not installed",
-            cure="install python3-serial, or pip install pyserial",
+            'a serial port needs pyserial, which is not installed',
+            cure='install python3-serial, or pip install pyserial',
         ) from None

@@ -15,7 +15,7 @@ class Lines:
 
     def __init__(self) -> None:
         self.dropped = 0
-        self._begun = b""
+        self._begun = b''
         self._is_too_long = False
 
     def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[str]:
@@ -23,15 +23,15 @@ class Lines:
         Take bytes, which end a line where they are a whole datagram; return the lines they
         complete.
         """
-        *whole, begun = (self._begun + data).replace(b"\r", b"\n").split(b"\n")
+        *whole, begun = (self._begun + data).replace(b'\r', b'\n').split(b'\n')
         if is_whole:
-            whole, begun = [*whole, begun], b""
+            whole, begun = [*whole, begun], b''
         for line in whole:
             if self._is_too_long or len(line) > LONGEST:
                 self.dropped += 1
                 self._is_too_long = False
             elif line:
-                yield line.decode("ascii", "replace")
+                yield line.decode('ascii', 'replace')
         if len(begun) > LONGEST:
-            begun, self._is_too_long = b"", True
+            begun, self._is_too_long = b'', True
         self._begun = begun

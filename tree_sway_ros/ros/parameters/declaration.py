@@ -23,12 +23,12 @@ from rcl_interfaces.msg import (
 
 from tree_sway_ros.errors import ParameterError, TreeSwayError
 from tree_sway_ros.ros.parameters.parameter import (
-    QOS_PREFIX,
     Parameter,
+    QOS_PREFIX,
     Table,
-    Value,
     unknown_names,
     unknown_parameter,
+    Value,
 )
 
 _LARGEST = {float: 1e308, int: 2**62}
@@ -41,18 +41,18 @@ class ParameterValues:
     Parameters
     ----------
     node
-        Created with ``automatically_declare_parameters_from_overrides=True``, so that what the user
-        gave can be seen, misspelt names included.
+        Created with ``automatically_declare_parameters_from_overrides=True``, so that what the
+        user gave can be seen, misspelt names included.
     table
         The node's parameters.
     on_change
         Called with the new values by name after a live change.
     check
-        Called with all values by name, as they would be, before they are taken, at the start and at
-        each change; raises where they do not go together.
+        Called with all values by name, as they would be, before they are taken, at the start and
+        at each change; raises where they do not go together.
     is_own
-        Whether a name was given to this node alone. What was given to every node of a launch may be
-        unknown to this one, or out of its range: then there is a warning, and the default.
+        Whether a name was given to this node alone. What was given to every node of a launch may
+        be unknown to this one, or out of its range: then there is a warning, and the default.
 
     Raises
     ------
@@ -73,13 +73,13 @@ class ParameterValues:
         self._values: dict[str, Value] = {}
         self._on_change = on_change
         self._check_all = check or (lambda _values: None)
-        given = {name: item.value for name, item in node.get_parameters_by_prefix("").items()}
+        given = {name: item.value for name, item in node.get_parameters_by_prefix('').items()}
         where = f"node '{node.get_name()}'"
         for name in unknown_names(table, given):
             error = unknown_parameter(table, name, where=where)
             if is_own(name):
                 raise error
-            node.get_logger().warning(f"{error}; set for every node, ignored here")
+            node.get_logger().warning(f'{error}; set for every node, ignored here')
             node.undeclare_parameter(name)
         for name in given:
             if name.startswith(QOS_PREFIX):  # declared by the publisher or subscription it is for
@@ -94,7 +94,7 @@ class ParameterValues:
             except ParameterError as error:
                 if is_own(parameter.name):
                     raise
-                node.get_logger().warning(f"{error}; set for every node, ignored here")
+                node.get_logger().warning(f'{error}; set for every node, ignored here')
                 value = parameter.default
             self._values[parameter.name] = value
             node.declare_parameter(
@@ -136,7 +136,7 @@ class ParameterValues:
         except TreeSwayError as error:
             return SetParametersResult(successful=False, reason=str(error))
         except Exception as error:  # the caller gets an answer, whatever a rule stumbles over
-            reason = f"cannot be checked: {type(error).__name__}: {error}"
+            reason = f'cannot be checked: {type(error).__name__}: {error}'
             return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
@@ -159,11 +159,11 @@ def _shown(value: Value) -> Any:
 
 
 def _descriptor(parameter: Parameter) -> ParameterDescriptor:
-    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    unit = f' [{parameter.unit}]' if parameter.unit else ''
     descriptor = ParameterDescriptor(
-        description=f"{parameter.description}{unit}",
+        description=f'{parameter.description}{unit}',
         additional_constraints=parameter.range_text
-        + ("" if parameter.live else " (read at start only)"),
+        + ('' if parameter.live else ' (read at start only)'),
         read_only=not parameter.live,
         dynamic_typing=True,
     )

@@ -10,18 +10,18 @@ the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+import math
 from typing import Any
 
-from tree_sway_ros.errors import ParameterError, nearest
+from tree_sway_ros.errors import nearest, ParameterError
 
 Value = Any  # bool | int | float | str | tuple[float, ...]
 
 # What every ROS 2 node has besides its own.
-_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
-QOS_PREFIX = "qos_overrides."
+_OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+QOS_PREFIX = 'qos_overrides.'
 """Of parameters that change the quality of service of one publisher or subscription."""
 
 
@@ -55,46 +55,46 @@ class Parameter:
     name: str
     default: Value
     description: str
-    unit: str = ""
+    unit: str = ''
     minimum: float | None = None
     maximum: float | None = None
     choices: tuple[str, ...] = ()
     live: bool = False
-    source: str = ""
+    source: str = ''
 
     def checked(self, value: Value) -> Value:
         """
         Convert a value to the parameter's kind.
 
-        A `ParameterError` says what is right: another kind, not finite, out of range, not among the
-        choices.
+        A `ParameterError` says what is right: another kind, not finite, out of range, not among
+        the choices.
         """
         kind = type(self.default)
         if kind is tuple:
             return self._checked_tuple(value)
         value = _of_kind(kind, value)
         if type(value) is not kind:
-            raise self._error(f"{value!r} is not {_KINDS[kind]}")
+            raise self._error(f'{value!r} is not {_KINDS[kind]}')
         if kind in (float, int):
             self._check_range(value)
         if self.choices and value not in self.choices:
-            short = str(value).replace("/msg/", "/")  # either is a type's name to ROS
+            short = str(value).replace('/msg/', '/')  # either is a type's name to ROS
             if short in self.choices:
                 return short
             near = nearest(str(value), self.choices)
-            raise self._error(f"'{value}' is not among its choices", near and f": {near}")
+            raise self._error(f"'{value}' is not among its choices", near and f': {near}')
         return value
 
     @property
     def range_text(self) -> str:
         """The accepted values, for people: ``0 .. 40``, ``to | from``; empty if anything goes."""
         if self.choices:
-            return " | ".join(choice or '""' for choice in self.choices)
+            return ' | '.join(choice or '""' for choice in self.choices)
         if self.minimum is None and self.maximum is None:
-            return ""
-        low = "" if self.minimum is None else f"{self.minimum:g}"
-        high = "" if self.maximum is None else f"{self.maximum:g}"
-        return f"{low} .. {high}"
+            return ''
+        low = '' if self.minimum is None else f'{self.minimum:g}'
+        high = '' if self.maximum is None else f'{self.maximum:g}'
+        return f'{low} .. {high}'
 
     def _checked_tuple(self, value: Value) -> tuple[float, ...]:
         size = len(self.default)
@@ -103,23 +103,23 @@ class Parameter:
         except (TypeError, ValueError):
             numbers = ()
         if isinstance(value, str | bytes) or len(numbers) != size:
-            raise self._error(f"{value!r} is not {size} numbers")
+            raise self._error(f'{value!r} is not {size} numbers')
         for number in numbers:
             self._check_range(number)
         return numbers
 
     def _check_range(self, value: float) -> None:
         if not math.isfinite(value):
-            raise self._error(f"{value} is not finite")
+            raise self._error(f'{value} is not finite')
         below = self.minimum is not None and value < self.minimum
         above = self.maximum is not None and value > self.maximum
         if below or above:
-            raise self._error(f"{value:g} is out of range")
+            raise self._error(f'{value:g} is out of range')
 
-    def _error(self, what: str, advice: str = "") -> ParameterError:
-        limits = f" {self.range_text}" if self.range_text else f" {_KINDS[type(self.default)]}"
-        unit = f" [{self.unit}]" if self.unit else ""
-        cure = f"give{limits}{unit}{advice}"
+    def _error(self, what: str, advice: str = '') -> ParameterError:
+        limits = f' {self.range_text}' if self.range_text else f' {_KINDS[type(self.default)]}'
+        unit = f' [{self.unit}]' if self.unit else ''
+        cure = f'give{limits}{unit}{advice}'
         return ParameterError(what, where=f"parameter '{self.name}'", cure=cure)
 
 
@@ -134,9 +134,9 @@ def _of_kind(kind: type, value: Value) -> Value:
     return value
 
 
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
-_KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a string"}
-_KINDS[tuple] = "a list of numbers"
+_TRUTH = {'true': True, '1': True, 'false': False, '0': False}
+_KINDS = {bool: 'true or false', int: 'a whole number', float: 'a number', str: 'a string'}
+_KINDS[tuple] = 'a list of numbers'
 
 Table = tuple[Parameter, ...]
 
@@ -147,8 +147,8 @@ def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
     return [n for n in names if n not in known and not n.startswith(QOS_PREFIX)]
 
 
-def unknown_parameter(table: Table, name: str, *, where: str = "") -> ParameterError:
+def unknown_parameter(table: Table, name: str, *, where: str = '') -> ParameterError:
     """The error for a name that a table does not have, with the nearest that it has."""
     names = [parameter.name for parameter in table]
-    cure = nearest(name, names) or f"known are: {', '.join(names)}"
+    cure = nearest(name, names) or f'known are: {", ".join(names)}'
     return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)

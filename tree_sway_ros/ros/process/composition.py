@@ -10,9 +10,9 @@ Several nodes in one process, over real DDS: for the demo, for tests, for progra
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import importlib
 import threading
-from collections.abc import Mapping
 from typing import Any
 
 from tree_sway_ros.ros.parameters.parameter import Value
@@ -20,12 +20,12 @@ from tree_sway_ros.ros.process.spin import create, init, require_rclpy
 
 _CHECK_PERIOD = 0.2
 NODE_CLASSES = {
-    "anemometer": ("tree_sway_ros.nodes.anemometer", "AnemometerNode"),
-    "wind": ("tree_sway_ros.nodes.wind", "WindNode"),
-    "solver": ("tree_sway_ros.nodes.solver", "SolverNode"),
-    "player": ("tree_sway_ros.nodes.player", "PlayerNode"),
-    "sensor": ("tree_sway_ros.nodes.sensor", "SensorNode"),
-    "viewer": ("tree_sway_ros.nodes.viewer", "ViewerNode"),
+    'anemometer': ('tree_sway_ros.nodes.anemometer', 'AnemometerNode'),
+    'wind': ('tree_sway_ros.nodes.wind', 'WindNode'),
+    'solver': ('tree_sway_ros.nodes.solver', 'SolverNode'),
+    'player': ('tree_sway_ros.nodes.player', 'PlayerNode'),
+    'sensor': ('tree_sway_ros.nodes.sensor', 'SensorNode'),
+    'viewer': ('tree_sway_ros.nodes.viewer', 'ViewerNode'),
 }
 
 
@@ -47,7 +47,7 @@ class Composition:
         self,
         parameters: Mapping[str, Mapping[str, Value]],
         *,
-        namespace: str = "",
+        namespace: str = '',
         domain_id: int | None = None,
     ) -> None:
         rclpy = require_rclpy()
@@ -65,7 +65,7 @@ class Composition:
         self._executor = SingleThreadedExecutor(context=self.context)
         self._is_closing = False
         self._failure: Exception | None = None
-        self._thread = threading.Thread(target=self._spin, name="executor", daemon=True)
+        self._thread = threading.Thread(target=self._spin, name='executor', daemon=True)
         try:
             for name, values in parameters.items():
                 self.add(name, values, namespace)
@@ -74,7 +74,7 @@ class Composition:
             raise
         self._thread.start()
 
-    def add(self, name: str, values: Mapping[str, Value], namespace: str = "") -> Any:
+    def add(self, name: str, values: Mapping[str, Value], namespace: str = '') -> Any:
         """Start another node of `NODE_CLASSES` in a namespace, with values of its parameters."""
         from rclpy.parameter import Parameter
 
@@ -86,7 +86,7 @@ class Composition:
             use_global_arguments=False,
             parameter_overrides=[Parameter(key, value=value) for key, value in values.items()],
         )
-        self._nodes[f"{namespace}/{name}".lstrip("/")] = node
+        self._nodes[f'{namespace}/{name}'.lstrip('/')] = node
         self._executor.add_node(node)
         return node
 

@@ -4,9 +4,9 @@
 Told to end, a process ends soon, whatever it is doing.
 
 Ctrl-C and SIGTERM set a flag that a loop looks at, or break into what runs before there is a loop.
-Python looks at signals between two of its own instructions, and the compiler of the kernels may not
-come back to one for seconds; so a thread watches as well, and ends the process when the time is
-over.
+Python looks at signals between two of its own instructions, and the compiler of the kernels may
+not come back to one for seconds; so a thread watches as well, and ends the process when the time
+is over.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ class Ending:
     """
     A context that hears SIGINT and SIGTERM; in the main thread only, elsewhere it does nothing.
 
-    Once told to end, nothing that is raised leaves it: what is broken off may complain of anything.
+    Once told to end, nothing that is raised leaves it: what is broken off may complain of
+    anything.
     """
 
     def __init__(self) -> None:
@@ -56,7 +57,7 @@ class Ending:
         self._pipe = os.pipe()
         os.set_blocking(self._pipe[1], False)
         signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
-        threading.Thread(target=self._watch, name="ending", daemon=True).start()
+        threading.Thread(target=self._watch, name='ending', daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> bool:
@@ -83,7 +84,7 @@ class Ending:
 
     def _end_by_all_means(self) -> None:
         """Leaving the graph, the middleware may hold the interpreter: then C ends the process."""
-        self._nowhere = open(os.devnull, "w")
+        self._nowhere = open(os.devnull, 'w')
         faulthandler.dump_traceback_later(self.limit + _GRACE, exit=True, file=self._nowhere)
 
     def _watch(self) -> None:

@@ -10,9 +10,9 @@ that leaves the callback of a service leaves its caller without an answer.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import functools
 import traceback
-from collections.abc import Callable
 from typing import Any
 
 
@@ -23,7 +23,7 @@ class CallbackGuard:
 
     def __init__(self, log: Callable[[str], None]) -> None:
         self.count = 0
-        self.latest = ""
+        self.latest = ''
         self._log = log
         self._places: set[tuple[str, str, int]] = set()
 
@@ -48,13 +48,13 @@ class CallbackGuard:
     def note(self, error: Exception) -> None:
         """Count what was raised; log it if it is the first from its place."""
         self.count += 1
-        self.latest = f"{type(error).__name__}: {error}"
+        self.latest = f'{type(error).__name__}: {error}'
         frames = traceback.extract_tb(error.__traceback__)
         last = frames[-1] if frames else None
-        place = (type(error).__name__, last.filename, last.lineno or 0) if last else ("", "", 0)
+        place = (type(error).__name__, last.filename, last.lineno or 0) if last else ('', '', 0)
         if place not in self._places:
             self._places.add(place)
-            trace = "".join(traceback.format_exception(error)).rstrip()
+            trace = ''.join(traceback.format_exception(error)).rstrip()
             self._log(
-                f"a callback failed, and is counted from now on without further words\n{trace}"
+                f'a callback failed, and is counted from now on without further words\n{trace}'
             )

@@ -11,7 +11,7 @@ from tree_sway_ros.ros.process.spin import create, init, require_rclpy
 
 _LOOK = 0.2  # [s]: so soon a Ctrl-C is seen while nothing comes
 
-_Own = TypeVar("_Own", bound="Listener")
+_Own = TypeVar('_Own', bound='Listener')
 
 
 class Listener:
@@ -28,7 +28,7 @@ class Listener:
 
     """
 
-    def __init__(self, name: str, namespace: str = "", context: Any = None) -> None:
+    def __init__(self, name: str, namespace: str = '', context: Any = None) -> None:
         rclpy = require_rclpy()
         from rclpy.executors import SingleThreadedExecutor
         from rclpy.node import Node

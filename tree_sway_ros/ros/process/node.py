@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
+import sys
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
@@ -19,14 +19,14 @@ from tree_sway_ros.ros.parameters.declaration import ParameterValues
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.origin import own_names
 from tree_sway_ros.ros.process.guard import CallbackGuard
-from tree_sway_ros.ros.process.topics import Topic, message_class, qos_profile
-from tree_sway_ros.ros.reports.diagnostics import WARN, Reporter, Status
+from tree_sway_ros.ros.process.topics import message_class, qos_profile, Topic
+from tree_sway_ros.ros.reports.diagnostics import Reporter, Status, WARN
 
 _ENTITIES = {
-    "publishers": "destroy_publisher",
-    "subscriptions": "destroy_subscription",
-    "services": "destroy_service",
-    "timers": "destroy_timer",
+    'publishers': 'destroy_publisher',
+    'subscriptions': 'destroy_subscription',
+    'services': 'destroy_service',
+    'timers': 'destroy_timer',
 }
 """What a node holds, and what destroys one of it."""
 
@@ -53,9 +53,9 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     def __init__(self, name: str, **options: Any) -> None:
         # Made first: rclpy's own subscriptions and services are guarded as well.
         self.guard = CallbackGuard(lambda text: self.get_logger().error(text))
-        told = {each.name for each in options.get("parameter_overrides") or ()}
-        if options.get("use_global_arguments", True):
-            told |= own_names([*sys.argv, *(options.get("cli_args") or ())], name)
+        told = {each.name for each in options.get('parameter_overrides') or ()}
+        if options.get('use_global_arguments', True):
+            told |= own_names([*sys.argv, *(options.get('cli_args') or ())], name)
         Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)
         self.failure: Exception | None = None
         self.is_done = self.is_active = False
@@ -69,7 +69,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
                 self.check_values,
                 lambda parameter: parameter in told,
             )
-            if self.values.get("lifecycle"):
+            if self.values.get('lifecycle'):
                 self._be_managed()
             else:
                 self.configure()
@@ -132,7 +132,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         LifecycleNodeMixin.__init__(self)
         for service in self._services[n_services:]:
             service.callback = self.guard.wrapped(service.callback)
-        self.get_logger().info("waits for a lifecycle manager to configure and activate it")
+        self.get_logger().info('waits for a lifecycle manager to configure and activate it')
 
     def create_subscription(
         self, kind: Any, topic: str, callback: Any, *more: Any, **named: Any
@@ -219,7 +219,10 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     @property
     def clock_lead(self) -> int:
-        """How far stamps may be ahead of the clock in [ns]: simulated time stands between ticks."""
+        """
+        How far stamps may be ahead of the clock in [ns]: simulated time stands between
+        ticks.
+        """
         return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
@@ -230,21 +233,21 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """Failures of callbacks, and other publishers where there should be none."""
         statuses = []
         if self.guard.count:
-            values = {"failed": self.guard.count, "last": self.guard.latest}
-            statuses.append(Status("callbacks", WARN, f"{self.guard.count} failed", values))
+            values = {'failed': self.guard.count, 'last': self.guard.latest}
+            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
         for topic, told in self._alone.items():
             here = [
-                f"{each.node_namespace.rstrip('/')}/{each.node_name}"
+                f'{each.node_namespace.rstrip("/")}/{each.node_name}'
                 for each in self.get_publishers_info_by_topic(topic)
             ]
             if len(here) < 2:
                 continue
-            names = " and ".join(sorted(here))
-            text = f"{len(here)} nodes publish {topic}: {names}; what they send mixes"
-            statuses.append(Status("topics", WARN, text))
+            names = ' and '.join(sorted(here))
+            text = f'{len(here)} nodes publish {topic}: {names}; what they send mixes'
+            statuses.append(Status('topics', WARN, text))
             if names not in told:
                 told.add(names)
-                self.get_logger().warning(f"{text}; end one, or give it another namespace")
+                self.get_logger().warning(f'{text}; end one, or give it another namespace')
         return statuses
 
     def check_values(self, values: dict[str, Any]) -> None:

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import threading
 import time
-from collections.abc import Callable
 
 AGAIN = 5.0
 """A stage that goes on is said again after so long [s]."""
@@ -24,9 +24,9 @@ class Progress:
         self._log = log
         self._again = again
         self._begin = time.monotonic()
-        self._stage = ""
+        self._stage = ''
         self._over = threading.Event()
-        self._thread = threading.Thread(target=self._repeat, name="progress", daemon=True)
+        self._thread = threading.Thread(target=self._repeat, name='progress', daemon=True)
 
     def stage(self, text: str) -> None:
         """Say what begins."""
@@ -48,4 +48,4 @@ class Progress:
 
     def _repeat(self) -> None:
         while not self._over.wait(self._again):
-            self._log(f"{self._stage}: {self.elapsed:.0f} s so far")
+            self._log(f'{self._stage}: {self.elapsed:.0f} s so far')

@@ -9,24 +9,24 @@ something about it. ROS itself may be missing, so nothing here imports it at the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import ctypes
 import gc
 import importlib
 import os
-import sys
-from collections.abc import Sequence
 from pathlib import Path
+import sys
 from typing import Any
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
 from tree_sway_ros.ros.process.ending import Ending
 
-_BAD_NAMES = ("InvalidNamespaceException", "InvalidNodeNameException")
+_BAD_NAMES = ('InvalidNamespaceException', 'InvalidNodeNameException')
 _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 _M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
 """Of glibc: what is larger [bytes] goes back to the system when it is freed."""
-_PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+_PROFILES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 """Name the file of Fast DDS 2 and of 3."""
 
 
@@ -41,7 +41,7 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
         rclpy = require_rclpy()
         _spin(rclpy, module, node_class, args)
     except TreeSwayError as error:
-        print(f"{module.rsplit('.', 1)[-1]}: {error}", file=sys.stderr)
+        print(f'{module.rsplit(".", 1)[-1]}: {error}', file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         pass
@@ -51,33 +51,41 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
 def require_rclpy() -> Any:
     """Import rclpy; a `MissingDependencyError` says what to do if it is not there."""
     try:
-        return importlib.import_module("rclpy")
+        return importlib.import_module('rclpy')
     except ImportError as error:
         raise MissingDependencyError(
-            f"ROS 2 (rclpy) cannot be imported: {error}",
-            cure="source /opt/ros/jazzy/setup.bash, or run it with python3 .ci/in_venv.py",
+            f'ROS 2 (rclpy) cannot be imported: {error}',
+            cure='source /opt/ros/jazzy/setup.bash, or run it with python3 .ci/in_venv.py',
         ) from None
 
 
-def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
-    """Initialise rclpy; a `TransportError` if the domain or the arguments cannot be used."""
+def init(
+    rclpy: Any, args: Sequence[str] | None = None, profile: str = 'discovery.xml', **options: Any
+) -> None:
+    """
+    Initialise rclpy with one of the profiles beside this file, where the environment names none.
+
+    A `TransportError` if the domain or the arguments cannot be used.
+    """
     # The paced threads must not wait 5 ms for an executor that holds the interpreter.
     sys.setswitchinterval(_SWITCH_INTERVAL)
     # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
-    if hasattr(ctypes.pythonapi, "mallopt"):
+    if hasattr(ctypes.pythonapi, 'mallopt'):
         ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
-    if not any(os.environ.get(name) for name in _PROFILES):
-        os.environ.update(dict.fromkeys(_PROFILES, str(Path(__file__).with_name("discovery.xml"))))
-    domain = os.environ.get("ROS_DOMAIN_ID", "")
+    own = Path(__file__).with_name(profile)
+    named = [os.environ.get(name) for name in _PROFILES]
+    if all(Path(each or own).parent == own.parent for each in named):  # not by the user
+        os.environ.update(dict.fromkeys(_PROFILES, str(own)))
+    domain = os.environ.get('ROS_DOMAIN_ID', '')
     if domain and not (domain.isdecimal() and int(domain) <= 232):
         raise TransportError(
-            f"ROS_DOMAIN_ID={domain} is no domain", cure="use a whole number from 0 to 101"
+            f'ROS_DOMAIN_ID={domain} is no domain', cure='use a whole number from 0 to 101'
         )
     command = None if args is None else [sys.argv[0], *args]
     try:
         rclpy.init(args=command, **options)
     except Exception as error:  # rclpy has a class an error and no common root
-        raise TransportError(f"ROS 2 cannot start: {_first_line(error)}") from error
+        raise TransportError(f'ROS 2 cannot start: {_first_line(error)}') from error
 
 
 def create(make: Any, **options: Any) -> Any:
@@ -86,21 +94,21 @@ def create(make: Any, **options: Any) -> Any:
         return make(**options)
     except Exception as error:
         kind, text = type(error).__name__, _first_line(error)
-        if kind in _BAD_NAMES or "invalid node name" in text:
+        if kind in _BAD_NAMES or 'invalid node name' in text:
             raise TransportError(
-                text.split(", at /")[0].rstrip(":"),
-                where=f"namespace '{options['namespace']}'" if options.get("namespace") else "",
-                cure="use letters, digits and _, levels parted by one /, no digit first",
+                text.split(', at /')[0].rstrip(':'),
+                where=f"namespace '{options['namespace']}'" if options.get('namespace') else '',
+                cure='use letters, digits and _, levels parted by one /, no digit first',
             ) from None
-        if kind != "RCLError":
+        if kind != 'RCLError':
             raise
-        if "security" in text:
-            cure = "use the rclpy of a ROS machine, or unset ROS_SECURITY_ENABLE"
+        if 'security' in text:
+            cure = 'use the rclpy of a ROS machine, or unset ROS_SECURITY_ENABLE'
             raise TransportError(text, cure=cure) from error
-        domain = os.environ.get("ROS_DOMAIN_ID", "0")
+        domain = os.environ.get('ROS_DOMAIN_ID', '0')
         raise TransportError(
-            f"cannot join domain {domain}: {text}",
-            cure="too many processes may be in it, or no network is up: try another ROS_DOMAIN_ID",
+            f'cannot join domain {domain}: {text}',
+            cure='too many processes may be in it, or no network is up: try another ROS_DOMAIN_ID',
         ) from error
 
 
@@ -109,7 +117,8 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
 
     node = None
     with Ending() as ending:
-        init(rclpy, args, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+        no_handlers = rclpy.signals.SignalHandlerOptions.NO
+        init(rclpy, args, 'node.xml', signal_handler_options=no_handlers)
         try:
             node = create(getattr(importlib.import_module(module), node_class))
             gc.freeze()
@@ -130,4 +139,4 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
 
 
 def _first_line(error: Exception) -> str:
-    return str(error).split("\n", 1)[0]
+    return str(error).split('\n', 1)[0]

@@ -10,8 +10,8 @@ everything it holds once a broken link is back.
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import dataclass
+import importlib
 from typing import Any
 
 
@@ -33,76 +33,76 @@ class Topic:
 
 
 WIND = Topic(
-    "wind",
-    "geometry_msgs/msg/Vector3Stamped",
-    "The wind as measured; the type is chosen by `input_type` or `output_type`.",
+    'wind',
+    'geometry_msgs/msg/Vector3Stamped',
+    'The wind as measured; the type is chosen by `input_type` or `output_type`.',
     reliable=False,
     depth=50,
 )
 WIND_FILTERED = Topic(
-    "wind/filtered",
-    "geometry_msgs/msg/Vector3Stamped",
-    "The wind that the trees feel, blowing TO, ENU [m/s]: bad samples refused.",
+    'wind/filtered',
+    'geometry_msgs/msg/Vector3Stamped',
+    'The wind that the trees feel, blowing TO, ENU [m/s]: bad samples refused.',
     depth=40,
 )
 FORCE_PLANE = Topic(
-    "wind/force_plane",
-    "geometry_msgs/msg/PoseStamped",
+    'wind/force_plane',
+    'geometry_msgs/msg/PoseStamped',
     "The plane of the force: x along the wind, z the plane's normal.",
 )
 SEGMENT_POSES = Topic(
-    "segment_poses",
-    "geometry_msgs/msg/PoseArray",
-    "One pose per segment: its origin is the root-side node, x points along the segment [m].",
+    'segment_poses',
+    'geometry_msgs/msg/PoseArray',
+    'One pose per segment: its origin is the root-side node, x points along the segment [m].',
     depth=2,
 )
 MARKERS = Topic(
-    "markers",
-    "visualization_msgs/msg/MarkerArray",
-    "The tree for RViz: one LINE_LIST per class of radii, with fixed ids.",
+    'markers',
+    'visualization_msgs/msg/MarkerArray',
+    'The tree for RViz: one LINE_LIST per class of radii, with fixed ids.',
 )
 TREE_DESCRIPTION = Topic(
-    "tree_description",
-    "std_msgs/msg/String",
-    "The tree as JSON: name, parent, length, radii and branch of each segment; repeated every 5 s.",
+    'tree_description',
+    'std_msgs/msg/String',
+    'The tree as JSON: name, parent, length, radii and branch of each segment; repeated each 5 s.',
     latched=True,
 )
 TREE_STATE = Topic(
-    "tree_state",
-    "sensor_msgs/msg/JointState",
-    "The wind [m/s] and the few coordinates that, with `tree_description`, all poses follow from.",
+    'tree_state',
+    'sensor_msgs/msg/JointState',
+    'The wind [m/s] and the few coordinates that, with `tree_description`, all poses follow from.',
     depth=10,
 )
 DIAGNOSTICS = Topic(
-    "/diagnostics",
-    "diagnostic_msgs/msg/DiagnosticArray",
-    "Rates, age and refusals of the wind, jitter, overruns and the model in use.",
+    '/diagnostics',
+    'diagnostic_msgs/msg/DiagnosticArray',
+    'Rates, age and refusals of the wind, jitter, overruns and the model in use.',
     depth=10,
 )
 CAMERA = Topic(
-    "camera",
-    "geometry_msgs/msg/PoseStamped",
+    'camera',
+    'geometry_msgs/msg/PoseStamped',
     "Where the tree is seen from, in the tree's frame: `auto` keeps its error below "
-    "`tolerance_pixels`.",
+    '`tolerance_pixels`.',
     reliable=False,
 )
 CLOCK = Topic(
-    "/clock",
-    "rosgraph_msgs/msg/Clock",
+    '/clock',
+    'rosgraph_msgs/msg/Clock',
     "The time of the record, where the player's `publish_clock` asks for it.",
     reliable=False,
 )
 TF = Topic(
-    "/tf",
-    "tf2_msgs/msg/TFMessage",
-    "One frame per segment, where `publish_tf` asks for it; read where the wind is in another "
-    "frame.",
+    '/tf',
+    'tf2_msgs/msg/TFMessage',
+    'One frame per segment, where `publish_tf` asks for it; read where the wind is in another '
+    'frame.',
     depth=10,
 )
 TF_STATIC = Topic(
-    "/tf_static",
-    "tf2_msgs/msg/TFMessage",
-    "Read where the wind is in another frame.",
+    '/tf_static',
+    'tf2_msgs/msg/TFMessage',
+    'Read where the wind is in another frame.',
     latched=True,
     depth=100,
 )
@@ -130,12 +130,16 @@ def qos_profile(topic: Topic) -> Any:
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST,
         depth=topic.depth,
-        reliability=ReliabilityPolicy.RELIABLE if topic.reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if topic.latched else DurabilityPolicy.VOLATILE,
+        reliability=ReliabilityPolicy.RELIABLE
+        if topic.reliable
+        else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL
+        if topic.latched
+        else DurabilityPolicy.VOLATILE,
     )
 
 
 def message_class(topic: Topic) -> Any:
     """Class of a topic's messages."""
-    package, _, name = topic.type_name.split("/")
-    return getattr(importlib.import_module(f"{package}.msg"), name)
+    package, _, name = topic.type_name.split('/')
+    return getattr(importlib.import_module(f'{package}.msg'), name)

@@ -41,7 +41,7 @@ def status_array(statuses: list[Status], *, prefix: str, hardware: str, stamp: A
     for status in statuses:
         item = DiagnosticStatus()
         item.level = bytes([status.level])
-        item.name = f"{prefix}: {status.name}"
+        item.name = f'{prefix}: {status.name}'
         item.message = status.message
         item.hardware_id = hardware
         item.values = [
@@ -73,7 +73,7 @@ class Reporter:
         self._publisher.publish(
             status_array(
                 self._collect(),
-                prefix=self._node.get_fully_qualified_name().lstrip("/"),
+                prefix=self._node.get_fully_qualified_name().lstrip('/'),
                 hardware=self._hardware,
                 stamp=self._node.get_clock().now().to_msg(),
             )
@@ -81,4 +81,4 @@ class Reporter:
 
 
 def _text(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f'{value:.6g}' if isinstance(value, float) else str(value)

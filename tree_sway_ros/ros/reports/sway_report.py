@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import asdict
+import time
 
 from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.scene.demand import adaptive_among
@@ -13,16 +13,16 @@ from tree_sway_ros.core.scene.make import simulators_of
 from tree_sway_ros.core.simulator.protocol import Simulator
 from tree_sway_ros.core.wind.gate import GateCounts
 from tree_sway_ros.core.wind.gust_travel import GustHistory
-from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, Status, WARN
 from tree_sway_ros.ros.timing.pacer import Pace, Pacer
 from tree_sway_ros.ros.timing.stepping import Stepper
 
 _WIND = {
-    "none": (WARN, "no wind yet: the tree is at rest"),
-    "live": (OK, "live"),
-    "holding": (OK, "a sample is overdue: the last wind is held"),
-    "decaying": (WARN, "no wind: its force decays"),
-    "stale": (STALE, "no wind: nothing is left of its force"),
+    'none': (WARN, 'no wind yet: the tree is at rest'),
+    'live': (OK, 'live'),
+    'holding': (OK, 'a sample is overdue: the last wind is held'),
+    'decaying': (WARN, 'no wind: its force decays'),
+    'stale': (STALE, 'no wind: nothing is left of its force'),
 }
 
 _SILENCE = 1.0
@@ -52,83 +52,85 @@ class SwayReport:
         skipped = pace.skipped - self._skipped
         self._time, self._frames, self._skipped = now, frames, pace.skipped
         values = {
-            "rate [Hz]": pace.rate,
-            "wanted [Hz]": rate,
-            "published [Hz]": published,
-            "late p50 [s]": pace.late_p50,
-            "late p95 [s]": pace.late_p95,
-            "late max [s]": pace.late_max,
-            "work [s]": pace.work_mean,
-            "frames": frames,
-            "skipped": pace.skipped,
-            "clock forward": pace.clamped,
-            "clock back": pace.restarts,
+            'rate [Hz]': pace.rate,
+            'wanted [Hz]': rate,
+            'published [Hz]': published,
+            'late p50 [s]': pace.late_p50,
+            'late p95 [s]': pace.late_p95,
+            'late max [s]': pace.late_max,
+            'work [s]': pace.work_mean,
+            'frames': frames,
+            'skipped': pace.skipped,
+            'clock forward': pace.clamped,
+            'clock back': pace.restarts,
         }
         if pace.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
-            return Status("output", WARN, f"no frame for {pace.silence:.1f} s", values)
+            return Status('output', WARN, f'no frame for {pace.silence:.1f} s', values)
         if skipped > 0.01 * rate:
-            late = f"{1e3 * pace.late_p95:.1f} ms late (p95)"
-            return Status("output", WARN, f"{skipped} frames skipped, {late}", values)
-        return Status("output", OK, f"{pace.rate:.1f} Hz", values)
+            late = f'{1e3 * pace.late_p95:.1f} ms late (p95)'
+            return Status('output', WARN, f'{skipped} frames skipped, {late}', values)
+        return Status('output', OK, f'{pace.rate:.1f} Hz', values)
 
 
 def _wind(state: str, counts: GateCounts) -> Status:
     level, sentence = _WIND[state]
-    values = {"state": state, "refused": counts.refused, **asdict(counts)}
-    return Status("wind", level, sentence, values)
+    values = {'state': state, 'refused': counts.refused, **asdict(counts)}
+    return Status('wind', level, sentence, values)
 
 
 def _model(simulator: Simulator) -> Status:
     values = {
-        "fidelity": simulator.model,
-        "branches solved": simulator.n_solved,
-        "branches copied": simulator.n_copied,
-        "branches frozen": simulator.n_frozen,
+        'fidelity': simulator.model,
+        'branches solved': simulator.n_solved,
+        'branches copied': simulator.n_copied,
+        'branches frozen': simulator.n_frozen,
         **asdict(simulator.counts),
     }
     trees = simulators_of(simulator)
     if trees != (simulator,):
-        values |= {f"fidelity of {each.tree.name}": each.model for each in trees}
+        values |= {f'fidelity of {each.tree.name}': each.model for each in trees}
     used = [each.shown if isinstance(each, AdaptiveSimulator) else each for each in trees]
     banks = [each.bank.oscillators for each in used]
     outside = [bank.n_outside for bank in banks if bank.is_tabled]
     if outside:
-        values["steps outside of the wind basis"] = sum(outside)
+        values['steps outside of the wind basis'] = sum(outside)
     adaptive = adaptive_among(trees)
     if adaptive:
         worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
-        values["chosen"] = ", ".join(dict.fromkeys(each.choice.name for each in adaptive))
-        values["estimated error [m]"] = worst.choice.error
-        values["tolerance [m]"] = worst.tolerance
+        values['chosen'] = ', '.join(dict.fromkeys(each.choice.name for each in adaptive))
+        values['estimated error [m]'] = worst.choice.error
+        values['tolerance [m]'] = worst.tolerance
         cost, budget = (
             sum(each.frame_cost for each in adaptive),
             sum(each.budget for each in adaptive),
         )
-        values["estimated cost [us]"] = cost
-        values["budget [us]"] = budget
+        values['estimated cost [us]'] = cost
+        values['budget [us]'] = budget
         if 0.0 < budget < cost:
-            what = f"no model is within the budget; allow {cost:.3g} us for {values['chosen']}"
-            return Status("model", WARN, what, values)
+            what = f'no model is within the budget; allow {cost:.3g} us for {values["chosen"]}'
+            return Status('model', WARN, what, values)
         if worst.choice.error > worst.tolerance:
-            nearest = f"allow {worst.choice.error:.2g} m for {worst.choice.name}"
-            what = f"no model is within the tolerance; {nearest}"
+            nearest = f'allow {worst.choice.error:.2g} m for {worst.choice.name}'
+            what = f'no model is within the tolerance; {nearest}'
             return Status(
-                "model", WARN, what if len(trees) == 1 else f"{worst.tree.name}: {what}", values
+                'model', WARN, what if len(trees) == 1 else f'{worst.tree.name}: {what}', values
             )
-    return Status("model", OK, simulator.model, values)
+    return Status('model', OK, simulator.model, values)
 
 
 def _gusts(history: GustHistory) -> Status:
     """How late the trees of a forest feel the wind."""
     values = {
-        "longest delay [s]": float(history.delay.max()),
-        "trees upwind of the anemometer": history.n_ahead,
-        "trees beyond the memory": history.n_forgotten,
+        'longest delay [s]': float(history.delay.max()),
+        'trees upwind of the anemometer': history.n_ahead,
+        'trees beyond the memory': history.n_forgotten,
     }
     if history.n_ahead:
-        what = f"{history.n_ahead} trees stand upwind of the anemometer and feel the wind at once"
-        return Status("gusts", WARN, what, values)
+        what = f'{history.n_ahead} trees stand upwind of the anemometer and feel the wind at once'
+        return Status('gusts', WARN, what, values)
     if history.n_forgotten:
-        what = f"{history.n_forgotten} trees stand too far downwind: they feel the oldest wind kept"
-        return Status("gusts", WARN, what, values)
-    return Status("gusts", OK, f"up to {values['longest delay [s]']:.1f} s late", values)
+        what = (
+            f'{history.n_forgotten} trees stand too far downwind: they feel the oldest wind kept'
+        )
+        return Status('gusts', WARN, what, values)
+    return Status('gusts', OK, f'up to {values["longest delay [s]"]:.1f} s late', values)

@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import asdict
+import time
 
 from tree_sway_ros.core.wind.gate import WindGate
-from tree_sway_ros.ros.reports.diagnostics import OK, STALE, WARN, Status
+from tree_sway_ros.ros.reports.diagnostics import OK, STALE, Status, WARN
 
 _WINDOW = 5.0
 _PERIODS = 3.0
@@ -62,31 +62,32 @@ class WindReport:
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
-        Report, by what the gate refused or found odd, and the types on the topic that are not read.
+        Report, by what the gate refused or found odd, and the types on the topic that are not
+        read.
 
-        The wind counts as lost when its last good sample is older than a timeout [s]; three periods
-        of a sensor that is slower.
+        The wind counts as lost when its last good sample is older than a timeout [s]; three
+        periods of a sensor that is slower.
         """
         age, timeout = self.age, max(timeout, _PERIODS * self._period)
         values: dict[str, object] = {
-            "rate [Hz]": self.rate,
-            "age [s]": "never" if age is None else age,
-            "refused": gate.counts.refused,
+            'rate [Hz]': self.rate,
+            'age [s]': 'never' if age is None else age,
+            'refused': gate.counts.refused,
             **asdict(gate.counts),
         }
         if age is None:
-            refused = f"; {gate.counts.refused} samples refused" if gate.counts.refused else ""
+            refused = f'; {gate.counts.refused} samples refused' if gate.counts.refused else ''
             others = (
-                f"; set input_type to read {', '.join(types_not_read)}" if types_not_read else ""
+                f'; set input_type to read {", ".join(types_not_read)}' if types_not_read else ''
             )
-            return Status("wind", WARN, f"no wind yet{refused}{others}", values)
+            return Status('wind', WARN, f'no wind yet{refused}{others}', values)
         if age > STALE_AFTER * timeout:
-            return Status("wind", STALE, f"no wind for {age:.0f} s", values)
+            return Status('wind', STALE, f'no wind for {age:.0f} s', values)
         if age > timeout:
-            return Status("wind", WARN, f"no wind for {age:.1f} s, its force decays", values)
+            return Status('wind', WARN, f'no wind for {age:.1f} s, its force decays', values)
         if gate.is_frozen:
-            return Status("wind", WARN, "frozen: the sensor repeats the same sample", values)
+            return Status('wind', WARN, 'frozen: the sensor repeats the same sample', values)
         if gate.is_sluggish:
-            text = "sluggish: the sensor passes slow changes alone, is its bearing free?"
-            return Status("wind", WARN, text, values)
-        return Status("wind", OK, f"{self.rate:.1f} Hz", values)
+            text = 'sluggish: the sensor passes slow changes alone, is its bearing free?'
+            return Status('wind', WARN, text, values)
+        return Status('wind', OK, f'{self.rate:.1f} Hz', values)

@@ -9,9 +9,9 @@ has reached the solver before it steps to that time, and where it skips no frame
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 import threading
 import time
-from collections.abc import Callable, Mapping
 
 from tree_sway_ros.errors import ParameterError
 
@@ -34,7 +34,7 @@ def required(text: str) -> dict[str, int]:
     """
     wanted: dict[str, int] = {}
     for word in text.split():
-        topic, _, number = word.partition(":")
+        topic, _, number = word.partition(':')
         if not topic or (number and not number.isdecimal()):
             raise ParameterError(
                 f"'{word}' names no topic and number of subscribers",
@@ -54,20 +54,20 @@ class Audience:
         self._wanted = wanted
         self._count = count
         self._log = log
-        self._said = ""
+        self._said = ''
         self._complete: float | None = None
 
     def is_there(self) -> bool:
         """Whether all have listened for `SETTLING`; asked again and again until true."""
         here = {topic: self._count(topic) for topic in self._wanted}
         missing = [
-            f"{topic} ({here[topic]} of {number})"
+            f'{topic} ({here[topic]} of {number})'
             for topic, number in self._wanted.items()
             if here[topic] < number
         ]
         if missing:
             self._complete = None
-            self._say(f"waiting for subscribers of {', '.join(missing)}")
+            self._say(f'waiting for subscribers of {", ".join(missing)}')
             return False
         if self._complete is None:
             self._complete = time.monotonic()

@@ -3,26 +3,27 @@
 """
 A thread that works at a fixed rate, on a grid of absolute times of a ROS clock.
 
-Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same record
-tick at the same times. The number of periods since the last tick is counted from the clock, never
-from the calls: a late tick reports how many it stands for, and what was missed is skipped, never
-made up for in a burst. Simulated time is followed: paused, nothing ticks; set back, the next tick
-says so.
+Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same
+record tick at the same times. The number of periods since the last tick is counted from the clock,
+never from the calls: a late tick reports how many it stands for, and what was missed is skipped,
+never made up for in a burst. Simulated time is followed: paused, nothing ticks; set back, the next
+tick says so.
 """
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 import logging
 import threading
 import time
-from collections import deque
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 LONGEST_STEP = 500_000_000
-"""A tick never stands for more time than this [ns]: a clock that jumped forward is no long step."""
+"""A tick never stands for more time than this [ns]: a clock that jumped forward is no long
+step."""
 PATIENCE = 10
 """So many ticks may fail one after another before the thread gives up."""
 _BACK = 100_000_000
@@ -91,7 +92,7 @@ class Pacer:
         self._stopping = False
         self._recent: deque[tuple[float, int, float]] = deque(maxlen=_WINDOW)
         self._ticks = self._skipped = self._clamped = self._restarts = 0
-        self._thread = threading.Thread(target=self._run, name="pacer", daemon=True)
+        self._thread = threading.Thread(target=self._run, name='pacer', daemon=True)
         self._jumps: Any = None
 
     def start(self) -> None:
@@ -153,7 +154,7 @@ class Pacer:
                 self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
                 self._ticks += 1
         except Exception as error:
-            _log.debug("pacer stopped", exc_info=True)
+            _log.debug('pacer stopped', exc_info=True)
             if not self._stopping:
                 self._on_error(error)
 

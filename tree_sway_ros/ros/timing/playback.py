@@ -3,15 +3,15 @@
 """
 A wind record in time: when each sample is due, at any speed, around and around.
 
-Time goes on over the seam of a loop: a period after the last sample of one round comes the first of
-the next, so whoever follows the stamps or /clock never sees time go back.
+Time goes on over the seam of a loop: a period after the last sample of one round comes the first
+of the next, so whoever follows the stamps or /clock never sees time go back.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 import heapq
 import itertools
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -30,8 +30,8 @@ _MARGIN = 86_400.0
 
 class Event(NamedTuple):
     """
-    Something to publish: its time since the playback began and when it is due, in the record's time
-    [s].
+    Something to publish: its time since the playback began and when it is due, in the record's
+    time [s].
 
     The row is -1 for a tick of /clock; what goes ahead is due before its time.
     """
@@ -43,7 +43,8 @@ class Event(NamedTuple):
 
 def is_ros_time(epoch: float | None, time: NDArray[np.float64]) -> bool:
     """
-    Whether a record can be played with its own dates: the times [s] after an epoch, or without one.
+    Whether a record can be played with its own dates: the times [s] after an epoch, or without
+    one.
     """
     if epoch is None or not len(time):
         return True
@@ -90,12 +91,16 @@ class Playback:
         self.first_row = int(np.searchsorted(time, time[0] + start)) if len(time) else 0
         self._time = time[self.first_row :]
         if not len(self._time):
-            raise FormatError(f"no sample {start:g} s into the record", cure="give a smaller start")
+            raise FormatError(
+                f'no sample {start:g} s into the record', cure='give a smaller start'
+            )
         self._epoch = epoch
         self._loop = loop
         self._clock_period = clock_period
         steps = np.diff(self._time)
-        self.round = float(self._time[-1] - self._time[0] + (np.median(steps) if len(steps) else 1))
+        self.round = float(
+            self._time[-1] - self._time[0] + (np.median(steps) if len(steps) else 1)
+        )
         self.goes_ahead = ahead
 
     @property

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import threading
 import time
-from collections.abc import Callable
 
 from tree_sway_ros.ros.timing.handshake import SETTLING
 from tree_sway_ros.ros.timing.playback import Playback
@@ -19,10 +19,10 @@ class PlaybackThread:
     """
     Plays the events of a record at so many times real time, once ``may_start`` is true.
 
-    Stamps are the record's own time where it drives /clock, else the wall time at which each sample
-    is due. Should the machine sleep, the playback goes on from where it was, without a burst.
-    `publish` is called with the row of the record (-1: a tick of /clock) and the stamp in [ns];
-    `on_error` with what it raised.
+    Stamps are the record's own time where it drives /clock, else the wall time at which each
+    sample is due. Should the machine sleep, the playback goes on from where it was, without a
+    burst. `publish` is called with the row of the record (-1: a tick of /clock) and the stamp in
+    [ns]; `on_error` with what it raised.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class PlaybackThread:
         self._position = 0.0
         self._samples = 0
         self._stalls = 0
-        self._thread = threading.Thread(target=self._run, name="playback", daemon=True)
+        self._thread = threading.Thread(target=self._run, name='playback', daemon=True)
 
     def start(self) -> None:
         """Start playing, as soon as `may_start` says so."""
@@ -60,10 +60,10 @@ class PlaybackThread:
     def progress(self) -> dict[str, float]:
         """How far it is, for reports."""
         return {
-            "position [s]": self._position % self._playback.round,
-            "rounds": float(self._position // self._playback.round),
-            "samples": float(self._samples),
-            "stalls": float(self._stalls),
+            'position [s]': self._position % self._playback.round,
+            'rounds': float(self._position // self._playback.round),
+            'samples': float(self._samples),
+            'stalls': float(self._stalls),
         }
 
     def _run(self) -> None:

@@ -4,19 +4,20 @@
 From ticks to steps: each period of the grid is solved with the mean wind over that very period.
 
 A sample of the wind is handed on when the steps reach its time, not when it arrives: as long as it
-arrives within `wind_delay`, a run over the same record gives the same numbers, whatever the network
-did.
+arrives within `wind_delay`, a run over the same record gives the same numbers, whatever the
+network did.
 
-A late tick stands for several periods. They are solved one by one, so that lateness leaves no trace
-in the motion; only where a step costs more than half a period are they joined to one long step,
-which the exact propagator takes without harm, so that a slow machine never falls further behind.
+A late tick stands for several periods. They are solved one by one, so that lateness leaves no
+trace in the motion; only where a step costs more than half a period are they joined to one long
+step, which the exact propagator takes without harm, so that a slow machine never falls further
+behind.
 """
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from collections.abc import Callable
+import time
 
 from numpy.typing import ArrayLike
 
@@ -56,13 +57,13 @@ class Stepper:
         self._origin = 0
         self._felt = 0.0
         self._cost = 0.0
-        self.wind_state = "none"
+        self.wind_state = 'none'
         """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
 
     def warm_up(self) -> float:
         """
-        Have the kernels compiled or loaded before the first frame is due; return what a frame takes
-        in [us].
+        Have the kernels compiled or loaded before the first frame is due; return what a frame
+        takes in [us].
         """
         wind = self._make_wind()
         wind.add(0.0, (1.0, 0.0, 0.0))

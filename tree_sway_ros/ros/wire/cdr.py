@@ -6,15 +6,15 @@ Messages as bytes: serialised once by rclpy, then their numbers overwritten in p
 Building 1000 Python Pose objects per frame costs 400 times what copying their bytes does. So a
 message of the right size is serialised once, with sentinels where its stamps and numbers will
 stand; the sentinels are looked up in the bytes, whatever the layout, and become array views. Every
-float64 of CDR lies 8-aligned from byte 4 on; the buffer is shifted so that the views are aligned in
-memory as well.
+float64 of CDR lies 8-aligned from byte 4 on; the buffer is shifted so that the views are aligned
+in memory as well.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import math
 import struct
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from tree_sway_ros.errors import TransportError
 _LITTLE_ENDIAN = 1
 # Patterns that no other field of a message holds: a stamp's second and a number's value.
 _STAMP = 0x5EC0_0000
-_NUMBER = struct.unpack("<d", bytes.fromhex("0000c3d2e1f05a41"))[0]
+_NUMBER = struct.unpack('<d', bytes.fromhex('0000c3d2e1f05a41'))[0]
 
 
 class CdrTemplate:
@@ -41,8 +41,8 @@ class CdrTemplate:
     shapes
         Shape of each marked block, in the order of their numbers; an empty block needs no mark.
     tail
-        Bytes of the message after its last block, where the serialiser leaves some behind them that
-        strict readers refuse; None to keep all.
+        Bytes of the message after its last block, where the serialiser leaves some behind them
+        that strict readers refuse; None to keep all.
 
     Raises
     ------
@@ -63,11 +63,11 @@ class CdrTemplate:
 
         data = bytes(serialize_message(message))
         if data[1] != _LITTLE_ENDIAN:
-            raise TransportError("the middleware writes big endian messages")
+            raise TransportError('the middleware writes big endian messages')
         if tail is not None:
             last = len(shapes) - 1
             size = 8 * math.prod(shapes[last])
-            data = data[: _find(data, struct.pack("<d", _NUMBER + last)) + size + tail]
+            data = data[: _find(data, struct.pack('<d', _NUMBER + last)) + size + tail]
         self._size = len(data)
         backing = np.zeros(self._size + 8, dtype=np.uint8)
         # Byte 4 of the message at a multiple of 8 in memory.
@@ -75,13 +75,13 @@ class CdrTemplate:
         self._buffer = backing[self._shift : self._shift + self._size]
         self._buffer[:] = np.frombuffer(data, dtype=np.uint8)
         self._stamps = [
-            self._view(_find(data, struct.pack("<i", _STAMP + i)), np.int32, (2,))
+            self._view(_find(data, struct.pack('<i', _STAMP + i)), np.int32, (2,))
             for i in range(n_stamps)
         ]
         self.blocks: list[NDArray[np.float64]] = [
             np.zeros(shape)
             if 0 in shape
-            else self._view(_find(data, struct.pack("<d", _NUMBER + i)), np.float64, shape)
+            else self._view(_find(data, struct.pack('<d', _NUMBER + i)), np.float64, shape)
             for i, shape in enumerate(shapes)
         ]
         for block in self.blocks:
@@ -105,7 +105,7 @@ def mark_stamp(stamp: Any, number: int = 0) -> None:
 
 def stamp_of(data: bytes) -> int:
     """Stamp of a serialised message that begins with a header, in [ns]."""
-    second, nanosecond = struct.unpack_from("<iI", data, 4)
+    second, nanosecond = struct.unpack_from('<iI', data, 4)
     return int(second * 1_000_000_000 + nanosecond)
 
 
@@ -132,5 +132,5 @@ def pose_array_template(n_poses: int, frame_id: str) -> CdrTemplate:
 def _find(data: bytes, pattern: bytes) -> int:
     offset = data.find(pattern)
     if offset < 0 or data.find(pattern, offset + 1) >= 0:
-        raise TransportError("a message is not laid out as expected")
+        raise TransportError('a message is not laid out as expected')
     return offset

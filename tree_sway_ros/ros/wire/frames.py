@@ -8,11 +8,11 @@ Read here and not by tf2's buffer, so that its messages are all that is needed.
 
 from __future__ import annotations
 
-import math
-import time
 from bisect import bisect
 from collections import deque
 from collections.abc import Iterable
+import math
+import time
 from typing import Any, NamedTuple
 
 from scipy.spatial.transform import Rotation, Slerp
@@ -50,11 +50,11 @@ class Frames:
             turn = (q.x, q.y, q.z, q.w)
             if not 0.5 < math.hypot(*turn) < 2.0:  # NaN is not, either
                 continue
-            child = each.child_frame_id.strip("/")
+            child = each.child_frame_id.strip('/')
             if child not in self._links and len(self._links) >= _MOST:
                 continue
             stamp = 0 if is_static else stamp_to_ns(each.header.stamp)
-            link = _Link(stamp, each.header.frame_id.strip("/"), turn)
+            link = _Link(stamp, each.header.frame_id.strip('/'), turn)
             links = self._links.setdefault(child, deque(maxlen=_KEPT))
             if links and (links[-1].stamp >= stamp or links[-1].parent != link.parent):
                 links.clear()
@@ -62,14 +62,14 @@ class Frames:
 
     def rotation(self, frame: str, base: str, stamp: int) -> Floats | None:
         """
-        Rotation (3, 3) that turns vectors of a frame into those of another; None where no way leads
-        there.
+        Rotation (3, 3) that turns vectors of a frame into those of another; None where no way
+        leads there.
 
         The stamp is in [ns]: between two transforms by interpolation; the nearest beyond them, and
         the latest at 0.
         """
-        down = self._way_up(base.strip("/"), stamp)
-        for ancestor, turn in self._way_up(frame.strip("/"), stamp).items():
+        down = self._way_up(base.strip('/'), stamp)
+        for ancestor, turn in self._way_up(frame.strip('/'), stamp).items():
             if ancestor in down:
                 return (down[ancestor].inv() * turn).as_matrix()
         return None
@@ -93,15 +93,15 @@ class FrameListener:
         self._frames = Frames()
         self._said: set[str] = set()
         self._until = time.monotonic() + _PATIENCE
-        self._lack = "no transform between the two on /tf"
-        self.text, self.is_lacking, self.is_waiting = "", False, False
+        self._lack = 'no transform between the two on /tf'
+        self.text, self.is_lacking, self.is_waiting = '', False, False
         try:
             node.subscription(TF, lambda told: self._frames.take(told.transforms))
             node.subscription(
                 TF_STATIC, lambda told: self._frames.take(told.transforms, is_static=True)
             )
         except ImportError:
-            self._until, self._lack = 0.0, "tf2_msgs is not installed"
+            self._until, self._lack = 0.0, 'tf2_msgs is not installed'
 
     def rotation(self, frame: str, stamp: int) -> Floats | None:
         """Rotation from a frame into the base at a time [ns], (3, 3); None if there is none."""

@@ -13,14 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.ros.wire.cdr import CdrTemplate, block_mark, mark_stamp
+from tree_sway_ros.ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
 
 _BARK = (0.36, 0.25, 0.17, 1.0)
 _TWIG = (0.30, 0.45, 0.20, 1.0)
 
 
 class TreeMarkers:
-    """The markers of one tree, with so many line widths; classes without a segment are left out."""
+    """
+    The markers of one tree, with so many line widths; classes without a segment are left
+    out.
+    """
 
     def __init__(self, tree: Tree, frame_id: str, n_classes: int) -> None:
         from geometry_msgs.msg import Point

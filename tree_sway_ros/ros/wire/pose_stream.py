@@ -19,7 +19,7 @@ from tree_sway_ros.ros.process.topics import MARKERS, SEGMENT_POSES, TF, TREE_DE
 from tree_sway_ros.ros.timing.stepping import Divider
 from tree_sway_ros.ros.wire.cdr import pose_array_template
 from tree_sway_ros.ros.wire.markers import TreeMarkers
-from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD, describe, tree_hash
+from tree_sway_ros.ros.wire.tree_description import describe, REPEAT_PERIOD, tree_hash
 from tree_sway_ros.ros.wire.wind_messages import fill_stamp
 
 
@@ -28,20 +28,20 @@ class PoseStream:
 
     def __init__(self, node: Any, tree: Tree, leaves: LeafClusters | None = None) -> None:
         values = node.values
-        frame_id = values["frame_id"]
+        frame_id = values['frame_id']
         self.frames = 0
         self.hash = tree_hash(tree)
-        shown = f"{frame_id}#{self.hash}" if values["hash_in_frame"] else frame_id
+        shown = f'{frame_id}#{self.hash}' if values['hash_in_frame'] else frame_id
         self._template = pose_array_template(tree.n_segments, shown)
         self.poses = self._template.blocks[0]
         self._pose_publisher = node.publisher(SEGMENT_POSES, alone=True)
         self._pose_divider, self._marker_divider = Divider(), Divider()
         self._marker_every = 0
-        if values["marker_rate"] > 0.0:
-            self._marker_every = max(1, math.ceil(values["rate"] / values["marker_rate"]))
-            self._markers = TreeMarkers(tree, frame_id, values["marker_classes"])
+        if values['marker_rate'] > 0.0:
+            self._marker_every = max(1, math.ceil(values['rate'] / values['marker_rate']))
+            self._markers = TreeMarkers(tree, frame_id, values['marker_classes'])
             self._marker_publisher = node.publisher(MARKERS)
-        self._transforms = _Transforms(node, tree, frame_id) if values["publish_tf"] else None
+        self._transforms = _Transforms(node, tree, frame_id) if values['publish_tf'] else None
         self._description = String(data=describe(tree, frame_id, leaves))
         self._description_publisher = node.publisher(TREE_DESCRIPTION)
         self._timer = node.create_timer(
@@ -52,7 +52,7 @@ class PoseStream:
     def tell_more(self, content: dict[str, Any]) -> None:
         """Add to the description, from any thread, and publish it."""
         whole = {**json.loads(self._description.data), **content}
-        self._description = String(data=json.dumps(whole, separators=(",", ":")))
+        self._description = String(data=json.dumps(whole, separators=(',', ':')))
         self.publish_description()
 
     def publish_description(self) -> None:
@@ -83,24 +83,27 @@ class PoseStream:
 
 
 class _Transforms:
-    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100 of them."""
+    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100 of
+    them.
+    """
 
     def __init__(self, node: Any, tree: Tree, frame_id: str) -> None:
         try:
-            message_class = importlib.import_module("tf2_msgs.msg").TFMessage
+            message_class = importlib.import_module('tf2_msgs.msg').TFMessage
         except ImportError:
             raise MissingDependencyError(
-                "publish_tf needs tf2_msgs, which is not installed",
-                cure="install ros-jazzy-tf2-msgs, or leave publish_tf false",
+                'publish_tf needs tf2_msgs, which is not installed',
+                cure='install ros-jazzy-tf2-msgs, or leave publish_tf false',
             ) from None
         from geometry_msgs.msg import TransformStamped
 
         self._publisher = node.publisher(TF)
         self._message = message_class()
-        # Frames are one space for all trees: what a namespace holds apart on topics, names do here.
-        prefix = "/".join(filter(None, (node.get_namespace().strip("/"), tree.name)))
+        # Frames are one space for all trees: what a namespace holds apart on topics, names do
+        # here.
+        prefix = '/'.join(filter(None, (node.get_namespace().strip('/'), tree.name)))
         for name in tree.segment_names:
-            transform = TransformStamped(child_frame_id=f"{prefix}/{name}")
+            transform = TransformStamped(child_frame_id=f'{prefix}/{name}')
             transform.header.frame_id = frame_id
             self._message.transforms.append(transform)
 

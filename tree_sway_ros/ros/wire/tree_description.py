@@ -3,8 +3,8 @@
 """
 The tree as JSON: what the poses do not say, once, for whoever draws them.
 
-Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of the
-old form would go wrong; new keys alone do not raise it.
+Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of
+the old form would go wrong; new keys alone do not raise it.
 """
 
 from __future__ import annotations
@@ -34,25 +34,25 @@ def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> s
     """
     return json.dumps(
         {
-            **({} if leaves is None else {"leaves": leaf_list(leaves)}),
-            "version": VERSION,
-            "name": tree.name,
-            "hash": tree_hash(tree),
-            "species": tree.species,
-            "frame_id": frame_id,
-            "segments": {
-                "names": list(tree.segment_names),
-                "parents": tree.segment_parent.tolist(),
-                "lengths": tree.length.tolist(),
-                "base_radii": (tree.base_diameter / 2.0).tolist(),
-                "tip_radii": (tree.tip_diameter / 2.0).tolist(),
-                "branches": tree.branch_of_segment.tolist(),
+            **({} if leaves is None else {'leaves': leaf_list(leaves)}),
+            'version': VERSION,
+            'name': tree.name,
+            'hash': tree_hash(tree),
+            'species': tree.species,
+            'frame_id': frame_id,
+            'segments': {
+                'names': list(tree.segment_names),
+                'parents': tree.segment_parent.tolist(),
+                'lengths': tree.length.tolist(),
+                'base_radii': (tree.base_diameter / 2.0).tolist(),
+                'tip_radii': (tree.tip_diameter / 2.0).tolist(),
+                'branches': tree.branch_of_segment.tolist(),
             },
-            "branches": {
-                "names": list(tree.branch_names),
-                "parents": tree.branch_parent.tolist(),
-                "first_segments": tree.branch_first[:-1].tolist(),
+            'branches': {
+                'names': list(tree.branch_names),
+                'parents': tree.branch_parent.tolist(),
+                'first_segments': tree.branch_first[:-1].tolist(),
             },
         },
-        separators=(",", ":"),
+        separators=(',', ':'),
     )

@@ -17,9 +17,9 @@ from sensor_msgs.msg import JointState
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.ros.wire.cdr import CdrTemplate, block_mark, mark_stamp
+from tree_sway_ros.ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
 
-WIND_NAMES = ("wind/x", "wind/y", "wind/z")
+WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')
 """Wind at the anemometer, blowing to, in [m/s]; the first numbers of a state."""
 
 
@@ -43,19 +43,19 @@ def read_state(message: Any) -> tuple[Floats, Floats]:
     """
     if tuple(message.name[:3]) != WIND_NAMES or len(message.name) != len(message.position):
         raise FormatError(
-            f"{len(message.position)} positions of {len(message.name)} names",
-            where="tree_state",
-            cure=f"send {', '.join(WIND_NAMES)} and then the coordinates",
+            f'{len(message.position)} positions of {len(message.name)} names',
+            where='tree_state',
+            cure=f'send {", ".join(WIND_NAMES)} and then the coordinates',
         )
     values = np.array(message.position, dtype=np.float64)
     if not np.isfinite(values).all():
-        raise FormatError("a state that is not finite", where="tree_state")
+        raise FormatError('a state that is not finite', where='tree_state')
     return values[:3], values[3:]
 
 
 def state_entry(description: bytes) -> dict[str, str]:
     """What `tree_description` says of the state: the binary description of doc/streaming.md."""
-    return {"format": "doc/streaming.md", "base64": base64.b64encode(description).decode("ascii")}
+    return {'format': 'doc/streaming.md', 'base64': base64.b64encode(description).decode('ascii')}
 
 
 def read_state_entry(content: Any) -> bytes | None:
@@ -64,12 +64,12 @@ def read_state_entry(content: Any) -> bytes | None:
 
     A `FormatError` tells of what `state_entry` does not write.
     """
-    entry = content.get("state") if isinstance(content, dict) else None
+    entry = content.get('state') if isinstance(content, dict) else None
     if entry is None:
         return None
     try:
-        return base64.b64decode(entry["base64"], validate=True)
+        return base64.b64decode(entry['base64'], validate=True)
     except (ValueError, KeyError, TypeError) as error:
         raise FormatError(
-            f"a state that is not base64 ({error})", where="tree_description"
+            f'a state that is not base64 ({error})', where='tree_description'
         ) from None

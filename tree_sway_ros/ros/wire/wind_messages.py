@@ -9,8 +9,8 @@ sign, frame) is for `core.wind_convention` to know.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
+import math
 from typing import Any, NamedTuple
 
 from geometry_msgs.msg import (
@@ -67,7 +67,7 @@ def wind_class(type_name: str) -> Any:
         return _CLASSES[type_name]
     except KeyError:
         raise ParameterError(
-            f"'{type_name}' is no wind type", cure=f"use one of: {', '.join(_CLASSES)}"
+            f"'{type_name}' is no wind type", cure=f'use one of: {", ".join(_CLASSES)}'
         ) from None
 
 
@@ -81,9 +81,9 @@ def wind_from_message(message: Any) -> WindSample:
     vector = _VECTORS[type(message)](message)
     if type(message) is TwistWithCovarianceStamped and message.twist.covariance[0] == -1.0:
         vector = Vector3(x=math.nan, y=math.nan, z=math.nan)
-    header = getattr(message, "header", None)
+    header = getattr(message, 'header', None)
     if header is None:
-        return WindSample(0, "", vector.x, vector.y, vector.z)
+        return WindSample(0, '', vector.x, vector.y, vector.z)
     return WindSample(stamp_to_ns(header.stamp), header.frame_id, vector.x, vector.y, vector.z)
 
 
@@ -92,7 +92,7 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
     message = message_class()
     vector = _VECTORS[message_class](message)
     vector.x, vector.y, vector.z = float(sample.u), float(sample.v), float(sample.w)
-    if hasattr(message, "header"):
+    if hasattr(message, 'header'):
         fill_stamp(message.header.stamp, sample.stamp)
         message.header.frame_id = sample.frame_id
     return message

@@ -33,7 +33,8 @@ class Branch:
 
     def run(self, loads: Array, state: Array | None = None, dtype: Any = np.float64) -> Array:
         """
-        States after each frame, (steps + 1, 4), from s-loads W / k1, (steps, 3), means over frames.
+        States after each frame, (steps + 1, 4), from s-loads W / k1, (steps, 3), means over
+        frames.
 
         """
         start = np.zeros(4) if state is None else np.asarray(state)
@@ -45,7 +46,9 @@ class Branch:
             start.astype(dtype),
         )
 
-    def truth(self, wind: Any, steps: int, state: Array | None = None, substeps: int = 32) -> Array:
+    def truth(
+        self, wind: Any, steps: int, state: Array | None = None, substeps: int = 32
+    ) -> Array:
         """
         Chord after each frame, (steps + 1, 3), from s-load as a function of time (k,) -> (k, 3).
 

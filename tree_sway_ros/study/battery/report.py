@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
-import json as json_module
-import time
 from collections.abc import Iterable
 from importlib import import_module
+import json as json_module
 from pathlib import Path
+import time
 from types import ModuleType
 
 from tree_sway_ros.errors import ParameterError
@@ -16,11 +16,11 @@ from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.study.battery.row import Row
 
 CASES = {
-    "T1": "t01_free_decay", "T2": "t02_damping", "T3": "t03_drift", "T4": "t04_gains",
-    "T5": "t05_predictor", "T6": "t06_tiny_steps", "T7": "t07_mass_ratio", "T8": "t08_degenerate",
-    "T9": "t09_strong_wind", "T10": "t10_buckling", "T11": "t11_parallel", "T12": "t12_turns",
-    "T13": "t13_past_right_angle", "T14": "t14_redundant_pin", "T15": "t15_stalls",
-    "T16": "t16_exactness", "T17": "t17_bad_samples", "T18": "t18_adversary", "goals": "goals",
+    'T1': 't01_free_decay', 'T2': 't02_damping', 'T3': 't03_drift', 'T4': 't04_gains',
+    'T5': 't05_predictor', 'T6': 't06_tiny_steps', 'T7': 't07_mass_ratio', 'T8': 't08_degenerate',
+    'T9': 't09_strong_wind', 'T10': 't10_buckling', 'T11': 't11_parallel', 'T12': 't12_turns',
+    'T13': 't13_past_right_angle', 'T14': 't14_redundant_pin', 'T15': 't15_stalls',
+    'T16': 't16_exactness', 'T17': 't17_bad_samples', 'T18': 't18_adversary', 'goals': 'goals',
 }  # fmt: skip
 
 
@@ -36,9 +36,9 @@ def load_case(name: str) -> ModuleType:
     """
     if name not in CASES:
         raise ParameterError(
-            f"unknown case {name!r}", where="battery", cure="take one of " + ", ".join(CASES)
+            f'unknown case {name!r}', where='battery', cure='take one of ' + ', '.join(CASES)
         )
-    return import_module(f"{__package__}.rows.{CASES[name]}")
+    return import_module(f'{__package__}.rows.{CASES[name]}')
 
 
 def run_battery(
@@ -68,22 +68,22 @@ def run_battery(
         started = time.perf_counter()
         rows: list[Row] = case.run(full)
         seconds = time.perf_counter() - started
-        print(f"{name}  {case.TITLE}  ({seconds:.1f} s)")
+        print(f'{name}  {case.TITLE}  ({seconds:.1f} s)')
         for row in rows:
-            print(f"    {row.case:<58} {row.must_hold:<46} {row.measured:<40} {row.verdict}")
+            print(f'    {row.case:<58} {row.must_hold:<46} {row.measured:<40} {row.verdict}')
             failed += not row.good
         failed += not rows  # a case that measures nothing has shown nothing
         total += len(rows)
         report.append(
             {
-                "case": name,
-                "title": case.TITLE,
-                "seconds": round(seconds, 2),
-                "rows": [{**vars(row), "good": row.good} for row in rows],
+                'case': name,
+                'title': case.TITLE,
+                'seconds': round(seconds, 2),
+                'rows': [{**vars(row), 'good': row.good} for row in rows],
             }
         )
-    print(f"{total - failed} of {total} rows as they should be")
+    print(f'{total - failed} of {total} rows as they should be')
     if json is not None:
-        document = {"full": full, "failed": failed, "cases": report}
-        write_text_whole(json, json_module.dumps(document, indent=1) + "\n")
+        document = {'full': full, 'failed': failed, 'cases': report}
+        write_text_whole(json, json_module.dumps(document, indent=1) + '\n')
     return 1 if failed else 0

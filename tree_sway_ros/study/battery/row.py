@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-PASS, FAIL = "pass", "FAIL"
-REPRODUCED, NOT_REPRODUCED = "failure reproduced", "FAILURE NOT SEEN"
+PASS, FAIL = 'pass', 'FAIL'
+REPRODUCED, NOT_REPRODUCED = 'failure reproduced', 'FAILURE NOT SEEN'
 
 
 @dataclass(frozen=True)

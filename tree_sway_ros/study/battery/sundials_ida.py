@@ -1,21 +1,21 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-SUNDIALS IDA on the paper's multiplier form: the method of a solver library beside ours, where it is
-installed.
+SUNDIALS IDA on the paper's multiplier form: the method of a solver library beside ours, where it
+is installed.
 
-Its unknowns are those of `radau_ggl` (Gear, Leimkuhler & Gupta, 1985), q, v, lam and mu. It chooses
-its own steps and order (BDF 1 to 5, Hindmarsh et al., 2005) and is asked for an answer once a
-frame. The multipliers are left out of its error test, for in a form of index 2 they are an order
-less smooth.
+Its unknowns are those of `radau_ggl` (Gear, Leimkuhler & Gupta, 1985), q, v, lam and mu. It
+chooses its own steps and order (BDF 1 to 5, Hindmarsh et al., 2005) and is asked for an answer
+once a frame. The multipliers are left out of its error test, for in a form of index 2 they are an
+order less smooth.
 
 """
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from importlib.util import find_spec
+import time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +30,7 @@ from tree_sway_ros.study.methods.operation_count import counted, flops, plain
 
 Array = NDArray[Any]
 
-NAME = "sundials_ida"
+NAME = 'sundials_ida'
 NODES = (0.0, 0.5, 1.0)
 """Fractions of a frame at which it is told the load; between them a parabola."""
 
@@ -47,7 +47,7 @@ class IdaRun(NamedTuple):
 
 def is_installed() -> bool:
     """Whether scikit-sundae is there."""
-    return find_spec("sksundae") is not None
+    return find_spec('sksundae') is not None
 
 
 @kernel
@@ -93,7 +93,7 @@ def run_ida(chain: PlanarChain, loads: Array, dt: float, first: Array) -> IdaRun
     """
     if not is_installed():
         raise MissingDependencyError(
-            "scikit-sundae is not installed", where=NAME, cure="pip install scikit-sundae"
+            'scikit-sundae is not installed', where=NAME, cure='pip install scikit-sundae'
         )
     from sksundae.ida import IDA
 
@@ -131,8 +131,8 @@ def run_ida(chain: PlanarChain, loads: Array, dt: float, first: Array) -> IdaRun
 
 def _operations(table: Array, y: Array, rate: Array, load: Array) -> tuple[int, int]:
     """
-    Operations of an iteration, residual and back-substitution; and of a matrix, by differences, and
-    its factors.
+    Operations of an iteration, residual and back-substitution; and of a matrix, by differences,
+    and its factors.
 
     """
     n = len(y)

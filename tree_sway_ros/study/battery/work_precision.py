@@ -8,21 +8,21 @@ six.
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
+import time
 from typing import Any
 
-import numpy as np
 from numba import njit
+import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.study.battery import sundials_ida
 from tree_sway_ros.study.methods.chain import PlanarChain, uniform_chain
 from tree_sway_ros.study.methods.method import Method
-from tree_sway_ros.study.methods.operation_count import CountedNumber, counted, flops, plain
-from tree_sway_ros.study.methods.registry import METHODS, method_named
+from tree_sway_ros.study.methods.operation_count import counted, CountedNumber, flops, plain
+from tree_sway_ros.study.methods.registry import method_named, METHODS
 from tree_sway_ros.study.methods.trajectory import integrate, sample
 from tree_sway_ros.tools.progress import bar
 
@@ -85,7 +85,7 @@ def winds(n: int) -> dict[str, Wind]:
     def spread(wind: Wind) -> Wind:
         return lambda t: np.asarray(np.repeat(wind(t)[:, None, :] / n, n, axis=1))
 
-    return {"smooth": spread(smooth), "gusty": spread(gusty), "turning": spread(turning)}
+    return {'smooth': spread(smooth), 'gusty': spread(gusty), 'turning': spread(turning)}
 
 
 def loads_for(method: Method, wind: Wind, name: str, rate: int) -> Array:
@@ -95,7 +95,7 @@ def loads_for(method: Method, wind: Wind, name: str, rate: int) -> Array:
 
 def _loads_at(nodes: tuple[float, ...], wind: Wind, name: str, rate: int) -> Array:
     steps = int(SECONDS * rate)
-    if name != "gusty":
+    if name != 'gusty':
         return sample(wind, nodes, 1 / rate, steps)
     middles = tuple((np.arange(MEAN_POINTS) + 0.5) / MEAN_POINTS)
     means = sample(wind, middles, 1 / rate, steps).mean(1)
@@ -116,7 +116,9 @@ def flops_a_step(method: Method, chain: PlanarChain, wind: Wind, rate: int) -> i
 
 
 @njit  # type: ignore[untyped-decorator, unused-ignore]
-def _repeat(step: Any, table: Array, state: Array, loads: Array, dt: float, options: Array) -> None:
+def _repeat(
+    step: Any, table: Array, state: Array, loads: Array, dt: float, options: Array
+) -> None:
     for k in range(len(loads)):
         step(table, state, loads[k], dt, options)
 
@@ -139,10 +141,10 @@ def measure(
 ) -> list[Point]:
     """Run every method in every wind at every rate."""
     points = []
-    for n, system in ((1, "1 segment"), (6, "6 segments")):
+    for n, system in ((1, '1 segment'), (6, '6 segments')):
         chain = uniform_chain(n, 2.0, 0.05)
         blowing = winds(n)
-        reference = method_named("radau_ggl")
+        reference = method_named('radau_ggl')
         fine = REFERENCE_RATE[n]
         truth = {
             name: integrate(
@@ -154,11 +156,11 @@ def measure(
             ).theta
             for name, wind in blowing.items()
         }
-        unit = seconds_a_step(method_named("semi_implicit_euler"), chain, blowing["smooth"], 60)
-        for key in bar(methods, f"methods, {system}"):
+        unit = seconds_a_step(method_named('semi_implicit_euler'), chain, blowing['smooth'], 60)
+        for key in bar(methods, f'methods, {system}'):
             method = method_named(key)
-            wall = seconds_a_step(method, chain, blowing["smooth"], 60) / unit
-            cost = flops_a_step(method, chain, blowing["smooth"], 60)
+            wall = seconds_a_step(method, chain, blowing['smooth'], 60) / unit
+            cost = flops_a_step(method, chain, blowing['smooth'], 60)
             for rate in rates:
                 for name, wind in blowing.items():
                     run = integrate(
@@ -207,7 +209,7 @@ def _points_of_ida(
             points.append(
                 Point(
                     sundials_ida.NAME,
-                    "multiplier",
+                    'multiplier',
                     system,
                     name,
                     rate,

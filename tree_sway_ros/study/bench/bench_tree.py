@@ -64,7 +64,8 @@ def bench_tree(
         for order in range(len(children) - 1, -1, -1):
             more = children[order] / _CHILDREN[order]
             thicker[order] = thicker[order + 1] * np.sqrt(more)
-    # Base, direction, order and the segment it sits on, of the branches that are still to be built.
+    # Base, direction, order and the segment it sits on, of the branches that are still to be
+    # built.
     waiting = [(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0, -1)]
     for number, (base, direction, order, carrying) in enumerate(waiting):
         length = thicker[order] ** (2.0 / 3.0) * _LENGTH[order]
@@ -91,7 +92,7 @@ def bench_tree(
         np.array(diameter),
         parent=np.array(parent),
         branch=np.array(branch),
-        name=f"bench{len(waiting)}",
+        name=f'bench{len(waiting)}',
     )
 
 

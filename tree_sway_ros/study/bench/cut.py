@@ -8,8 +8,8 @@ matter.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
+import time
 
 import numpy as np
 
@@ -68,12 +68,12 @@ def unevenness(by_cut: dict[int, float]) -> float:
 def cut_table(rounds: int) -> str:
     """Time all models and lay out what is found."""
     lines = [
-        "solve [us], segments per branch"
-        + "".join(f"{cut:9}" for cut in CUTS)
-        + "   most over least"
+        'solve [us], segments per branch'
+        + ''.join(f'{cut:9}' for cut in CUTS)
+        + '   most over least'
     ]
-    for model in ("branch", "subtree", "modes"):
+    for model in ('branch', 'subtree', 'modes'):
         by_cut = time_cuts(model, rounds)
-        times = "".join(f"{1e6 * spent:9.1f}" for spent in by_cut.values())
-        lines.append(f"  {model:27}{times}   {100.0 * unevenness(by_cut):+13.1f} %")
-    return "\n".join(lines)
+        times = ''.join(f'{1e6 * spent:9.1f}' for spent in by_cut.values())
+        lines.append(f'  {model:27}{times}   {100.0 * unevenness(by_cut):+13.1f} %')
+    return '\n'.join(lines)

@@ -22,9 +22,9 @@ from tree_sway_ros.study.bench.measured import Measured
 from tree_sway_ros.study.chart.fidelity import simulated_wind
 from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
 from tree_sway_ros.study.compare.with_mujoco import (
+    compare_with_mujoco,
     DAMPING_RATIO,
     FRAME,
-    compare_with_mujoco,
     mujoco_tips,
     without_twist,
 )
@@ -56,27 +56,27 @@ def race_engines(tree: Tree | None = None, seconds: float = _SECONDS) -> list[Me
         If MuJoCo is not installed.
 
     """
-    if importlib.util.find_spec("mujoco") is None:
+    if importlib.util.find_spec('mujoco') is None:
         raise MissingDependencyError(
-            "the race needs MuJoCo, which is not installed", cure="pip install mujoco"
+            'the race needs MuJoCo, which is not installed', cure='pip install mujoco'
         )
     tree = tree if tree is not None else bench_tree()
     time, velocity = simulated_wind(seconds, seed=1)
     wind = frame_means(time, velocity, FRAME)[: round(seconds / FRAME)]
     rows, engine = [], np.zeros(2)
-    for model in bar(("wind_basis", "modes"), "models against MuJoCo"):
+    for model in bar(('wind_basis', 'modes'), 'models against MuJoCo'):
         told = compare_with_mujoco(tree, species_named(tree.species), wind, model=model)
         rows += [
-            Measured(f"{model}, solve and place", 1e6 * told.cost * FRAME, "us"),
-            Measured(f"{model}, error over motion", told.error, "-"),
-            Measured(f"{model}, MuJoCo's time over its own", told.speed_up, "-"),
+            Measured(f'{model}, solve and place', 1e6 * told.cost * FRAME, 'us'),
+            Measured(f'{model}, error over motion', told.error, '-'),
+            Measured(f"{model}, MuJoCo's time over its own", told.speed_up, '-'),
         ]
         engine[:] = told.mujoco_cost, told.error_at_60
     rows += [
-        Measured("MuJoCo at 1/60 s", float(1e6 * engine[0] * FRAME), "us"),
-        Measured("MuJoCo at 1/60 s, error over motion", float(engine[1]), "-"),
+        Measured('MuJoCo at 1/60 s', float(1e6 * engine[0] * FRAME), 'us'),
+        Measured('MuJoCo at 1/60 s, error over motion', float(engine[1]), '-'),
     ]
-    return rows + (_dart(tree, wind) if importlib.util.find_spec("dartpy") else [])
+    return rows + (_dart(tree, wind) if importlib.util.find_spec('dartpy') else [])
 
 
 def _dart(tree: Tree, wind: Floats) -> list[Measured]:
@@ -87,6 +87,6 @@ def _dart(tree: Tree, wind: Floats) -> list[Measured]:
     truth = mujoco_tips(MujocoTree(tree, wood, DAMPING_RATIO), wind, 32)
     tips, cost = DartTree(MujocoTree(tree, wood, DAMPING_RATIO, even=False), FRAME).race(wind)
     return [
-        Measured("DART at 1/60 s", 1e6 * cost, "us"),
-        Measured("DART at 1/60 s, error over motion", tip_error(tree, tips, truth), "-"),
+        Measured('DART at 1/60 s', 1e6 * cost, 'us'),
+        Measured('DART at 1/60 s, error over motion', tip_error(tree, tips, truth), '-'),
     ]

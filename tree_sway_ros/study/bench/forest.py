@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
+import time
 
 import numpy as np
 
 from tree_sway_ros.core.scene.forest import Forest
 from tree_sway_ros.core.scene.placed_tree import PlacedTree
-from tree_sway_ros.study.bench.bench_tree import SEGMENTS_A_BRANCH, bench_tree
+from tree_sway_ros.study.bench.bench_tree import bench_tree, SEGMENTS_A_BRANCH
 from tree_sway_ros.study.bench.step import gusts
 
 RATE = 60.0
@@ -69,7 +69,7 @@ def bench_forest(n_trees: int, model: str, segments_a_branch: int = SEGMENTS_A_B
     return Forest(
         [
             PlacedTree(
-                f"tree{i}",
+                f'tree{i}',
                 tree,
                 x=_SPACING * (i % columns),
                 y=_SPACING * (i // columns),
@@ -109,14 +109,14 @@ def time_forest(forest: Forest, frames: int = 600) -> ForestTiming:
 
 def forest_table(n_trees: int = N_TREES) -> str:
     """Time the forest on the two models for many branches and lay out what is found."""
-    timings = [time_forest(bench_forest(n_trees, model)) for model in ("branch", "subtree")]
+    timings = [time_forest(bench_forest(n_trees, model)) for model in ('branch', 'subtree')]
     size = timings[0]
     lines = [
-        f"{size.n_trees} trees, {size.n_branches} branches, {size.n_segments} segments at "
-        f"{RATE:g} Hz",
-        "share of a core    solve    place      sum   median",
+        f'{size.n_trees} trees, {size.n_branches} branches, {size.n_segments} segments at '
+        f'{RATE:g} Hz',
+        'share of a core    solve    place      sum   median',
     ]
     for timing in timings:
         shares = timing.solve, timing.place, timing.solve + timing.place, timing.median
-        lines.append(f"  {timing.model:13}" + "".join(f"{100.0 * each:7.2f} %" for each in shares))
-    return "\n".join(lines)
+        lines.append(f'  {timing.model:13}' + ''.join(f'{100.0 * each:7.2f} %' for each in shares))
+    return '\n'.join(lines)

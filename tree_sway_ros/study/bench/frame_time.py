@@ -8,8 +8,8 @@ machine.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
+import time
 from typing import NamedTuple
 
 import numpy as np

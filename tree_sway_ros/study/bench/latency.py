@@ -22,7 +22,7 @@ _START = 120.0
 
 
 def time_latency(
-    tree: str = "benjamina", rate: float = 60.0, seconds: float = 10.0
+    tree: str = 'benjamina', rate: float = 60.0, seconds: float = 10.0
 ) -> list[Measured]:
     """
     Send winds to a solver in another process and wait for its poses.
@@ -50,11 +50,11 @@ def time_latency(
     """
     environment = isolated(os.getpid() + 1)
     os.environ.update(environment)
-    program = "from tree_sway_ros.nodes.executables import solver; raise SystemExit(solver())"
-    told = ["-p", f"tree:={tree}", "-p", f"rate:={rate}", "-p", "fidelity:=wind_basis"]
-    command = [sys.executable, "-c", program, "--ros-args", *told]
-    import rclpy
+    program = 'from tree_sway_ros.nodes.executables import solver; raise SystemExit(solver())'
+    told = ['-p', f'tree:={tree}', '-p', f'rate:={rate}', '-p', 'fidelity:=wind_basis']
+    command = [sys.executable, '-c', program, '--ros-args', *told]
     from geometry_msgs.msg import PoseArray, Vector3Stamped
+    import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.qos import QoSProfile
 
@@ -65,18 +65,18 @@ def time_latency(
         message = Vector3Stamped()
         now = time.time_ns()
         message.header.stamp.sec, message.header.stamp.nanosec = divmod(now, 1_000_000_000)
-        message.header.frame_id = "map"
+        message.header.frame_id = 'map'
         message.vector.x = 5.0 + 0.01 * (len(winds) % 7)
         publisher.publish(message)
         winds.append(now)
 
     rclpy.init()
     try:
-        node = rclpy.create_node("bench_latency")
-        publisher = node.create_publisher(Vector3Stamped, "wind/filtered", QoSProfile(depth=5))
+        node = rclpy.create_node('bench_latency')
+        publisher = node.create_publisher(Vector3Stamped, 'wind/filtered', QoSProfile(depth=5))
         node.create_subscription(
             PoseArray,
-            "segment_poses",
+            'segment_poses',
             lambda data: poses.append((stamp_of(data), time.time_ns())),
             QoSProfile(depth=5),
             raw=True,
@@ -84,7 +84,7 @@ def time_latency(
         node.create_timer(1.0 / _WIND_RATE, blow)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        with waiting("a solver in another process"):
+        with waiting('a solver in another process'):
             child = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
             begun = time.monotonic()
             try:
@@ -103,16 +103,16 @@ def time_latency(
     finally:
         rclpy.try_shutdown()
     if not poses:
-        raise TransportError("the solver sent no poses", where=tree, cure="run it by itself first")
+        raise TransportError('the solver sent no poses', where=tree, cure='run it by itself first')
     stamps, arrivals = np.array(poses).T
     first = np.searchsorted(stamps, winds)
     moved = first < len(stamps)
     late = 1e-6 * (arrivals[first[moved]] - np.array(winds)[moved])
     p50, p99 = np.quantile(late, [0.5, 0.99]).tolist()
     return [
-        Measured("start to first pose", start, "s"),
-        Measured("wind to pose, p50", p50, "ms"),
-        Measured("wind to pose, p99", p99, "ms"),
-        Measured("p50 in periods", p50 * rate / 1e3, "-"),
-        Measured("p99 in periods", p99 * rate / 1e3, "-"),
+        Measured('start to first pose', start, 's'),
+        Measured('wind to pose, p50', p50, 'ms'),
+        Measured('wind to pose, p99', p99, 'ms'),
+        Measured('p50 in periods', p50 * rate / 1e3, '-'),
+        Measured('p99 in periods', p99 * rate / 1e3, '-'),
     ]

@@ -12,14 +12,14 @@ import time
 
 def stamp_of(data: bytes) -> int:
     """Time in [ns] in the header of a message in little-endian CDR."""
-    seconds, nanoseconds = struct.unpack_from("<iI", data, 4)
+    seconds, nanoseconds = struct.unpack_from('<iI', data, 4)
     return int(seconds) * 1_000_000_000 + int(nanoseconds)
 
 
-def main(seconds: float, topic: str = "bench/segment_poses") -> None:
+def main(seconds: float, topic: str = 'bench/segment_poses') -> None:
     """Listen until no frame has come for a second, at most so long after the first."""
-    import rclpy
     from geometry_msgs.msg import PoseArray
+    import rclpy
     from rclpy.qos import QoSProfile
 
     stamps: list[int] = []
@@ -30,7 +30,7 @@ def main(seconds: float, topic: str = "bench/segment_poses") -> None:
         stamps.append(stamp_of(data))
 
     rclpy.init()
-    node = rclpy.create_node("bench_listener")
+    node = rclpy.create_node('bench_listener')
     node.create_subscription(PoseArray, topic, hear, QoSProfile(depth=5), raw=True)
     executor = rclpy.executors.SingleThreadedExecutor()
     executor.add_node(node)
@@ -44,8 +44,8 @@ def main(seconds: float, topic: str = "bench/segment_poses") -> None:
             break
     spent = time.process_time() - cpu
     rclpy.try_shutdown()
-    print(json.dumps({"stamps": stamps, "arrivals": arrivals, "cpu": spent}))
+    print(json.dumps({'stamps': stamps, 'arrivals': arrivals, 'cpu': spent}))
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main(float(sys.argv[1]))

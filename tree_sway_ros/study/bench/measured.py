@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+import json
 from pathlib import Path
 from typing import Any
 
@@ -47,17 +47,17 @@ def read_baseline(path: str | Path) -> dict[str, float]:
 
     """
     try:
-        rows = json.loads(read_text(Path(path)))["measured"]
-        return {str(row["name"]): float(row["value"]) for row in rows}
+        rows = json.loads(read_text(Path(path)))['measured']
+        return {str(row['name']): float(row['value']) for row in rows}
     except (ValueError, KeyError, TypeError) as error:
         raise FormatError(
-            "no figures of a benchmark", where=str(path), cure="give a file of bench --json"
+            'no figures of a benchmark', where=str(path), cure='give a file of bench --json'
         ) from error
 
 
 def as_json(rows: Sequence[Measured], **told: Any) -> str:
     """Return figures and what else is told as JSON."""
-    return json.dumps({**told, "measured": [asdict(row) for row in rows]}, indent=2) + "\n"
+    return json.dumps({**told, 'measured': [asdict(row) for row in rows]}, indent=2) + '\n'
 
 
 def table(rows: Sequence[Measured], baseline: dict[str, float] | None = None) -> str:
@@ -65,12 +65,12 @@ def table(rows: Sequence[Measured], baseline: dict[str, float] | None = None) ->
     width = max(len(row.name) for row in rows)
     lines = []
     for row in rows:
-        line = f"  {row.name:{width}}  {row.value:10.4g} {row.unit}"
+        line = f'  {row.name:{width}}  {row.value:10.4g} {row.unit}'
         before = (baseline or {}).get(row.name)
         if before:
-            line += f"   {row.value / before:.2f} of the baseline"
+            line += f'   {row.value / before:.2f} of the baseline'
         lines.append(line)
-    return "\n".join(lines)
+    return '\n'.join(lines)
 
 
 def draw(rows: Sequence[Measured], path: str | Path, title: str) -> None:
@@ -89,7 +89,7 @@ def draw(rows: Sequence[Measured], path: str | Path, title: str) -> None:
     figure = new_figure(8.0, 0.8 + 0.35 * len(shown))
     axes = figure.subplots()
     axes.barh([row.name for row in shown][::-1], [row.value for row in shown][::-1])
-    axes.set_xscale("log")
-    axes.set_xlabel(f"[{unit}]")
+    axes.set_xscale('log')
+    axes.set_xlabel(f'[{unit}]')
     axes.set_title(title)
     save_figure(figure, path)

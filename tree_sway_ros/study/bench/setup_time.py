@@ -9,8 +9,8 @@ What is compiled and kept on disk is loaded before, by setting a small tree up.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
+import time
 
 from tree_sway_ros.core.simulator.settings import MODELS
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
@@ -51,12 +51,13 @@ def time_setups(tree: Tree, models: Sequence[str]) -> dict[str, float]:
 
 def setup_table() -> str:
     """
-    Time all models on the tree of the other benchmarks and on a big one, and lay out what is found.
+    Time all models on the tree of the other benchmarks and on a big one, and lay out what is
+    found.
 
     """
     models = MODELS[1:]
-    lines = ["set-up [s]" + " " * 26 + "".join(f"{model:>9}" for model in models)]
+    lines = ['set-up [s]' + ' ' * 26 + ''.join(f'{model:>9}' for model in models)]
     for tree in (bench_tree(), bench_tree(children=_CHILDREN)):
-        times = "".join(f"{each:9.2f}" for each in time_setups(tree, models).values())
-        lines.append(f"  {tree.n_branches:5} branches, {tree.n_segments:6} segments  {times}")
-    return "\n".join(lines)
+        times = ''.join(f'{each:9.2f}' for each in time_setups(tree, models).values())
+        lines.append(f'  {tree.n_branches:5} branches, {tree.n_segments:6} segments  {times}')
+    return '\n'.join(lines)

@@ -8,9 +8,11 @@ joined again, and a shard is killed. Needs Linux, root and ``ip`` of iproute2.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 import contextlib
 import json
 import os
+from pathlib import Path
 import select
 import shutil
 import signal
@@ -18,8 +20,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,10 +30,10 @@ from tree_sway_ros.study.bench.measured import Measured
 from tree_sway_ros.study.bench.stream import isolated
 from tree_sway_ros.tools.progress import waiting
 
-_HOSTS = ("treesway0", "treesway1")
+_HOSTS = ('treesway0', 'treesway1')
 _START, _RUN_IN, _AFTER, _BACK = 120.0, 4.0, 4.0, 16.0
-_SOLVER = "from tree_sway_ros.nodes.executables import solver; raise SystemExit(solver())"
-_SIDE = [sys.executable, "-m", "tree_sway_ros.study.bench.shard_side"]
+_SOLVER = 'from tree_sway_ros.nodes.executables import solver; raise SystemExit(solver())'
+_SIDE = [sys.executable, '-m', 'tree_sway_ros.study.bench.shard_side']
 
 
 def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
@@ -63,21 +63,23 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
         _joined_hosts(),
         contextlib.ExitStack() as children,
     ):
-        stand = Path(folder, "stand.csv")
-        rows = [f"{5.0 * i},0,{('pine', 'oak')[i % 2]},{8.0 + 0.1 * i:.1f}" for i in range(n_trees)]
-        stand.write_text("\n".join(["x,y,species,height", *rows]) + "\n", encoding="utf-8")
-        with waiting("the whole stand on one host"), contextlib.ExitStack() as alone:
+        stand = Path(folder, 'stand.csv')
+        rows = [
+            f'{5.0 * i},0,{("pine", "oak")[i % 2]},{8.0 + 0.1 * i:.1f}' for i in range(n_trees)
+        ]
+        stand.write_text('\n'.join(['x,y,species,height', *rows]) + '\n', encoding='utf-8')
+        with waiting('the whole stand on one host'), contextlib.ExitStack() as alone:
             whole, side = _start(alone, stand, 1)
             one = _Load(whole, side)
             heard_alone = _end(side)
-        with waiting("two hosts with a shard each"):
+        with waiting('two hosts with a shard each'):
             shards, sides = _start(children, stand, 2)
             both = _Load(shards, sides)
             cut_at = time.monotonic()
-            _cable("down")
+            _cable('down')
             _let_run(sides, cut)
             joined_at = time.monotonic()
-            _cable("up")
+            _cable('up')
             _let_run(sides, _AFTER)
             killed_at = time.monotonic()
             shards[1].kill()
@@ -93,12 +95,12 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
     back = _first_after(heard[1][1], gone_at) + gone_at - killed_at
     own = [heard[k][k] for k in (0, 1)]
     return [
-        *one.told("one shard", [heard_alone[0][0]]),
-        *both.told("each of two shards", own),
-        Measured("frames of the other host while cut", float(sum(lost)), "-"),
-        Measured("longest gap of the own shard while cut", max(gaps), "s"),
-        Measured("whole again after the cut", max(rejoined), "s"),
-        Measured("killed shard back", back, "s"),
+        *one.told('one shard', [heard_alone[0][0]]),
+        *both.told('each of two shards', own),
+        Measured('frames of the other host while cut', float(sum(lost)), '-'),
+        Measured('longest gap of the own shard while cut', max(gaps), 's'),
+        Measured('whole again after the cut', max(rejoined), 's'),
+        Measured('killed shard back', back, 's'),
     ]
 
 
@@ -118,15 +120,15 @@ class _Load:
         frames = [sum(self._begin < at < self._end for at in each) for each in arrivals]
         rate = float(np.mean(frames)) / (self._end - self._begin)
         return [
-            Measured(f"CPU of {whose}", self._share, "-"),
-            Measured(f"frames of {whose}", rate, "Hz"),
+            Measured(f'CPU of {whose}', self._share, '-'),
+            Measured(f'frames of {whose}', rate, 'Hz'),
         ]
 
 
 def _cpu_time(process: Any) -> float:
     """CPU time that a process has taken in [s]."""
-    told = Path(f"/proc/{process.pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
-    return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
+    told = Path(f'/proc/{process.pid}/stat').read_text(encoding='ascii').rsplit(')', 1)[1].split()
+    return (int(told[11]) + int(told[12])) / os.sysconf('SC_CLK_TCK')
 
 
 def _start(
@@ -148,45 +150,45 @@ def _start(
 
 def _end(sides: list[Any]) -> list[Any]:
     """Return when which host heard which shard."""
-    return [json.loads(side.communicate(b"\n", timeout=30.0)[0]) for side in sides]
+    return [json.loads(side.communicate(b'\n', timeout=30.0)[0]) for side in sides]
 
 
 def _ip(*words: str) -> None:
-    told = subprocess.run(["ip", *words], capture_output=True, text=True, check=False)
+    told = subprocess.run(['ip', *words], capture_output=True, text=True, check=False)
     if told.returncode:
         raise TransportError(
-            told.stderr.strip() or "ip failed",
-            where="ip " + " ".join(words),
-            cure="run as root on Linux with iproute2",
+            told.stderr.strip() or 'ip failed',
+            where='ip ' + ' '.join(words),
+            cure='run as root on Linux with iproute2',
         )
 
 
 @contextlib.contextmanager
 def _joined_hosts() -> Iterator[None]:
     """Two network namespaces joined by a cable."""
-    if shutil.which("ip") is None:
-        raise TransportError("there is no program 'ip'", cure="install iproute2, on Linux")
+    if shutil.which('ip') is None:
+        raise TransportError("there is no program 'ip'", cure='install iproute2, on Linux')
     try:
         for host in _HOSTS:
-            _ip("netns", "add", host)
-        _ip("link", "add", "cable0", "netns", _HOSTS[0], "type", "veth",
-            "peer", "name", "cable1", "netns", _HOSTS[1])  # fmt: skip
+            _ip('netns', 'add', host)
+        _ip('link', 'add', 'cable0', 'netns', _HOSTS[0], 'type', 'veth',
+            'peer', 'name', 'cable1', 'netns', _HOSTS[1])  # fmt: skip
         for k, host in enumerate(_HOSTS):
-            _ip("-n", host, "address", "add", f"10.77.0.{k + 1}/24", "dev", f"cable{k}")
-            for link in ("lo", f"cable{k}"):
-                _ip("-n", host, "link", "set", link, "up")
-            _ip("-n", host, "route", "add", "224.0.0.0/4", "dev", f"cable{k}")
+            _ip('-n', host, 'address', 'add', f'10.77.0.{k + 1}/24', 'dev', f'cable{k}')
+            for link in ('lo', f'cable{k}'):
+                _ip('-n', host, 'link', 'set', link, 'up')
+            _ip('-n', host, 'route', 'add', '224.0.0.0/4', 'dev', f'cable{k}')
         yield
     finally:
         for host in _HOSTS:
             with contextlib.suppress(TransportError):
-                _ip("netns", "delete", host)
+                _ip('netns', 'delete', host)
 
 
 def _cable(state: str) -> None:
-    _ip("-n", _HOSTS[0], "link", "set", "cable0", state)
-    if state == "up":
-        _ip("-n", _HOSTS[0], "route", "replace", "224.0.0.0/4", "dev", "cable0")
+    _ip('-n', _HOSTS[0], 'link', 'set', 'cable0', state)
+    if state == 'up':
+        _ip('-n', _HOSTS[0], 'route', 'replace', '224.0.0.0/4', 'dev', 'cable0')
 
 
 @contextlib.contextmanager
@@ -194,11 +196,11 @@ def _child(host: int, command: list[str], **pipes: Any) -> Iterator[subprocess.P
     """Run a process on a host, to be ended with the run."""
     environment = {
         **isolated(0),
-        "ROS_DOMAIN_ID": "77",
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+        'ROS_DOMAIN_ID': '77',
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET',
     }
     child = subprocess.Popen(
-        ["ip", "netns", "exec", _HOSTS[host], *command],
+        ['ip', 'netns', 'exec', _HOSTS[host], *command],
         env=environment, stderr=subprocess.DEVNULL, **pipes,
     )  # fmt: skip
     try:
@@ -213,10 +215,10 @@ def _child(host: int, command: list[str], **pipes: Any) -> Iterator[subprocess.P
 
 
 def _shard(number: int, shards: int, stand: Path) -> contextlib.AbstractContextManager[Any]:
-    told = {"tree": stand, "shard": number, "shards": shards}
-    values = [word for name, value in told.items() for word in ("-p", f"{name}:={value}")]
-    places = ["-r", f"__ns:=/shard{number}", "-r", "wind/filtered:=/wind/filtered"]
-    return _child(number, [sys.executable, "-c", _SOLVER, "--ros-args", *places, *values])
+    told = {'tree': stand, 'shard': number, 'shards': shards}
+    values = [word for name, value in told.items() for word in ('-p', f'{name}:={value}')]
+    places = ['-r', f'__ns:=/shard{number}', '-r', 'wind/filtered:=/wind/filtered']
+    return _child(number, [sys.executable, '-c', _SOLVER, '--ros-args', *places, *values])
 
 
 def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any]) -> None:
@@ -228,9 +230,9 @@ def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any
         ended = [k for k, each in enumerate(shards) if each.poll() is not None]
         if ended or side.poll() is not None or time.monotonic() > deadline:
             raise TransportError(
-                f"host {host} does not hear both shards"
-                + (f"; shards that ended: {ended}" if ended else ""),
-                cure="see that multicast is not cut off, and run a shard by itself",
+                f'host {host} does not hear both shards'
+                + (f'; shards that ended: {ended}' if ended else ''),
+                cure='see that multicast is not cut off, and run a shard by itself',
             )
         select.select([side.stdout], [], [], 0.05)
     os.set_blocking(side.stdout.fileno(), True)
@@ -242,7 +244,7 @@ def _let_run(sides: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:
     for host, side in enumerate(sides):
         with contextlib.suppress(subprocess.TimeoutExpired):
             side.wait(max(0.0, deadline - time.monotonic()))
-            raise TransportError(f"host {host} stopped listening", cure="run the bench again")
+            raise TransportError(f'host {host} stopped listening', cure='run the bench again')
 
 
 def _longest_gap(at: Floats, begin: float, end: float) -> float:
@@ -253,4 +255,4 @@ def _longest_gap(at: Floats, begin: float, end: float) -> float:
 
 def _first_after(at: list[float], begin: float) -> float:
     """Time to the first arrival after another; infinite if there is none."""
-    return min((each - begin for each in at if each > begin), default=float("inf"))
+    return min((each - begin for each in at if each > begin), default=float('inf'))

@@ -8,15 +8,15 @@ step and placing as a program calls them; and how far it is from `modes`.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
+import time
 from typing import Any
 
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.wind_basis import WindBasisBank, step_instance
+from tree_sway_ros.core.motion.wind_basis import step_instance, WindBasisBank
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
@@ -54,11 +54,11 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
     """
     if not trees:
         trees = [bench_tree(2, children, bears=True) for children in SIZES.values()]
-    SwaySimulator(bench_tree(2), model="wind_basis")  # kernels are there
+    SwaySimulator(bench_tree(2), model='wind_basis')  # kernels are there
     simulators, set_up = [], []
-    for tree in bar(trees, "tables of winds"):
+    for tree in bar(trees, 'tables of winds'):
         begun = time.process_time()
-        simulators.append(SwaySimulator(tree, model="wind_basis"))
+        simulators.append(SwaySimulator(tree, model='wind_basis'))
         set_up.append(time.process_time() - begun)
     winds = gusts(_STEPS)
     least = np.full((len(trees), 3), np.inf)
@@ -81,33 +81,33 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
             row[:] = np.minimum(row, spent)
     rows = []
     for tree, spent in zip(trees, (1e6 * least).tolist(), strict=True):
-        for what, value in zip(("kernel of a step", "step", "place"), spent, strict=True):
-            rows.append(Measured(f"{what}, {tree.n_branches} branches", value, "us"))
+        for what, value in zip(('kernel of a step', 'step', 'place'), spent, strict=True):
+            rows.append(Measured(f'{what}, {tree.n_branches} branches', value, 'us'))
         each = 1e3 * spent[2] / tree.n_segments
-        rows.append(Measured(f"place one of {tree.n_segments} segments", each, "ns"))
+        rows.append(Measured(f'place one of {tree.n_segments} segments', each, 'ns'))
     for tree, spent_once in zip(trees, set_up, strict=True):
-        rows.append(Measured(f"set-up, CPU, {tree.n_branches} branches", spent_once, "s"))
+        rows.append(Measured(f'set-up, CPU, {tree.n_branches} branches', spent_once, 's'))
     rows += errors(simulators)
     kernels = least[:, 0]
-    rows.append(Measured("kernel, most over least", float(kernels.max() / kernels.min()), "-"))
+    rows.append(Measured('kernel, most over least', float(kernels.max() / kernels.min()), '-'))
     return rows
 
 
 def errors(simulators: Sequence[SwaySimulator]) -> list[Measured]:
     """Tell how far tables are from `modes` in gusts and turns, over the motion of all segments."""
     rows = []
-    for simulator in bar(simulators, "against modes"):
+    for simulator in bar(simulators, 'against modes'):
         tree = simulator.tree
-        other = SwaySimulator(tree, simulator.species, simulator.settings, model="modes")
+        other = SwaySimulator(tree, simulator.species, simulator.settings, model='modes')
         for speed in _SPEEDS:
             bank, winds = simulator.bank.oscillators, gusts_and_turns(speed)
             assert isinstance(bank, WindBasisBank)
             before = bank.n_outside
             error = against(simulator, other, winds)
-            where = f"in {speed:g} m/s, {tree.name}, {tree.n_branches} branches"
-            rows.append(Measured(f"error {where}", error, "-"))
+            where = f'in {speed:g} m/s, {tree.name}, {tree.n_branches} branches'
+            rows.append(Measured(f'error {where}', error, '-'))
             share = (bank.n_outside - before) / len(winds)
-            rows.append(Measured(f"steps outside of the table {where}", share, "-"))
+            rows.append(Measured(f'steps outside of the table {where}', share, '-'))
     return rows
 
 

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import resource
 import time
-from collections.abc import Callable
 
 import numpy as np
 
@@ -25,12 +25,12 @@ _SPACING = 6.0
 def bench_stand(n_trees: int, threads: int = 1) -> Stand:
     """Plant so many trees of four kinds of some 1,000 segments, each of its own size and turn."""
     rng = np.random.default_rng(2)
-    kinds = {f"kind{k}": StandKind(bench_tree(6, each)) for k, each in enumerate(_CHILDREN)}
+    kinds = {f'kind{k}': StandKind(bench_tree(6, each)) for k, each in enumerate(_CHILDREN)}
     side = round(n_trees**0.5) or 1
     trees = [
         StandTree(
-            f"tree{i}",
-            f"kind{i % len(kinds)}",
+            f'tree{i}',
+            f'kind{i % len(kinds)}',
             _SPACING * (i % side),
             _SPACING * (i // side),
             scale=float(rng.uniform(0.7, 1.3)),
@@ -70,32 +70,34 @@ def time_stand(
     stand.place(poses)
     set_up = time.process_time() - begun
     spent = np.empty((frames, 2))
-    for row, wind in zip(spent, bar(list(winds), "frames of the stand"), strict=True):
+    for row, wind in zip(spent, bar(list(winds), 'frames of the stand'), strict=True):
         begun = time.thread_time()
         stand.step(wind, _DT)
         stepped = time.thread_time()
         stand.place(poses)
         row[:] = stepped - begun, time.thread_time() - stepped
     solve, place = (1e3 * np.median(spent, axis=0)).tolist()
-    what = f"{len(stand.trees)} trees, {stand.n_segments} segments"
+    what = f'{len(stand.trees)} trees, {stand.n_segments} segments'
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     threaded = []
     if make is None:
         once, twice = _by_threads(stand, bench_stand(n_trees, threads=2), poses)
-        threaded = [Measured("two threads place, times faster", once / twice, "-")]
+        threaded = [Measured('two threads place, times faster', once / twice, '-')]
     return [
-        Measured(f"solve {what}", solve, "ms"),
-        Measured(f"place {what}", place, "ms"),
-        Measured("both", solve + place, "ms"),
-        Measured("place a segment", 1e6 * place / stand.n_segments, "ns"),
-        Measured("set-up, CPU", set_up, "s"),
-        Measured("memory at most", peak, "GB"),
+        Measured(f'solve {what}', solve, 'ms'),
+        Measured(f'place {what}', place, 'ms'),
+        Measured('both', solve + place, 'ms'),
+        Measured('place a segment', 1e6 * place / stand.n_segments, 'ns'),
+        Measured('set-up, CPU', set_up, 's'),
+        Measured('memory at most', peak, 'GB'),
         *threaded,
     ]
 
 
 def _by_threads(one: Stand, other: Stand, poses: Floats) -> tuple[float, float]:
-    """Time by the clock that two stands take to be placed, in turn, in [s]: the quietest of all."""
+    """Time by the clock that two stands take to be placed, in turn, in [s]: the quietest of
+    all.
+    """
     spent = np.empty((2, _ROUNDS))
     for number in range(_ROUNDS):
         for row, stand in zip(spent, (one, other), strict=True):

@@ -10,9 +10,9 @@ whatever else the machine does meets both.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
+import time
 
 import numpy as np
 
@@ -125,9 +125,9 @@ def _agree(simulator: SwaySimulator, twin: SwaySimulator, winds: Floats, poses: 
         difference = max(difference, float(np.abs(simulator.place(poses) - twin.place()).max()))
     if not difference <= _AGREEMENT:
         raise TreeSwayError(
-            f"the kernels and their numpy twin differ by {difference:.2e}",
+            f'the kernels and their numpy twin differ by {difference:.2e}',
             where=simulator.model,
-            cure=f"find out which is wrong; {_AGREEMENT:g} is allowed",
+            cure=f'find out which is wrong; {_AGREEMENT:g} is allowed',
         )
     return difference
 

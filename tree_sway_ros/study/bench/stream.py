@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 import select
 import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,26 +26,29 @@ from tree_sway_ros.study.bench.measured import Measured
 from tree_sway_ros.tools.progress import waiting
 
 _PATIENCE = 30.0
-_PROFILES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+_PROFILES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 
 
 def isolated(seed: int) -> dict[str, str]:
     """
-    Environment of a domain of its own on this machine, with room for large frames in shared memory.
+    Environment of a domain of its own on this machine, with room for large frames in shared
+    memory.
 
     """
-    places = Path(__file__).parents[3], Path(sys.prefix, "share", "tree_sway_ros")
-    found = [place / "config" / "fastdds.xml" for place in places]
+    places = Path(__file__).parents[3], Path(sys.prefix, 'share', 'tree_sway_ros')
+    found = [place / 'config' / 'fastdds.xml' for place in places]
     room = {name: str(path) for path in found if path.is_file() for name in _PROFILES}
     return {
         **room,
         **os.environ,
-        "ROS_DOMAIN_ID": str(100 + seed % 100),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        'ROS_DOMAIN_ID': str(100 + seed % 100),
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
     }
 
 
-def time_stream(n_poses: int = 10_000, rate: float = 60.0, seconds: float = 10.0) -> list[Measured]:
+def time_stream(
+    n_poses: int = 10_000, rate: float = 60.0, seconds: float = 10.0
+) -> list[Measured]:
     """
     Publish frames of poses to a listener.
 
@@ -71,20 +74,20 @@ def time_stream(n_poses: int = 10_000, rate: float = 60.0, seconds: float = 10.0
     """
     environment = isolated(os.getpid())
     os.environ.update(environment)
-    command = [sys.executable, "-m", "tree_sway_ros.study.bench.listener", str(seconds + 2.0)]
-    import rclpy
+    command = [sys.executable, '-m', 'tree_sway_ros.study.bench.listener', str(seconds + 2.0)]
     from geometry_msgs.msg import PoseArray
+    import rclpy
     from rclpy.qos import QoSProfile
 
     from tree_sway_ros.ros.wire.cdr import pose_array_template
 
-    template = pose_array_template(n_poses, "map")
+    template = pose_array_template(n_poses, 'map')
     rclpy.init()
     try:
-        node = rclpy.create_node("bench_stream")
-        publisher = node.create_publisher(PoseArray, "bench/segment_poses", QoSProfile(depth=5))
+        node = rclpy.create_node('bench_stream')
+        publisher = node.create_publisher(PoseArray, 'bench/segment_poses', QoSProfile(depth=5))
         with (
-            waiting("streaming"),
+            waiting('streaming'),
             subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as child,
         ):
             _wait_for(publisher, child)
@@ -95,10 +98,10 @@ def time_stream(n_poses: int = 10_000, rate: float = 60.0, seconds: float = 10.0
                 sent += 1
                 pause.wait(max(0.0, begun + sent / rate - time.monotonic()))
             cpu = time.process_time() - cpu
-            heard = json.loads(child.communicate(timeout=seconds + _PATIENCE)[0] or "{}")
+            heard = json.loads(child.communicate(timeout=seconds + _PATIENCE)[0] or '{}')
     finally:
         rclpy.try_shutdown()
-    return _figures(heard, sent, seconds, cpu, f"{n_poses} poses at {rate:g} Hz")
+    return _figures(heard, sent, seconds, cpu, f'{n_poses} poses at {rate:g} Hz')
 
 
 def _wait_for(publisher: Any, child: subprocess.Popen[str]) -> None:
@@ -106,22 +109,22 @@ def _wait_for(publisher: Any, child: subprocess.Popen[str]) -> None:
     deadline = time.monotonic() + _PATIENCE
     while publisher.get_subscription_count() == 0:
         if time.monotonic() > deadline or child.poll() is not None:
-            raise TransportError("no listener in 30 s", cure="see that localhost is not cut off")
+            raise TransportError('no listener in 30 s', cure='see that localhost is not cut off')
         select.select([child.stdout], [], [], 0.02)
 
 
 def _figures(
     heard: dict[str, Any], sent: int, seconds: float, cpu: float, what: str
 ) -> list[Measured]:
-    stamps, arrivals = np.array(heard["stamps"]), np.array(heard["arrivals"])
+    stamps, arrivals = np.array(heard['stamps']), np.array(heard['arrivals'])
     if not len(stamps):
-        raise TransportError("nothing was heard", cure="see that localhost is not cut off")
+        raise TransportError('nothing was heard', cure='see that localhost is not cut off')
     late = 1e-6 * (arrivals - stamps)
     return [
-        Measured(f"rate of {what}", len(stamps) / seconds, "Hz"),
-        Measured("lost", 1.0 - len(np.unique(stamps)) / sent, "-"),
-        Measured("latency, p50", float(np.quantile(late, 0.5)), "ms"),
-        Measured("latency, p99", float(np.quantile(late, 0.99)), "ms"),
-        Measured("CPU of the sender", cpu / seconds, "cores"),
-        Measured("CPU of the listener", heard["cpu"] / seconds, "cores"),
+        Measured(f'rate of {what}', len(stamps) / seconds, 'Hz'),
+        Measured('lost', 1.0 - len(np.unique(stamps)) / sent, '-'),
+        Measured('latency, p50', float(np.quantile(late, 0.5)), 'ms'),
+        Measured('latency, p99', float(np.quantile(late, 0.99)), 'ms'),
+        Measured('CPU of the sender', cpu / seconds, 'cores'),
+        Measured('CPU of the listener', heard['cpu'] / seconds, 'cores'),
     ]

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 import sys
 import time
-from pathlib import Path
 
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.study.campaign.plan import read_study
@@ -18,32 +18,34 @@ from tree_sway_ros.tools.arguments import refuse_overwriting
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("study", metavar="STUDY.yaml", help="trees, winds and settings")
+    parser.add_argument('study', metavar='STUDY.yaml', help='trees, winds and settings')
     parser.add_argument(
-        "-o",
-        "--output",
-        default="study.csv",
-        metavar="FILE",
-        help="table, .csv or .parquet; cases are kept beside it, and reused (%(default)s)",
+        '-o',
+        '--output',
+        default='study.csv',
+        metavar='FILE',
+        help='table, .csv or .parquet; cases are kept beside it, and reused (%(default)s)',
     )
     parser.add_argument(
-        "--workers", type=int, metavar="N", help="processes; one per core if left out"
+        '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
     parser.add_argument(
-        "--force", action="store_true", help="write over a table that is of no study of yours"
+        '--force', action='store_true', help='write over a table that is of no study of yours'
     )
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, tcp://HOST:PORT")
+    parser.add_argument(
+        '--scheduler', metavar='ADDRESS', help='of a dask cluster, tcp://HOST:PORT'
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute what is missing, write the table."""
     if arguments.workers is not None and not 1 <= arguments.workers <= 1024:
-        raise ParameterError(f"{arguments.workers}", where="--workers", cure="give 1 to 1024")
+        raise ParameterError(f'{arguments.workers}', where='--workers', cure='give 1 to 1024')
     cases = read_study(arguments.study)
     output = Path(arguments.output).expanduser()
-    kept = output.with_suffix(".cases")
+    kept = output.with_suffix('.cases')
     if not (arguments.force or kept.is_dir()):
-        refuse_overwriting(output, "--output")
+        refuse_overwriting(output, '--output')
     began = time.monotonic()
     rows = run_study(
         cases,
@@ -53,14 +55,14 @@ def run(arguments: argparse.Namespace) -> int:
         progress=_told,
     )
     write_table(rows, output)
-    print(f"{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s")
+    print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')
     return 0
 
 
 def _told(done: int, total: int) -> None:
     """Say how far it is: on a terminal one line that changes, elsewhere a line per tenth."""
     if sys.stderr.isatty():
-        end = "\n" if done == total else ""
-        print(f"\r{done} of {total} cases", end=end, file=sys.stderr, flush=True)
+        end = '\n' if done == total else ''
+        print(f'\r{done} of {total} cases', end=end, file=sys.stderr, flush=True)
     elif done == total or done % max(total // 10, 1) == 0:
-        print(f"{done} of {total} cases", file=sys.stderr, flush=True)
+        print(f'{done} of {total} cases', file=sys.stderr, flush=True)

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-import json
 from functools import lru_cache
+import json
 
 import numpy as np
 
@@ -47,19 +47,19 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     rig, frequency = _rig(json.dumps([case.tree, case.settings, case.digest], sort_keys=True))
     tree = rig.tree
     record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
-    row: Plain = {**_told("tree", case.tree), **_told("wind", case.wind), **case.settings}
+    row: Plain = {**_told('tree', case.tree), **_told('wind', case.wind), **case.settings}
     row |= {
-        "seconds": case.seconds,
-        "branches": tree.n_branches,
-        "segments": tree.n_segments,
-        "height": tree.height,
-        "model": record.model,
-        "frequency": frequency,
-        "wind_mean": float(np.linalg.norm(record.wind.mean(axis=0))),
-        "wind_largest": float(np.linalg.norm(record.wind, axis=1).max()),
+        'seconds': case.seconds,
+        'branches': tree.n_branches,
+        'segments': tree.n_segments,
+        'height': tree.height,
+        'model': record.model,
+        'frequency': frequency,
+        'wind_mean': float(np.linalg.norm(record.wind.mean(axis=0))),
+        'wind_largest': float(np.linalg.norm(record.wind, axis=1).max()),
     }
-    row |= _summary("tip", record.tips[:, 0]) | _summary("base_moment", record.base_moment)
-    row["strain_largest"] = float(np.abs(record.base_strain).max())
+    row |= _summary('tip', record.tips[:, 0]) | _summary('base_moment', record.base_moment)
+    row['strain_largest'] = float(np.abs(record.base_strain).max())
     return row, record
 
 
@@ -67,37 +67,37 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
 def _rig(asked: str) -> tuple[Rig, float]:
     """Tree and settings set up, as what comes next is often the same; its frequency in [Hz]."""
     tree, settings, _ = json.loads(asked)
-    rig = Rig(_tree(tree), **{"model": "auto", **settings})
-    return rig, float(rig.calibrated.bank("modes").frequencies[0])
+    rig = Rig(_tree(tree), **{'model': 'auto', **settings})
+    return rig, float(rig.calibrated.bank('modes').frequencies[0])
 
 
 def _tree(asked: Plain) -> TreeFile:
-    if "species" in asked:
-        species = species_named(asked["species"])
-        rng = np.random.default_rng(asked["seed"])
-        return TreeFile(grow(species.key, asked["height"], rng=rng), species, "grown")
-    opened = open_tree(asked.get("file") or asked["name"])
+    if 'species' in asked:
+        species = species_named(asked['species'])
+        rng = np.random.default_rng(asked['seed'])
+        return TreeFile(grow(species.key, asked['height'], rng=rng), species, 'grown')
+    opened = open_tree(asked.get('file') or asked['name'])
     if not isinstance(opened, TreeFile):
-        raise FormatError("is a forest", where=opened.source, cure="name its trees one by one")
+        raise FormatError('is a forest', where=opened.source, cure='name its trees one by one')
     return opened
 
 
 def _wind(case: Case) -> Floats:
-    if "file" in case.wind:
-        record = read_wind(case.wind["file"])
-        return case.wind["scale"] * frame_means(record.time, record.velocity, 1.0 / case.rate)
-    rng = np.random.default_rng(case.wind["seed"])
+    if 'file' in case.wind:
+        record = read_wind(case.wind['file'])
+        return case.wind['scale'] * frame_means(record.time, record.velocity, 1.0 / case.rate)
+    rng = np.random.default_rng(case.wind['seed'])
     return simulate_turbulence(
-        case.wind["speed"],
+        case.wind['speed'],
         rate=case.rate,
         duration=case.seconds,
         rng=rng,
-        intensity=case.wind["intensity"],
+        intensity=case.wind['intensity'],
     )
 
 
 def _told(what: str, asked: Plain) -> Plain:
-    return {f"{what}_{key}": value for key, value in asked.items()}
+    return {f'{what}_{key}': value for key, value in asked.items()}
 
 
 def _summary(name: str, rows: Floats) -> Plain:
@@ -105,7 +105,7 @@ def _summary(name: str, rows: Floats) -> Plain:
     about = np.linalg.norm(np.std(rows, axis=0))
     mean = np.linalg.norm(rows.mean(axis=0))
     return {
-        f"{name}_mean": float(mean),
-        f"{name}_rms": float(about),
-        f"{name}_largest": float(length.max()),
+        f'{name}_mean': float(mean),
+        f'{name}_rms': float(about),
+        f'{name}_largest': float(length.max()),
     }

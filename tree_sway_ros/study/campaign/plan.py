@@ -11,24 +11,24 @@ reads, and the source of the simulator.
 
 from __future__ import annotations
 
-import hashlib
-import itertools
-import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, fields
+import hashlib
 from importlib.resources import files
+import itertools
+import json
 from pathlib import Path
 from typing import Any
 
 from tree_sway_ros import kernel_cache
 from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.errors import FormatError, ParameterError, nearest
+from tree_sway_ros.errors import FormatError, nearest, ParameterError
 from tree_sway_ros.files.text_file import path_of, read_bytes, read_text
 from tree_sway_ros.files.yaml_document import read_yaml
 
 Plain = dict[str, Any]
 
-_ARRAYS = {"leaf_mass", "leaf_area", "profile"}
+_ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 """Settings that a study does not vary."""
 
 
@@ -60,7 +60,7 @@ class Case:
     seconds: float = 60.0
     rate: float = 60.0
     series: bool = False
-    digest: str = ""
+    digest: str = ''
 
     @property
     def name(self) -> str:
@@ -93,22 +93,22 @@ def read_study(path: str | Path) -> list[Case]:
     """
     path = path_of(path)
     schema = json.loads(
-        files("tree_sway_ros.study.campaign").joinpath("study_schema.json").read_text("utf-8")
+        files('tree_sway_ros.study.campaign').joinpath('study_schema.json').read_text('utf-8')
     )
     document = read_yaml(read_text(path), str(path), schema)
     study = document.values
-    for number, wind in enumerate(study["winds"]):
-        if ("file" in wind) == ("speed" in wind):
-            where = document.where("winds", number)
-            raise FormatError("a wind is a file or a speed", where=where, cure="give one of them")
-    varied = _settings(study.get("settings", {}), path)
-    common = {key: study[key] for key in ("seconds", "rate", "series") if key in study}
-    code = kernel_cache.source_digest(kernel_cache.ROOT / "core" / "scene" / "simulate.py")
+    for number, wind in enumerate(study['winds']):
+        if ('file' in wind) == ('speed' in wind):
+            where = document.where('winds', number)
+            raise FormatError('a wind is a file or a speed', where=where, cure='give one of them')
+    varied = _settings(study.get('settings', {}), path)
+    common = {key: study[key] for key in ('seconds', 'rate', 'series') if key in study}
+    code = kernel_cache.source_digest(kernel_cache.ROOT / 'core' / 'scene' / 'simulate.py')
     cases = []
     for tree, wind, settings in itertools.product(
-        _trees(study["trees"], path.parent), _winds(study["winds"], path.parent), varied
+        _trees(study['trees'], path.parent), _winds(study['winds'], path.parent), varied
     ):
-        read = [Path(part["file"]) for part in (tree, wind) if "file" in part]
+        read = [Path(part['file']) for part in (tree, wind) if 'file' in part]
         digest = hashlib.blake2b(code.encode(), digest_size=10)
         for each in read:
             digest.update(read_bytes(each))
@@ -121,28 +121,28 @@ def _trees(entries: list[Any], folder: Path) -> list[Plain]:
     for entry in entries:
         if isinstance(entry, str):
             beside = folder / Path(entry).expanduser()
-            found.append({"file": str(beside)} if beside.is_file() else {"name": entry})
+            found.append({'file': str(beside)} if beside.is_file() else {'name': entry})
         else:
-            grow = entry["grow"]
+            grow = entry['grow']
             rows = itertools.product(
-                _listed(grow["species"]), _listed(grow["height"]), range(grow.get("seeds", 1))
+                _listed(grow['species']), _listed(grow['height']), range(grow.get('seeds', 1))
             )
-            found += [{"species": s, "height": float(h), "seed": k} for s, h, k in rows]
+            found += [{'species': s, 'height': float(h), 'seed': k} for s, h, k in rows]
     return found
 
 
 def _winds(entries: list[Plain], folder: Path) -> list[Plain]:
     found: list[Plain] = []
     for entry in entries:
-        if "file" in entry:
-            path = str(folder / Path(entry["file"]).expanduser())
-            found += [{"file": path, "scale": float(s)} for s in _listed(entry.get("scale", 1.0))]
+        if 'file' in entry:
+            path = str(folder / Path(entry['file']).expanduser())
+            found += [{'file': path, 'scale': float(s)} for s in _listed(entry.get('scale', 1.0))]
         else:
             rows = itertools.product(
-                _listed(entry["speed"]), _listed(entry.get("intensity", 0.2)),
-                range(entry.get("seeds", 1)),
+                _listed(entry['speed']), _listed(entry.get('intensity', 0.2)),
+                range(entry.get('seeds', 1)),
             )  # fmt: skip
-            found += [{"speed": float(u), "intensity": float(i), "seed": k} for u, i, k in rows]
+            found += [{'speed': float(u), 'intensity': float(i), 'seed': k} for u, i, k in rows]
     return found
 
 
@@ -152,8 +152,8 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
     if unknown:
         raise ParameterError(
             f"no setting is called '{unknown[0]}'",
-            where=f"{path}: settings",
-            cure=nearest(unknown[0], known) or f"use one of: {', '.join(sorted(known))}",
+            where=f'{path}: settings',
+            cure=nearest(unknown[0], known) or f'use one of: {", ".join(sorted(known))}',
         )
     return list(_products(varied))
 

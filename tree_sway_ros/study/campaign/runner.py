@@ -10,12 +10,12 @@ missing. A worker that is killed takes its case with it, which another one then 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from concurrent.futures import as_completed, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 import json
 import multiprocessing
 import os
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 from tree_sway_ros.errors import MissingDependencyError, TransportError, TreeSwayError
@@ -83,12 +83,12 @@ def run_study(
             progress(done, len(cases))
     if failed is not None:
         raise failed
-    return [json.loads(result_path(folder, case).read_text(encoding="utf-8")) for case in cases]
+    return [json.loads(result_path(folder, case).read_text(encoding='utf-8')) for case in cases]
 
 
 def result_path(folder: Path, case: Case) -> Path:
     """File of a finished case."""
-    return folder / f"{case.name}.json"
+    return folder / f'{case.name}.json'
 
 
 def compute_to_file(case: Case, folder: Path) -> None:
@@ -97,7 +97,7 @@ def compute_to_file(case: Case, folder: Path) -> None:
 
     row, record = compute(case)
     if case.series:
-        write_text_whole(folder / f"{case.name}.csv", record.to_csv())
+        write_text_whole(folder / f'{case.name}.csv', record.to_csv())
     write_text_whole(result_path(folder, case), json.dumps(row))
 
 
@@ -109,7 +109,7 @@ def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]
             compute_to_file(case, folder)
             outcomes.append(None)
         except TreeSwayError as error:
-            where = f"tree {case.tree}, wind {case.wind}"
+            where = f'tree {case.tree}, wind {case.wind}'
             outcomes.append(TreeSwayError(str(error), where=where))
     return outcomes
 
@@ -118,8 +118,8 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
     """
     Cases of one tree with one set of settings together.
 
-    Its set-up costs more than a minute of wind does. A tree in many winds is given out in parts, so
-    that no worker is left without work.
+    Its set-up costs more than a minute of wind does. A tree in many winds is given out in parts,
+    so that no worker is left without work.
 
     """
     most = -(-len(cases) // (4 * workers))
@@ -140,8 +140,8 @@ def _on_cores(
     while cases:
         before = len(cases)
         # One thread per process: the same numbers, and no threads that wait for each other.
-        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        context = multiprocessing.get_context("spawn")
+        os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+        context = multiprocessing.get_context('spawn')
         with ProcessPoolExecutor(workers, mp_context=context) as pool:
             parts = batches(cases, workers)
             futures = {pool.submit(compute_batch, part, folder): part for part in parts}
@@ -157,9 +157,9 @@ def _on_cores(
         attempts = 0 if len(cases) < before else attempts + 1
         if attempts >= ATTEMPTS:
             raise TransportError(
-                f"{attempts} sets of processes died in turn",
-                where=f"{len(cases)} cases left",
-                cure="look for what kills them (memory?), use fewer --workers, and run it again",
+                f'{attempts} sets of processes died in turn',
+                where=f'{len(cases)} cases left',
+                cure='look for what kills them (memory?), use fewer --workers, and run it again',
             )
 
 
@@ -169,16 +169,16 @@ def _on_cluster(cases: list[Case], folder: Path, scheduler: str) -> Iterator[Tre
         import distributed
     except ImportError:
         raise MissingDependencyError(
-            "a cluster needs dask.distributed", cure="pip install distributed"
+            'a cluster needs dask.distributed', cure='pip install distributed'
         ) from None
     try:
         client = distributed.Client(scheduler, timeout=10)
     except OSError as error:
         raise TransportError(
-            f"no scheduler answers ({error})", where=scheduler, cure="start dask scheduler"
+            f'no scheduler answers ({error})', where=scheduler, cure='start dask scheduler'
         ) from None
     with client:
-        place, workers = folder.resolve(), max(len(client.scheduler_info()["workers"]), 1)
+        place, workers = folder.resolve(), max(len(client.scheduler_info()['workers']), 1)
         futures = [
             client.submit(compute_batch, part, place, key=part[0].name, retries=ATTEMPTS)
             for part in batches(cases, workers)

@@ -26,24 +26,24 @@ def write_table(rows: list[Plain], path: Path) -> None:
 
     """
     names = list(dict.fromkeys(name for row in rows for name in row))
-    if path.suffix == ".csv":
+    if path.suffix == '.csv':
         text = io.StringIO()
-        writer = csv.DictWriter(text, names, lineterminator="\n")
+        writer = csv.DictWriter(text, names, lineterminator='\n')
         writer.writeheader()
         writer.writerows(rows)
         write_text_whole(path, text.getvalue())
-    elif path.suffix == ".parquet":
+    elif path.suffix == '.parquet':
         try:
             import pyarrow
             from pyarrow import parquet
         except ImportError:
             raise MissingDependencyError(
-                "Parquet needs pyarrow", cure="pip install pyarrow, or end the name with .csv"
+                'Parquet needs pyarrow', cure='pip install pyarrow, or end the name with .csv'
             ) from None
         columns = {name: [row.get(name) for row in rows] for name in names}
         with whole_file(path) as partial:
             parquet.write_table(pyarrow.table(columns), partial)
     else:
         raise FormatError(
-            f"'{path.suffix}' is no table", where=str(path), cure="end it with .csv or .parquet"
+            f"'{path.suffix}' is no table", where=str(path), cure='end it with .csv or .parquet'
         )

@@ -10,8 +10,8 @@ should grow with the number of branches and no faster.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
+import csv
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.files.whole_file import whole_file
 from tree_sway_ros.study.bench.frame_time import frame_times
 from tree_sway_ros.study.chart.fidelity import DAMPING_RATIO, EXAMPLE_WOOD, FRAME
-from tree_sway_ros.study.example_trees import RATIOS, forked_tree
+from tree_sway_ros.study.example_trees import forked_tree, RATIOS
 from tree_sway_ros.study.tip_error import Swaying
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _STYLE = {
-    "branch": ("#1f6fb4", "o"),
-    "subtree": ("#7f7f7f", "v"),
-    "modes": ("#2f6b2f", "s"),
-    "segments": ("#c0682b", "^"),
+    'branch': ('#1f6fb4', 'o'),
+    'subtree': ('#7f7f7f', 'v'),
+    'modes': ('#2f6b2f', 's'),
+    'segments': ('#c0682b', '^'),
 }
 
 
@@ -75,20 +75,20 @@ def chart_cost(
     """
     points = [
         point
-        for cut in bar(cuts, "segments per branch")
+        for cut in bar(cuts, 'segments per branch')
         for point in _costs(forked_tree(*RATIOS[1], segments=cut), cut, frames)
     ]
-    for generation in bar(generations, "generations of branches"):
+    for generation in bar(generations, 'generations of branches'):
         # The fourth generation's tree with six segments per branch has been measured above.
         if not (generation == 4 and 6 in cuts):
             points += _costs(forked_tree(*RATIOS[1], generations=generation), 6, frames)
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
-    with whole_file(folder / "cost.csv") as partial, partial.open("w", newline="") as file:
+    with whole_file(folder / 'cost.csv') as partial, partial.open('w', newline='') as file:
         writer = csv.DictWriter(file, list(Cost.__annotations__))
         writer.writeheader()
         writer.writerows(asdict(point) for point in points)
-    _draw(points, folder / "cost.csv")
+    _draw(points, folder / 'cost.csv')
     return points
 
 
@@ -102,10 +102,10 @@ def _costs(tree: Tree, cut: int, frames: int) -> list[Cost]:
             gravity=0.0,
             twig_tolerance=-1.0,
         )
-        for model in ("branch", "subtree", "modes")
+        for model in ('branch', 'subtree', 'modes')
     }
     # Dampers at the joints alone, the cheapest; what they are set to does not matter here.
-    models["segments"] = ArticulatedTree(
+    models['segments'] = ArticulatedTree(
         tree, EXAMPLE_WOOD.modulus, EXAMPLE_WOOD.density, rayleigh=(0.0, 0.02)
     )
     times = frame_times(models, tree, np.array([[5.0, 2.0, 0.0]]), FRAME, frames=frames)
@@ -118,17 +118,17 @@ def _draw(points: list[Cost], path: Path) -> None:
         1,
         2,
         sharey=True,
-        gridspec_kw={"left": 0.07, "right": 0.98, "bottom": 0.13, "top": 0.89, "wspace": 0.08},
+        gridspec_kw={'left': 0.07, 'right': 0.98, 'bottom': 0.13, 'top': 0.89, 'wspace': 0.08},
     )
     forty = [p for p in points if p.n_branches == 40]
     six = sorted((p for p in points if p.segments_a_branch == 6), key=lambda p: p.n_branches)
-    _panel(by_cut, forty, "segments_a_branch", "segments per branch (40 branches)")
-    _panel(by_branches, six, "n_branches", "branches (6 segments each)")
-    by_cut.set_ylabel("CPU time per frame [us]")
+    _panel(by_cut, forty, 'segments_a_branch', 'segments per branch (40 branches)')
+    _panel(by_branches, six, 'n_branches', 'branches (6 segments each)')
+    by_cut.set_ylabel('CPU time per frame [us]')
     by_branches.legend(frameon=False, fontsize=8)
-    by_cut.yaxis.set_major_formatter("{x:g}")
-    figure.suptitle("What a frame costs: solving (full lines) and placing (dotted)")
-    save_figure(figure, path.with_suffix(".png"), figures=path)
+    by_cut.yaxis.set_major_formatter('{x:g}')
+    figure.suptitle('What a frame costs: solving (full lines) and placing (dotted)')
+    save_figure(figure, path.with_suffix('.png'), figures=path)
 
 
 def _panel(axes: Axes, points: list[Cost], field: str, label: str) -> None:
@@ -137,10 +137,10 @@ def _panel(axes: Axes, points: list[Cost], field: str, label: str) -> None:
         size = [getattr(p, field) for p in here]
         solve, place = [p.step / 1e3 for p in here], [p.place / 1e3 for p in here]
         axes.plot(size, solve, marker=marker, color=colour, lw=1.5, ms=5, label=model)
-        axes.plot(size, place, ":", color=colour, lw=1.2)
+        axes.plot(size, place, ':', color=colour, lw=1.2)
     ticks = sorted({getattr(p, field) for p in points})
-    axes.set(xscale="log", yscale="log", xlabel=label)
+    axes.set(xscale='log', yscale='log', xlabel=label)
     axes.set_xticks(ticks, [str(t) for t in ticks])
     axes.minorticks_off()
     axes.grid(alpha=0.25)
-    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[['top', 'right']].set_visible(False)

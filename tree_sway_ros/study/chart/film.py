@@ -16,7 +16,7 @@ from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.animation import animate_poses
 
-TREE = "benjamina"
+TREE = 'benjamina'
 PERIOD, RATE, EVERY = 4.0, 60, 6
 """Of the gusts in [s], steps per second, and steps per picture."""
 
@@ -38,7 +38,7 @@ def chart_film(out_dir: str | Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     opened = open_tree(TREE)
     frames, winds, _ = _swayed(opened)
-    file = folder / f"{TREE}_sways.gif"
+    file = folder / f'{TREE}_sways.gif'
     leaves = opened.leaves(None, _LEAVES)
     return animate_poses(
         opened.tree, frames, winds, file, rate=RATE / EVERY, leaves=leaves, pixels=_PIXELS
@@ -50,8 +50,8 @@ def film_figures() -> dict[str, Any]:
     opened = open_tree(TREE)
     tips = _swayed(opened)[2]
     east, _, up = tips[np.argmax(np.linalg.norm(tips, axis=1))].tolist()
-    return {"segments": opened.tree.n_segments, "height": f"{opened.tree.height:.4f}",
-            "tip_east": f"{east:.4f}", "tip_up": f"{up:.4f}"}  # fmt: skip
+    return {'segments': opened.tree.n_segments, 'height': f'{opened.tree.height:.4f}',
+            'tip_east': f'{east:.4f}', 'tip_up': f'{up:.4f}'}  # fmt: skip
 
 
 def _swayed(opened: TreeFile) -> tuple[list[Floats], Floats, Floats]:
@@ -59,7 +59,7 @@ def _swayed(opened: TreeFile) -> tuple[list[Floats], Floats, Floats]:
     simulator = make_simulator(opened.tree, opened.species)
     frames, winds, tips = [], [], []
     steps = round(PERIOD * RATE)
-    for step in bar(range((_SETTLING + 1) * steps), "swaying"):
+    for step in bar(range((_SETTLING + 1) * steps), 'swaying'):
         wind = gusts(step / RATE)
         simulator.step(wind, 1.0 / RATE)
         if step >= _SETTLING * steps and step % EVERY == 0:

@@ -15,10 +15,10 @@ from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.tools.progress import bar
 from tree_sway_ros.view.plotting import new_figure, save_figure
 from tree_sway_ros.view.projection import Camera
-from tree_sway_ros.view.tree_drawing import Frame, draw_tree
+from tree_sway_ros.view.tree_drawing import draw_tree, Frame
 
 SPECIES = (
-    "oak", "beech", "birch", "ash", "sycamore", "walnut", "spruce", "sitka", "pine", "douglas_fir",
+    'oak', 'beech', 'birch', 'ash', 'sycamore', 'walnut', 'spruce', 'sitka', 'pine', 'douglas_fir',
 )  # fmt: skip
 HEIGHT = 16.0
 """Of each tree [m]; captions name it."""
@@ -43,7 +43,7 @@ def chart_habits(out_dir: str | Path) -> list[Path]:
     half = len(SPECIES) // 2
     figure = new_figure(2.9 * half, 13.0)
     axes = figure.subplots(4, half)
-    for i, key in enumerate(bar(list(SPECIES), "habits")):
+    for i, key in enumerate(bar(list(SPECIES), 'habits')):
         tree = grow(key, HEIGHT, rng=np.random.default_rng(1))
         clusters = leaf_clusters(tree, np.random.default_rng(0), count=_CLUSTERS)
         leaves = leaf_poses(clusters, tree.rest_poses), clusters.size
@@ -52,4 +52,4 @@ def chart_habits(out_dir: str | Path) -> list[Path]:
             draw_tree(axes[row + below, column], tree, tree.start, tree.end, camera, _FRAME, worn)
         axes[row, column].set_title(species_named(key).title, y=0.98, fontsize=12)
     figure.subplots_adjust(0.0, 0.0, 1.0, 0.97, 0.0, 0.02)
-    return [save_figure(figure, folder / "habits.png", 80.0)]
+    return [save_figure(figure, folder / 'habits.png', 80.0)]

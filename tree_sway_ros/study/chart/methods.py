@@ -12,23 +12,23 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.files.whole_file import whole_file
-from tree_sway_ros.study.battery.work_precision import REFERENCE_RATE, Point, measure
+from tree_sway_ros.study.battery.work_precision import measure, Point, REFERENCE_RATE
 from tree_sway_ros.view.plotting import new_figure, save_figure
 
-SYSTEMS, WINDS = ("1 segment", "6 segments"), ("smooth", "gusty", "turning")
+SYSTEMS, WINDS = ('1 segment', '6 segments'), ('smooth', 'gusty', 'turning')
 NAMED = {
-    "exact_foh": ("#c2293a", "exact, linear load:\nthe default", 2, (-8, -32), "center"),
-    "exact_zoh": ("#2f8f5b", "exact, held load", 2, (0, -18), "right"),
-    "semi_implicit_euler": ("#3b6ea5", "semi-implicit Euler", 0, (0, 9), "left"),
-    "rk4": ("#7a4fa3", "Runge-Kutta 4", 2, (-4, -17), "left"),
-    "tr_bdf2": ("#1b9aaa", "TR-BDF2", 2, (9, -6), "left"),
-    "baumgarte": ("#c8742c", "multipliers,\nBaumgarte on RK4", 2, (-4, -32), "left"),
-    "radau_ggl": ("#8a6d3b", "multipliers,\nRadau IIA", 2, (4, -32), "right"),
+    'exact_foh': ('#c2293a', 'exact, linear load:\nthe default', 2, (-8, -32), 'center'),
+    'exact_zoh': ('#2f8f5b', 'exact, held load', 2, (0, -18), 'right'),
+    'semi_implicit_euler': ('#3b6ea5', 'semi-implicit Euler', 0, (0, 9), 'left'),
+    'rk4': ('#7a4fa3', 'Runge-Kutta 4', 2, (-4, -17), 'left'),
+    'tr_bdf2': ('#1b9aaa', 'TR-BDF2', 2, (9, -6), 'left'),
+    'baumgarte': ('#c8742c', 'multipliers,\nBaumgarte on RK4', 2, (-4, -32), 'left'),
+    'radau_ggl': ('#8a6d3b', 'multipliers,\nRadau IIA', 2, (4, -32), 'right'),
 }
 """Methods with a name at their line: colour, name, at which point, how far off it, alignment."""
 
-_MAIN = ("1 segment", "gusty")
-_GREY = "#c9c9c9"
+_MAIN = ('1 segment', 'gusty')
+_GREY = '#c9c9c9'
 _TOP, _LOWEST = 2.0, 1e-9
 
 
@@ -57,15 +57,15 @@ def chart_methods(out_dir: str | Path, points: list[Point] | None = None) -> lis
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
     points = measure() if points is None else points
-    table = folder / "methods.csv"
-    with whole_file(table) as partial, partial.open("w", newline="", encoding="utf-8") as sheet:
+    table = folder / 'methods.csv'
+    with whole_file(table) as partial, partial.open('w', newline='', encoding='utf-8') as sheet:
         writer = csv.DictWriter(sheet, list(asdict(points[0])))
         writer.writeheader()
         writer.writerows(
             {
                 **asdict(p),
-                "error": "gone" if np.isnan(p.error) else f"{p.error:.3e}",
-                "wall_ratio": f"{p.wall_ratio:.2f}",
+                'error': 'gone' if np.isnan(p.error) else f'{p.error:.3e}',
+                'wall_ratio': f'{p.wall_ratio:.2f}',
             }
             for p in points
         )
@@ -84,37 +84,37 @@ def _draw(points: list[Point], table: Path) -> Path:
             is_main = (system, wind) == _MAIN
             ax = figure.add_subplot(grid[:, :2] if is_main else grid[row, 2 + column])
             here = [p for p in points if p.system == system and p.wind == wind]
-            ax.set_title(f"{system}, {wind} wind", fontsize=13 if is_main else 10)
-            ax.set(xscale="log", yscale="log", ylim=(1e-6 if is_main else _LOWEST, 4 * _TOP))
-            ax.axhspan(0.5 * _TOP, 4 * _TOP, color="0.95", lw=0)
+            ax.set_title(f'{system}, {wind} wind', fontsize=13 if is_main else 10)
+            ax.set(xscale='log', yscale='log', ylim=(1e-6 if is_main else _LOWEST, 4 * _TOP))
+            ax.axhspan(0.5 * _TOP, 4 * _TOP, color='0.95', lw=0)
             for method in sorted({p.method for p in here}, key=lambda name: name in NAMED):
                 _line(ax, [p for p in here if p.method == method], with_name=is_main)
-            ax.grid(color="0.9", lw=0.7)
+            ax.grid(color='0.9', lw=0.7)
             ax.set_axisbelow(True)
-            ax.spines[["top", "right"]].set_visible(False)
+            ax.spines[['top', 'right']].set_visible(False)
             ax.tick_params(labelsize=10 if is_main else 8)
             if is_main:
-                told: dict[str, Any] = {"transform": ax.transAxes, "color": "0.4"}
+                told: dict[str, Any] = {'transform': ax.transAxes, 'color': '0.4'}
                 others = len({p.method for p in points} - set(NAMED))
-                ax.text(0.02, 0.985, "blew up", va="top", **told)
-                ax.text(0.98, 0.84, f"{others} others: grey", ha="right", va="top", **told)
-                ax.set_xlabel("operations per second of wind [flop/s]", fontsize=11)
+                ax.text(0.02, 0.985, 'blew up', va='top', **told)
+                ax.text(0.98, 0.84, f'{others} others: grey', ha='right', va='top', **told)
+                ax.set_xlabel('operations per second of wind [flop/s]', fontsize=11)
                 ax.set_ylabel("rms error of the branch's angle [rad]", fontsize=11)
-    rates = ", ".join(map(str, sorted({p.rate for p in points})))
-    truth = " and ".join(f"{rate} (n = {n})" for n, rate in REFERENCE_RATE.items())
+    rates = ', '.join(map(str, sorted({p.rate for p in points})))
+    truth = ' and '.join(f'{rate} (n = {n})' for n, rate in REFERENCE_RATE.items())
     key = figure.add_subplot(grid[WINDS.index(_MAIN[1]), 2 + SYSTEMS.index(_MAIN[0])])
-    key.axis("off")
+    key.axis('off')
     key.text(
-        0.0, 0.5, f"Each line is one method at\n{rates} steps per second,\nfrom left to right.\n"
-        f"\nThe truth is Radau IIA at\n{truth}\nsteps per second, n segments.",
-        va="center", fontsize=9.5, transform=key.transAxes,
+        0.0, 0.5, f'Each line is one method at\n{rates} steps per second,\nfrom left to right.\n'
+        f'\nThe truth is Radau IIA at\n{truth}\nsteps per second, n segments.',
+        va='center', fontsize=9.5, transform=key.transAxes,
     )  # fmt: skip
     figure.suptitle(
-        "What accuracy costs: methods of integration on a branch of 2 Hz in wind; down and left is "
-        "better",
+        'What accuracy costs: methods of integration on a branch of 2 Hz in wind; down and left '
+        'is better',
         fontsize=13,
     )
-    return save_figure(figure, table.with_suffix(".png"), figures=table)
+    return save_figure(figure, table.with_suffix('.png'), figures=table)
 
 
 def _line(ax: Any, points: list[Point], *, with_name: bool) -> None:
@@ -127,11 +127,11 @@ def _line(ax: Any, points: list[Point], *, with_name: bool) -> None:
     gone = np.isnan(error)
     size, order = (6.0 if with_name else 4.0, 3) if named else (3.0, 2)
     shown = np.maximum(error, 1.5 * _LOWEST)
-    ax.plot(work, shown, "o-", color=colour, ms=size, lw=1.8 if named else 0.8, zorder=order)
-    ax.plot(work[gone], np.full(gone.sum(), _TOP), "x", color=colour, ms=size, zorder=order)
+    ax.plot(work, shown, 'o-', color=colour, ms=size, lw=1.8 if named else 0.8, zorder=order)
+    ax.plot(work[gone], np.full(gone.sum(), _TOP), 'x', color=colour, ms=size, zorder=order)
     if named and with_name:
         _, name, at, offset, side = named
         place = work[at], shown[at]
         ax.annotate(
-            name, place, xytext=offset, textcoords="offset points", ha=side, color=colour, zorder=4
+            name, place, xytext=offset, textcoords='offset points', ha=side, color=colour, zorder=4
         )

@@ -11,9 +11,9 @@ figures of the trees, so that a picture older than the code can be told.
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterable
 import csv
 import hashlib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -35,17 +35,17 @@ SPEED = 10.0
 """Of the westerly [m/s]; captions name it."""
 
 PORTRAITS = {
-    **{name: name for name in ("benjamina", "goldcrest", "broadleaf")},
-    "spruce": ("spruce", 14.0),
-    "oak": ("oak", 12.0),
-    "forest": "config/forest.yaml",
+    **{name: name for name in ('benjamina', 'goldcrest', 'broadleaf')},
+    'spruce': ('spruce', 14.0),
+    'oak': ('oak', 12.0),
+    'forest': 'config/forest.yaml',
 }
 """Pictures, and the tree of each: a name, a file, or species and height [m] of a grown one."""
 
 _WIND = np.array([SPEED, 0.0, 0.0])
 _CLUSTERS = 1500
 _SETTLING, _STEP = 60.0, 1.0 / 15.0
-_VIEW = Path(__file__).resolve().parents[2] / "view"
+_VIEW = Path(__file__).resolve().parents[2] / 'view'
 
 
 def chart_portraits(out_dir: str | Path) -> list[Path]:
@@ -61,21 +61,21 @@ def chart_portraits(out_dir: str | Path) -> list[Path]:
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
     rows, files = [], []
-    for name in bar(list(PORTRAITS), "portraits"):
+    for name in bar(list(PORTRAITS), 'portraits'):
         scene, simulator = settled(name)
-        files.append(folder / f"{name}_in_wind.png")
+        files.append(folder / f'{name}_in_wind.png')
         picture_in_wind(
             [each.tree for each in simulators_of(simulator)], simulator.place(), _WIND, files[-1],
             leaves=scene.leaves(True, _CLUSTERS),
         )  # fmt: skip
-        rows.append({"picture": files[-1].name, **figures(simulator)})
+        rows.append({'picture': files[-1].name, **figures(simulator)})
     files.append(chart_film(folder))
-    rows.append({"picture": files[-1].name, **film_figures()})
+    rows.append({'picture': files[-1].name, **film_figures()})
     for row, file in zip(rows, files, strict=True):
-        row |= {"file": digest_of_file(file), "drawing": drawing_digest()}
-    table = folder / "portraits.csv"
-    with whole_file(table) as partial, partial.open("w", newline="", encoding="utf-8") as sheet:
-        writer = csv.DictWriter(sheet, list(rows[0]), lineterminator="\n")
+        row |= {'file': digest_of_file(file), 'drawing': drawing_digest()}
+    table = folder / 'portraits.csv'
+    with whole_file(table) as partial, partial.open('w', newline='', encoding='utf-8') as sheet:
+        writer = csv.DictWriter(sheet, list(rows[0]), lineterminator='\n')
         writer.writeheader()
         writer.writerows(rows)
     return [*files, table]
@@ -101,8 +101,8 @@ def figures(simulator: Simulator) -> dict[str, Any]:
     simulator.place()
     x, _, z = simulator.tip_displacement.tolist()
     tree = simulator.tree
-    return {"segments": tree.n_segments, "height": f"{tree.height:.4f}",
-            "tip_east": f"{x:.4f}", "tip_up": f"{z:.4f}"}  # fmt: skip
+    return {'segments': tree.n_segments, 'height': f'{tree.height:.4f}',
+            'tip_east': f'{x:.4f}', 'tip_up': f'{z:.4f}'}  # fmt: skip
 
 
 def digest_of_file(path: Path) -> str:
@@ -113,10 +113,10 @@ def digest_of_file(path: Path) -> str:
 def drawing_digest(sources: Iterable[Path] | None = None) -> str:
     """Digest of the code that draws, without its comments, docstrings and line ends."""
     found = hashlib.sha256()
-    for path in sorted(_VIEW.glob("*.py")) if sources is None else sources:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+    for path in sorted(_VIEW.glob('*.py')) if sources is None else sources:
+        tree = ast.parse(path.read_text(encoding='utf-8'))
         for node in ast.walk(tree):
-            body = getattr(node, "body", None)
+            body = getattr(node, 'body', None)
             if isinstance(body, list):
                 kept = [each for each in body if not _is_text(each)]
                 node.body = kept  # type: ignore[attr-defined]

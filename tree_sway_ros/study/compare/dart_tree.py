@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.study.compare.mujoco_tree import MujocoTree, hinge_axes
+from tree_sway_ros.study.compare.mujoco_tree import hinge_axes, MujocoTree
 from tree_sway_ros.tools.progress import bar
 
 
@@ -43,7 +43,7 @@ class DartTree:
         placed: list[Any] = []
         joints = []
         for i, carrier in enumerate(bodies.carrier):
-            first = int(twin.model.body(f"s{i}").jntadr[0])
+            first = int(twin.model.body(f's{i}').jntadr[0])
             hinge = dartpy.dynamics.UniversalJointProperties()
             hinge.mAxis = list(hinge_axes(bodies.axis[i]))
             hinge.mSpringStiffnesses = twin.model.jnt_stiffness[first : first + 2]
@@ -66,11 +66,14 @@ class DartTree:
             self._order[own : own + 2] = theirs, theirs + 1
 
     def race(self, wind: Floats) -> tuple[Floats, float]:
-        """Tips at each frame in [m], (t, b, 3), and CPU time of a step in [s], one in ten below."""
+        """
+        Tips at each frame in [m], (t, b, 3), and CPU time of a step in [s], one in ten
+        below.
+        """
         tips = np.empty((len(wind), self.twin.tree.n_branches, 3))
         spent = np.empty(len(wind))
         self.twin.reset()
-        for frame, blowing in enumerate(bar(list(wind), "DART, one step per frame")):
+        for frame, blowing in enumerate(bar(list(wind), 'DART, one step per frame')):
             self._skeleton.setForces(self.twin.moments(blowing)[self._order])
             begun = time.process_time_ns()
             self._world.step()

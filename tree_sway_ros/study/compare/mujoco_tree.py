@@ -19,11 +19,11 @@ from typing import Any
 
 import numpy as np
 from scipy import linalg
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse.linalg import eigsh, LinearOperator
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
-from tree_sway_ros.core.reference.articulated_bodies import Bodies, articulated_bodies
+from tree_sway_ros.core.reference.articulated_bodies import articulated_bodies, Bodies
 from tree_sway_ros.core.reference.refinement import refined
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
@@ -51,7 +51,7 @@ def mujoco_module() -> Any:
         import mujoco
     except ModuleNotFoundError as error:
         raise MissingDependencyError(
-            "MuJoCo is not installed", cure="pip install mujoco"
+            'MuJoCo is not installed', cure='pip install mujoco'
         ) from error
     mujoco.set_mju_user_warning(_WARNINGS.append)  # else it writes a log where it stands
     return mujoco
@@ -111,7 +111,7 @@ class MujocoTree:
         self.data = mujoco.MjData(self.model)
         # The engine numbers its bodies as they nest; here they stand as segments do, the ground
         # first.
-        names = ["world", *(f"s{i}" for i in range(tree.n_segments))]
+        names = ['world', *(f's{i}' for i in range(tree.n_segments))]
         self._body = np.array([self.model.body(name).id for name in names])
         self._step, self._forward = mujoco.mj_step, mujoco.mj_forward
         self._forward(self.model, self.data)
@@ -159,14 +159,14 @@ class MujocoTree:
         bodies, data = self.bodies, self.data
         joint, turn, velocity, spin = self._motion()
         carrier = bodies.carrier + 1
-        root_side = np.einsum("nij,nj->ni", turn[carrier], bodies.axis) * bodies.reach[:, :1]
-        tip_side = np.einsum("nij,nj->ni", turn[1:], bodies.axis) * bodies.reach[:, 1:]
+        root_side = np.einsum('nij,nj->ni', turn[carrier], bodies.axis) * bodies.reach[:, :1]
+        tip_side = np.einsum('nij,nj->ni', turn[1:], bodies.axis) * bodies.reach[:, 1:]
         chord = root_side + tip_side
         chord /= np.linalg.norm(chord, axis=1)[:, None]
         middle = velocity[1:] + 0.5 * np.cross(spin[1:], tip_side)
         middle -= 0.5 * np.cross(spin[carrier], root_side)
         air = wind - middle
-        across = air - np.einsum("ni,ni->n", air, chord)[:, None] * chord
+        across = air - np.einsum('ni,ni->n', air, chord)[:, None] * chord
         speed = float(np.clip(np.linalg.norm(wind), STREAMLINING_FROM, STREAMLINING_TO))
         coefficient, exponent = self.species.drag_law(in_leaf=False)
         pressure = 0.5 * AIR_DENSITY * coefficient * speed**-exponent
@@ -186,7 +186,7 @@ class MujocoTree:
         body = self._body[1 + last]
         turn = self.data.xmat.reshape(-1, 3, 3)[body]
         ahead = self.bodies.reach[last, 1:] * self.bodies.axis[last]
-        tips: Floats = self.data.xpos[body] + np.einsum("nij,nj->ni", turn, ahead)
+        tips: Floats = self.data.xpos[body] + np.einsum('nij,nj->ni', turn, ahead)
         return tips
 
     def agreement(self) -> tuple[float, float]:
@@ -289,7 +289,7 @@ class MujocoTree:
                 LinearOperator(
                     (n, n), lambda x: self._momenta(x.reshape(n, 1) / root[:, None])[:, 0] / root
                 ),
-                count, which="LA", v0=np.ones(n),
+                count, which='LA', v0=np.ones(n),
             )  # fmt: skip
         self._circular: Floats = 1.0 / np.sqrt(inverse_square[::-1])
         modes = vectors[:, ::-1] / root[:, None] * self._circular
@@ -316,13 +316,13 @@ def _mjcf(bodies: Bodies, is_twisting: bool) -> str:
     while stack:
         i, is_done = stack.pop()
         if is_done:
-            lines.append("</body>")
+            lines.append('</body>')
             continue
         lines.append(_body(bodies, i, is_twisting))
         stack.append((i, True))
         stack += [(k, False) for k in reversed(children[i + 1])]
-    lines.append("</worldbody></mujoco>")
-    return "\n".join(lines)
+    lines.append('</worldbody></mujoco>')
+    return '\n'.join(lines)
 
 
 def hinge_axes(along: Floats) -> tuple[Floats, Floats]:
@@ -337,7 +337,7 @@ def _body(bodies: Bodies, i: int, is_twisting: bool) -> str:
     springs = [(axis, bodies.bend[i]) for axis in hinge_axes(bodies.axis[i])]
     if is_twisting:
         springs.append((bodies.axis[i], bodies.twist[i]))
-    hinges = "".join(
+    hinges = ''.join(
         f'<joint type="hinge" axis="{_text(axis)}" stiffness="{stiffness:.17g}"/>'
         for axis, stiffness in springs
     )
@@ -350,4 +350,4 @@ def _body(bodies: Bodies, i: int, is_twisting: bool) -> str:
 
 
 def _text(values: Floats) -> str:
-    return " ".join(f"{v:.17g}" for v in values)
+    return ' '.join(f'{v:.17g}' for v in values)

@@ -6,15 +6,15 @@ Our simulator against MuJoCo, on the same tree and in the same wind, in one run:
 The truth is MuJoCo at a step that has converged, which its error at twice that step shows. Its
 springs are set to the beam model's static sway (`mujoco_tree`), its dampers and modal forces give
 every mode the same damping ratio as ours. Costs are CPU time at 1/60 s, ours with the wind force
-and the poses, MuJoCo's without the wind force, which is no part of the engine; at so long a step it
-is only stable with dampers that over-damp its higher modes, which costs it nothing.
+and the poses, MuJoCo's without the wind force, which is no part of the engine; at so long a step
+it is only stable with dampers that over-damp its higher modes, which costs it nothing.
 
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
+import time
 
 import numpy as np
 
@@ -25,8 +25,8 @@ from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.core.wind.climate import WindClimate
-from tree_sway_ros.study.compare.mujoco_tree import NO_TWIST, MujocoTree
-from tree_sway_ros.study.tip_error import Swaying, record_tips, tip_error
+from tree_sway_ros.study.compare.mujoco_tree import MujocoTree, NO_TWIST
+from tree_sway_ros.study.tip_error import record_tips, Swaying, tip_error
 from tree_sway_ros.tools.progress import bar, waiting
 
 FRAME = 1.0 / 60.0
@@ -86,17 +86,17 @@ class Comparison:
 
     def __str__(self) -> str:
         """Say it in a few lines."""
-        return "\n".join(
+        return '\n'.join(
             (
-                f"{self.n_branches} branches, {self.n_segments} segments, tips move up to "
-                f"{self.tip_motion:.3f} m",
+                f'{self.n_branches} branches, {self.n_segments} segments, tips move up to '
+                f'{self.tip_motion:.3f} m',
                 f"MuJoCo's f1 / the beam's {self.first_frequency:.4f}, static sway / the beam's "
                 f"{self.static_sway:.4f}, error at twice the truth's step {self.step_error:.4f}",
-                f"tip error over tip motion: {self.model} {self.error:.4f}, MuJoCo at 1/60 s "
-                f"{self.error_at_60:.4f}",
-                f"CPU time per simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, "
-                f"MuJoCo "
-                f"{1e3 * self.mujoco_cost:.1f} ms, {self.speed_up:.0f} times as much",
+                f'tip error over tip motion: {self.model} {self.error:.4f}, MuJoCo at 1/60 s '
+                f'{self.error_at_60:.4f}',
+                f'CPU time per simulated second at 60 Hz: {self.model} {1e3 * self.cost:.3f} ms, '
+                f'MuJoCo '
+                f'{1e3 * self.mujoco_cost:.1f} ms, {self.speed_up:.0f} times as much',
             )
         )
 
@@ -106,7 +106,7 @@ def compare_with_mujoco(
     species: Species,
     wind: Floats,
     *,
-    model: str = "modes",
+    model: str = 'modes',
     damping_ratio: float = DAMPING_RATIO,
     steps: int = 32,
 ) -> Comparison:
@@ -116,13 +116,13 @@ def compare_with_mujoco(
     Parameters
     ----------
     tree, species
-        The tree and its wood; both models are without twist and without gravity, as MuJoCo's hinges
-        are.
+        The tree and its wood; both models are without twist and without gravity, as MuJoCo's
+        hinges are.
     wind
         Mean of each frame of 1/60 s in [m/s], (t, 3).
     model
-        Of ours; ``auto`` is the cheapest that says of itself that it errs by no more than `AUTO` of
-        the motion.
+        Of ours; ``auto`` is the cheapest that says of itself that it errs by no more than `AUTO`
+        of the motion.
     damping_ratio
         In [-].
     steps
@@ -146,7 +146,7 @@ def compare_with_mujoco(
     )
     rest = tree.end[tree.branch_first[1:] - 1]
     ours: SwaySimulator | AdaptiveSimulator
-    if model == "auto":
+    if model == 'auto':
         motion = float(np.sqrt(np.square(truth - rest).sum(axis=2).mean()))
         expected = WindClimate.of_samples(wind, 1.0 / FRAME)
         ours = AdaptiveSimulator(tree, wood, settings, tolerance=AUTO * motion, expected=expected)
@@ -175,7 +175,7 @@ def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
     """Tips at each frame in [m], (t, b, 3), with so many steps per frame."""
     model.reset()
     tips = np.empty((len(wind), model.tree.n_branches, 3))
-    for frame, blowing in enumerate(bar(wind, f"MuJoCo, {steps} steps per frame")):
+    for frame, blowing in enumerate(bar(wind, f'MuJoCo, {steps} steps per frame')):
         for _ in range(steps):
             model.step(blowing, FRAME / steps)
         tips[frame] = model.tips()
@@ -191,7 +191,7 @@ def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     poses = np.empty((model.tree.n_segments, 7))
     spent, spent_there = np.empty((2, len(wind)))
-    for first in bar(range(0, len(wind), _BLOCK), "both, one step per frame"):
+    for first in bar(range(0, len(wind), _BLOCK), 'both, one step per frame'):
         block = range(first, min(first + _BLOCK, len(wind)))
         begin = time.process_time_ns()  # once a block: asking for it takes as long as a step
         for frame in block:

@@ -3,13 +3,13 @@
 """
 Matrices of tapered Euler-Bernoulli elements in 3D, by Gauss quadrature.
 
-Twelve coordinates an element: displacement and rotation ``(u, v, w, phi, theta_y, theta_z)`` at its
-start and at its end, x along its axis. Cubic Hermite bending, linear stretch and twist
-(Przemieniecki 1968, chapters 5 and 11). The integrands are polynomials in the taper, so five points
-integrate them exactly.
+Twelve coordinates an element: displacement and rotation ``(u, v, w, phi, theta_y, theta_z)`` at
+its start and at its end, x along its axis. Cubic Hermite bending, linear stretch and twist
+(Przemieniecki 1968, chapters 5 and 11). The integrands are polynomials in the taper, so five
+points integrate them exactly.
 
-Symbols: E modulus [Pa], G shear modulus [Pa], rho density [kg/m^3], I second moment [m^4], L length
-[m].
+Symbols: E modulus [Pa], G shear modulus [Pa], rho density [kg/m^3], I second moment [m^4], L
+length [m].
 
 """
 
@@ -176,14 +176,14 @@ def geometric_stiffness(
 def load_rows(shapes: ElementShapes, length: Floats, share: Floats) -> Floats:
     """Nodal loads by a unit force spread with this density, (m, 12, 3), local axes."""
     columns = [
-        np.einsum("g,mg,mga->ma", WEIGHTS, share * length[:, None], rows)
+        np.einsum('g,mg,mga->ma', WEIGHTS, share * length[:, None], rows)
         for rows in shapes.displacement
     ]
     return np.stack(columns, axis=2)
 
 
 def _integral(length: Floats, density: Floats, left: Floats, right: Floats) -> Floats:
-    out: Floats = np.einsum("g,mg,mga,mgb->mab", WEIGHTS, density * length[:, None], left, right)
+    out: Floats = np.einsum('g,mg,mga,mgb->mab', WEIGHTS, density * length[:, None], left, right)
     return out
 
 

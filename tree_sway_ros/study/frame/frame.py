@@ -4,8 +4,9 @@
 The tree as an Euler-Bernoulli frame in 3D: a truth for frequencies, mode shapes and static sway.
 
 Each segment is one or more tapered elements with consistent mass, clamped at the root; a branch is
-rigidly fixed at the nearest node of the segment it sits on, over a rigid offset where it starts off
-that node. Gravity acts through the geometric stiffness only: the rest shape is the loaded shape.
+rigidly fixed at the nearest node of the segment it sits on, over a rigid offset where it starts
+off that node. Gravity acts through the geometric stiffness only: the rest shape is the loaded
+shape.
 
 """
 
@@ -119,15 +120,15 @@ class FrameModel:
         # inertia).
         factor = linalg.splu(
             self.stiffness,
-            permc_spec="MMD_AT_PLUS_A",
+            permc_spec='MMD_AT_PLUS_A',
             diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
+            options={'SymmetricMode': True},
         )
         if np.any(factor.U.diagonal() <= 0.0):
             raise TreeError(
-                "buckles under its own weight: its stiffness is not positive with gravity",
+                'buckles under its own weight: its stiffness is not positive with gravity',
                 where=f"branch '{self._weakest_branch(factor)}' of tree '{self.tree.name}'",
-                cure="check modulus, density and diameters, or leave gravity out",
+                cure='check modulus, density and diameters, or leave gravity out',
             )
         return factor
 
@@ -193,9 +194,11 @@ def frame_model(
     axes = _element_axes(np.repeat(tree.direction, sub, axis=0))
     at_node = np.zeros((0, 3, 3))
     if gravity != 0.0:
-        weight = self_weight(start_node, offset, axes[:, 0], length, width, step, density * gravity)
-        local_force = np.einsum("mij,mgj->mgi", axes, weight.force)
-        local_moment = np.einsum("mij,mgj->mgi", axes, weight.moment)
+        weight = self_weight(
+            start_node, offset, axes[:, 0], length, width, step, density * gravity
+        )
+        local_force = np.einsum('mij,mgj->mgi', axes, weight.force)
+        local_moment = np.einsum('mij,mgj->mgi', axes, weight.moment)
         stiffness = stiffness + element.geometric_stiffness(
             shapes, length, local_force, local_moment
         )
@@ -250,7 +253,8 @@ def _nodes(tree: Tree, sub: int) -> tuple[Floats, Ints, Floats]:
 
 def _element_axes(axis: Floats) -> Floats:
     """
-    Local axes as rows, x along the element, (m, 3, 3); the sections are round, so any roll will do.
+    Local axes as rows, x along the element, (m, 3, 3); the sections are round, so any roll will
+    do.
 
     """
     aside = np.where(np.abs(axis[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])

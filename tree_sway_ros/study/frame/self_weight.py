@@ -3,7 +3,8 @@
 """
 Internal force and moment of a tree of tapered elements that stands still under its own weight.
 
-A tree is statically determinate: what a section carries is the weight beyond it, whatever the wood.
+A tree is statically determinate: what a section carries is the weight beyond it, whatever the
+wood.
 
 """
 
@@ -37,9 +38,11 @@ class SelfWeight:
 
     def offset_stiffness(self, offset: Floats) -> Floats:
         """Stiffness of a rigid offset in [m] on its node's rotation in [N m/rad], (m, 3, 3)."""
-        outer = np.einsum("mi,mj->mij", self.base_force, offset)
-        along = np.einsum("mi,mi->m", self.base_force, offset)
-        turned: Floats = along[:, None, None] * np.eye(3) - 0.5 * (outer + outer.transpose(0, 2, 1))
+        outer = np.einsum('mi,mj->mij', self.base_force, offset)
+        along = np.einsum('mi,mi->m', self.base_force, offset)
+        turned: Floats = along[:, None, None] * np.eye(3) - 0.5 * (
+            outer + outer.transpose(0, 2, 1)
+        )
         return turned
 
 

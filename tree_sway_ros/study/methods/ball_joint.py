@@ -56,8 +56,8 @@ def swing(
     inertia, damping, stiffness
         I [kg m^2], k2 [N m s], k1 [N m].
     e, rate
-        Rotation vector [rad], (2,), and the chord's velocity across b at the start [1/s], (2,); the
-        latter is the vector's own rate only at rest position.
+        Rotation vector [rad], (2,), and the chord's velocity across b at the start [1/s], (2,);
+        the latter is the vector's own rate only at rest position.
     substeps
         Runge-Kutta steps per frame.
 

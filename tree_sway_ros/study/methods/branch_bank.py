@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX, fill_guards, step_branch
+from tree_sway_ros.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch
 
 
 def single_precision(coefficients: Floats) -> NDArray[np.float32]:

@@ -42,17 +42,17 @@ class PlanarChain:
         """Refuse what has no motion to compute."""
         numbers = np.asarray(self.table, dtype=float)
         if numbers.ndim != 2 or numbers.shape[1] != 6 or not len(numbers):
-            raise ParameterError(f"chain table of shape {numbers.shape}", cure="give (n, 6)")
+            raise ParameterError(f'chain table of shape {numbers.shape}', cure='give (n, 6)')
         bad = np.flatnonzero(~np.isfinite(numbers).all(1) | (numbers < 0).any(1))
         if len(bad):
-            raise ParameterError("value that is negative or not finite", where=f"segment {bad[0]}")
+            raise ParameterError('value that is negative or not finite', where=f'segment {bad[0]}')
         carried = np.append(np.cumsum(numbers[::-1, MASS])[::-1][1:], 0.0)
         swing = numbers[:, INERTIA] + numbers[:, MASS] * numbers[:, LEVER] ** 2
         still = np.flatnonzero(swing + numbers[:, LENGTH] ** 2 * carried == 0.0)
         if len(still):
             raise ParameterError(
-                "no inertia about its node",
-                where=f"segment {still[0]}",
+                'no inertia about its node',
+                where=f'segment {still[0]}',
                 cure="give mass and lever, or use the oscillator's static limit",
             )
 

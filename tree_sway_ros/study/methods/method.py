@@ -31,9 +31,9 @@ class Method(ABC):
     One time integrator; its subclasses hold one step each.
 
     The class attributes are the declaration: `name`; `form`, "minimal" (angles) or "multiplier"
-    (the paper's coordinates); `order`, the one that a test measures; `nodes`, fractions of the step
-    at which it wants the load; `limit`, the largest w h [-] it stands without damping, infinite
-    where there is none; `notes` and `source` on its stability.
+    (the paper's coordinates); `order`, the one that a test measures; `nodes`, fractions of the
+    step at which it wants the load; `limit`, the largest w h [-] it stands without damping,
+    infinite where there is none; `notes` and `source` on its stability.
 
     """
 
@@ -95,7 +95,7 @@ class Method(ABC):
 class MinimalMethod(Method):
     """State: rows of angles, rates, angles and rates one step ago, (4, n)."""
 
-    form: ClassVar[str] = "minimal"
+    form: ClassVar[str] = 'minimal'
 
     def start(
         self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float
@@ -116,9 +116,12 @@ class MinimalMethod(Method):
 
 @dataclass(frozen=True)
 class MultiplierMethod(Method):
-    """State: rows q, v, accelerations, multipliers (2n used), and one step ago q and v, (6, 3n)."""
+    """
+    State: rows q, v, accelerations, multipliers (2n used), and one step ago q and v, (6,
+    3n).
+    """
 
-    form: ClassVar[str] = "multiplier"
+    form: ClassVar[str] = 'multiplier'
 
     def start(
         self, chain: PlanarChain, theta: Array, omega: Array, load: Array, dt: float

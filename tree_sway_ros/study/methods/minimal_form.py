@@ -3,9 +3,9 @@
 """
 The chain in its own angles: the paper's equation with the multipliers eliminated.
 
-For one segment ``I theta'' + k2 theta' + k1 theta = c (Py cos theta - Px sin theta)``; for a chain,
-with A_ij = l_i (m_j c_j + l_j * mass beyond j) for i < j and the moments of inertia about the nodes
-on the diagonal::
+For one segment ``I theta'' + k2 theta' + k1 theta = c (Py cos theta - Px sin theta)``; for a
+chain, with A_ij = l_i (m_j c_j + l_j * mass beyond j) for i < j and the moments of inertia about
+the nodes on the diagonal::
 
     sum_j A_ij (cos(theta_i - theta_j) theta_j'' + sin(theta_i - theta_j) theta_j'^2)
         + K theta + C theta' = n_i . (c_i P_i + l_i * sum of P beyond i),   n = (-sin, cos)

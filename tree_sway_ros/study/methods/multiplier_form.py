@@ -132,7 +132,10 @@ def add_masses(table: Array, factor: float, out: Array) -> None:
 
 @kernel
 def add_joints(table: Array, column: int, factor: float, out: Array) -> None:
-    """Add factor times the stiffness (column 4) or damping (5) matrix to the corner of a matrix."""
+    """
+    Add factor times the stiffness (column 4) or damping (5) matrix to the corner of a
+    matrix.
+    """
     for i in range(len(table)):
         at, k = 3 * i + 2, factor * table[i, column]
         out[at, at] = out[at, at] + k
@@ -183,6 +186,8 @@ def index1(
             for col in range(3 * n):
                 if g[row, col] != 0.0:
                     speed = speed + g[row, col] * v[col]
-            rhs[3 * n + row, 0] = rhs[3 * n + row, 0] - 2.0 * alpha * speed - beta * beta * gap[row]
+            rhs[3 * n + row, 0] = (
+                rhs[3 * n + row, 0] - 2.0 * alpha * speed - beta * beta * gap[row]
+            )
     solve(saddle(table, g, 1.0), rhs)
     return rhs[: 3 * n, 0].copy(), rhs[3 * n :, 0].copy()

@@ -3,9 +3,9 @@
 """
 The paper's rotation plane taken literally: rebuilt from branch and wind at each step.
 
-The state is one angle and its rate, in the plane of the branch and the wind of the moment. Kept for
-comparison: the plane does not exist where wind and branch are parallel, and an angle kept while the
-plane turns with the wind is an angle in a direction the branch never moved in.
+The state is one angle and its rate, in the plane of the branch and the wind of the moment. Kept
+for comparison: the plane does not exist where wind and branch are parallel, and an angle kept
+while the plane turns with the wind is an angle in a direction the branch never moved in.
 
 """
 
@@ -43,7 +43,7 @@ def run_in_rebuilt_plane(loads: Array, row: Array) -> Array:
     c0, c1, c2, c3, c4, c5, c6, c7 = row
     for n, (wb, w1, w2) in enumerate(loads):
         across = np.hypot(w1, w2)
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid='ignore'):
             direction = np.array([w1, w2]) / across
 
         def moment(angle: float, along: float = wb, across: float = across) -> float:

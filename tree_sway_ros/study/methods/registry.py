@@ -54,8 +54,8 @@ def method_named(name: str) -> Method:
     """
     if name not in METHODS:
         raise ParameterError(
-            f"unknown integrator {name!r}",
-            where="integrator",
-            cure="take one of " + ", ".join(METHODS),
+            f'unknown integrator {name!r}',
+            where='integrator',
+            cure='take one of ' + ', '.join(METHODS),
         )
     return METHODS[name]()

@@ -12,15 +12,15 @@ them is replaced.
 from __future__ import annotations
 
 import argparse
-import csv
-import re
 from collections.abc import Callable
+import csv
 from functools import partial
 from pathlib import Path
+import re
 
 from tree_sway_ros.core.tree.species import species_keys, species_named
 from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.trees.tree_file import TREE_FORMATS, options_of
+from tree_sway_ros.files.trees.tree_file import options_of, TREE_FORMATS
 from tree_sway_ros.files.whole_file import write_text_whole
 from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.ros.parameters.parameter import Table, Value
@@ -30,40 +30,40 @@ from tree_sway_ros.study.pages.rooms import rooms_drawing
 from tree_sway_ros.study.validation.report import sections_of
 from tree_sway_ros.tools import cli
 
-PAGES = ("README.md", "doc/models.md", "doc/reference.md", "doc/trees.md")
+PAGES = ('README.md', 'doc/models.md', 'doc/reference.md', 'doc/trees.md')
 """Pages with tables."""
 
-FIGURES = "doc/pictures/fidelity.csv"
+FIGURES = 'doc/pictures/fidelity.csv'
 """What ``tree-sway chart fidelity`` measured."""
 
-VALIDATION = "doc/validation.md"
+VALIDATION = 'doc/validation.md'
 """What ``tree-sway chart validation`` measured."""
 
-EXAMPLES = ("critical_wind_speed", "response_spectra", "sheltered_and_open")
+EXAMPLES = ('critical_wind_speed', 'response_spectra', 'sheltered_and_open')
 """Scripts that are notebooks as well."""
 
 DRAWINGS: dict[str, Callable[[], str]] = {
-    "doc/pictures/rooms.svg": rooms_drawing,
+    'doc/pictures/rooms.svg': rooms_drawing,
     **{
-        f"examples/{name}.ipynb": partial(notebook, Path("examples", f"{name}.py"))
+        f'examples/{name}.ipynb': partial(notebook, Path('examples', f'{name}.py'))
         for name in EXAMPLES
     },
 }
 """Files made whole: a drawing of the source, and the notebooks of the examples."""
 
-_TABLE = re.compile(r"(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
+_TABLE = re.compile(r'(<!-- table: (?P<name>\S+) -->\n).*?(<!-- end -->)', re.DOTALL)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "files",
-        nargs="*",
+        'files',
+        nargs='*',
         default=(*PAGES, *DRAWINGS),
-        help=f"files with tables, or drawings ({', '.join((*PAGES, *DRAWINGS))})",
+        help=f'files with tables, or drawings ({", ".join((*PAGES, *DRAWINGS))})',
     )
     parser.add_argument(
-        "--check", action="store_true", help="change nothing; exit 2 if not up to date"
+        '--check', action='store_true', help='change nothing; exit 2 if not up to date'
     )
 
 
@@ -71,19 +71,19 @@ def run(arguments: argparse.Namespace) -> int:
     """Bring tables and drawings up to date, or check that they are."""
     for file in arguments.files:
         path = Path(file)
-        text = path.read_text(encoding="utf-8") if path.is_file() or file not in DRAWINGS else ""
+        text = path.read_text(encoding='utf-8') if path.is_file() or file not in DRAWINGS else ''
         fresh = DRAWINGS[file]() if file in DRAWINGS else with_tables(text, where=str(path))
         if fresh == text:
-            print(f"{path}: up to date")
+            print(f'{path}: up to date')
             continue
         if arguments.check:
-            raise FormatError("not up to date", where=str(path), cure="run tree-sway docs")
+            raise FormatError('not up to date', where=str(path), cure='run tree-sway docs')
         write_text_whole(path, fresh)
-        print(f"{path}: written")
+        print(f'{path}: written')
     return 0
 
 
-def with_tables(text: str, where: str = "text") -> str:
+def with_tables(text: str, where: str = 'text') -> str:
     """
     Replace the tables in a text by those of the code.
 
@@ -108,29 +108,29 @@ def with_tables(text: str, where: str = "text") -> str:
     tables = markdown_tables()
 
     def fill(match: re.Match[str]) -> str:
-        name = match["name"]
+        name = match['name']
         if name not in tables:
-            cure = f"name one of: {', '.join(tables)}"
+            cure = f'name one of: {", ".join(tables)}'
             raise FormatError(f"no table is called '{name}'", where=where, cure=cure)
-        return f"{match[1]}{tables[name]}{match[3]}"
+        return f'{match[1]}{tables[name]}{match[3]}'
 
     return _TABLE.sub(fill, text)
 
 
 def markdown_tables() -> dict[str, str]:
     """
-    Every table by its name: commands, topics, species, formats of trees, and the parameters of each
-    node by the node's name.
+    Every table by its name: commands, topics, species, formats of trees, and the parameters of
+    each node by the node's name.
 
     """
     tables = {
-        "commands": commands_table(),
-        "topics": topics_table(),
-        "species": species_table(),
-        "tree_formats": formats_table(),
-        "fidelity": fidelity_table(),
-        "fidelity_range": fidelity_range(),
-        "crooked": crooked_table(),
+        'commands': commands_table(),
+        'topics': topics_table(),
+        'species': species_table(),
+        'tree_formats': formats_table(),
+        'fidelity': fidelity_table(),
+        'fidelity_range': fidelity_range(),
+        'crooked': crooked_table(),
     }
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters_table(table)
@@ -139,52 +139,52 @@ def markdown_tables() -> dict[str, str]:
 
 def commands_table() -> str:
     """What each command does, with its example."""
-    lines = ["| command | what it does | example |", "|---|---|---|"]
+    lines = ['| command | what it does | example |', '|---|---|---|']
     lines += [
-        f"| `{name}` | {c.summary} | `tree-sway {c.example}` |" for name, c in cli.COMMANDS.items()
+        f'| `{name}` | {c.summary} | `tree-sway {c.example}` |' for name, c in cli.COMMANDS.items()
     ]
-    return "\n".join(lines) + "\n"
+    return '\n'.join(lines) + '\n'
 
 
 def topics_table() -> str:
     """Type, quality of service and content of each topic."""
-    lines = ["| topic | type | QoS | content |", "|---|---|---|---|"]
+    lines = ['| topic | type | QoS | content |', '|---|---|---|---|']
     for topic in TOPICS:
-        reliability = "reliable" if topic.reliable else "best effort"
-        service = f"{reliability}{', latched' if topic.latched else ''}, last {topic.depth}"
-        cells = (f"`{topic.name}`", f"`{topic.type_name}`", service, topic.description)
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        reliability = 'reliable' if topic.reliable else 'best effort'
+        service = f'{reliability}{", latched" if topic.latched else ""}, last {topic.depth}'
+        cells = (f'`{topic.name}`', f'`{topic.type_name}`', service, topic.description)
+        lines.append(f'| {" | ".join(cells)} |')
+    return '\n'.join(lines) + '\n'
 
 
 def parameters_table(table: Table) -> str:
     """Every parameter of a node with its default, unit, range and description."""
-    lines = ["| parameter | default | unit | range | live | description |"]
-    lines.append("|---|---|---|---|---|---|")
+    lines = ['| parameter | default | unit | range | live | description |']
+    lines.append('|---|---|---|---|---|---|')
     for p in table:
-        limits = p.range_text.replace("|", "\\|")
-        note = f" ({p.source})" if p.source else ""
-        live = "yes" if p.live else ""
-        cells = (f"`{p.name}`", f"`{_text(p.default)}`", p.unit, limits, live)
-        lines.append(f"| {' | '.join(cells)} | {p.description}{note} |")
-    return "\n".join(lines) + "\n"
+        limits = p.range_text.replace('|', '\\|')
+        note = f' ({p.source})' if p.source else ''
+        live = 'yes' if p.live else ''
+        cells = (f'`{p.name}`', f'`{_text(p.default)}`', p.unit, limits, live)
+        lines.append(f'| {" | ".join(cells)} | {p.description}{note} |')
+    return '\n'.join(lines) + '\n'
 
 
 def _text(value: Value) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):
-        return "[" + ", ".join(f"{number:g}" for number in value) + "]"
-    return '""' if value == "" else str(value)
+        return '[' + ', '.join(f'{number:g}' for number in value) + ']'
+    return '""' if value == '' else str(value)
 
 
 def formats_table() -> str:
     """Formats of tree files, with the options that each takes."""
-    lines = ["| format | files | options |", "|---|---|---|"]
+    lines = ['| format | files | options |', '|---|---|---|']
     for each in TREE_FORMATS:
-        options = ", ".join(f"`{option}`" for option in options_of(each))
-        lines.append(f"| {each.name} | {', '.join(each.suffixes)} | {options} |")
-    return "\n".join(lines) + "\n"
+        options = ', '.join(f'`{option}`' for option in options_of(each))
+        lines.append(f'| {each.name} | {", ".join(each.suffixes)} | {options} |')
+    return '\n'.join(lines) + '\n'
 
 
 def _fidelity() -> list[dict[str, str]]:
@@ -192,61 +192,61 @@ def _fidelity() -> list[dict[str, str]]:
     path = Path(FIGURES)
     if not path.is_file():
         return []
-    with path.open(encoding="utf-8", newline="") as file:
+    with path.open(encoding='utf-8', newline='') as file:
         return list(csv.DictReader(file))
 
 
 def fidelity_table() -> str:
     """Tip error over tip motion, and time per frame, of every model on the trees of the chart."""
     rows = _fidelity()
-    trees = list(dict.fromkeys(row["tree"] for row in rows))
+    trees = list(dict.fromkeys(row['tree'] for row in rows))
     lines = [
-        f"| model | {' | '.join(f'{tree}: error | us per frame' for tree in trees)} |",
-        f"|---|{'---|---|' * len(trees)}",
+        f'| model | {" | ".join(f"{tree}: error | us per frame" for tree in trees)} |',
+        f'|---|{"---|---|" * len(trees)}',
     ]
-    for model in dict.fromkeys(row["model"] for row in rows):
-        here = {row["tree"]: row for row in rows if row["model"] == model}
+    for model in dict.fromkeys(row['model'] for row in rows):
+        here = {row['tree']: row for row in rows if row['model'] == model}
         cells = (
-            f"{float(here[tree]['error']):.2g} | {float(here[tree]['nanoseconds']) / 1e3:.0f}"
+            f'{float(here[tree]["error"]):.2g} | {float(here[tree]["nanoseconds"]) / 1e3:.0f}'
             for tree in trees
         )
-        lines.append(f"| `{model}` | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        lines.append(f'| `{model}` | {" | ".join(cells)} |')
+    return '\n'.join(lines) + '\n'
 
 
 def fidelity_range() -> str:
     """One sentence on trees, wind, truth and cost of the chart, for the line below it."""
     rows = _fidelity()
-    costs = [float(row["nanoseconds"]) / 1e3 for row in rows] or [0.0]
-    trees = len({row["tree"] for row in rows})
+    costs = [float(row['nanoseconds']) / 1e3 for row in rows] or [0.0]
+    trees = len({row['tree'] for row in rows})
     return (
-        f"{trees} trees of 40 branches, in {rows[0]['wind'] if rows else 'no wind'}; from "
-        f"{min(costs):.0f} to {max(costs):.0f} us of CPU time per frame, solving and placing.\n"
+        f'{trees} trees of 40 branches, in {rows[0]["wind"] if rows else "no wind"}; from '
+        f'{min(costs):.0f} to {max(costs):.0f} us of CPU time per frame, solving and placing.\n'
     )
 
 
 def crooked_table() -> str:
     """Tip errors on straight and on crooked trees, the last table of the validation's section."""
     path = Path(VALIDATION)
-    page = path.read_text(encoding="utf-8") if path.is_file() else ""
-    return sections_of(page).get("models", "").rpartition("\n\n")[2]
+    page = path.read_text(encoding='utf-8') if path.is_file() else ''
+    return sections_of(page).get('models', '').rpartition('\n\n')[2]
 
 
 def species_table() -> str:
     """Wood, damping, drag and leaves of every species."""
     lines = [
-        "| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | "
-        "leaves [m^2/m^2] | [kg/m^2] |",
-        "|---|---|---|---|---|---|---|---|",
+        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | '
+        'leaves [m^2/m^2] | [kg/m^2] |',
+        '|---|---|---|---|---|---|---|---|',
     ]
     for key in species_keys():
         wood, leaf = species_named(key), species_named(key).leaves
-        mark = " (an estimate)" if wood.is_estimate else ""
+        mark = ' (an estimate)' if wood.is_estimate else ''
         lines.append(
-            f"| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} "
-            f"| {wood.damping_bare:g}, {wood.damping_in_leaf:g} "
-            f"| {wood.drag_coefficient:g} U^-{wood.drag_exponent:g} "
-            f"| {leaf.area_per_section:g}{', evergreen' if leaf.is_evergreen else ''} | "
-            f"{leaf.fresh_mass:g} |"
+            f'| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} '
+            f'| {wood.damping_bare:g}, {wood.damping_in_leaf:g} '
+            f'| {wood.drag_coefficient:g} U^-{wood.drag_exponent:g} '
+            f'| {leaf.area_per_section:g}{", evergreen" if leaf.is_evergreen else ""} | '
+            f'{leaf.fresh_mass:g} |'
         )
-    return "\n".join(lines) + "\n"
+    return '\n'.join(lines) + '\n'

@@ -18,7 +18,7 @@ PACKAGE = Path(__file__).resolve().parents[2]
 _NAME = PACKAGE.name
 
 _WIDTH, _ROW, _BOX, _HEIGHT, _MARGIN = 1180, 78, 30, 14, 26
-_COLOURS = {"core": "#dcebdc", "study": "#eee6f4", "other": "#e3ebf5"}
+_COLOURS = {'core': '#dcebdc', 'study': '#eee6f4', 'other': '#e3ebf5'}
 
 Rooms = dict[str, set[str]]
 
@@ -39,35 +39,35 @@ def room_imports(package: Path = PACKAGE) -> Rooms:
 
     """
     found: Rooms = {}
-    for path in sorted(package.rglob("*.py")):
-        own = _room(path.relative_to(package).with_suffix("").parts)
+    for path in sorted(package.rglob('*.py')):
+        own = _room(path.relative_to(package).with_suffix('').parts)
         if own:
             others = {_room(module) for module in _imports(path, package)}
-            found.setdefault(own, set()).update(others - {own, ""})
+            found.setdefault(own, set()).update(others - {own, ''})
     return found
 
 
 def _room(parts: tuple[str, ...]) -> str:
-    if len(parts) < 2 and parts in ((), ("__init__",), ("__main__",)):
-        return ""
-    if parts[0] != "core":
+    if len(parts) < 2 and parts in ((), ('__init__',), ('__main__',)):
+        return ''
+    if parts[0] != 'core':
         return parts[0]
-    return f"core/{parts[1]}" if len(parts) > 1 and parts[1] != "__init__" else ""
+    return f'core/{parts[1]}' if len(parts) > 1 and parts[1] != '__init__' else ''
 
 
 def _imports(path: Path, package: Path) -> Iterator[tuple[str, ...]]:
     """Modules of the package that a file imports, as parts below the package."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
         names: list[str] = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            names = [f'{node.module}.{alias.name}' for alias in node.names]
         for name in names:
-            parts = tuple(name.split("."))
+            parts = tuple(name.split('.'))
             if (
                 parts[0] == _NAME
-                and (package / parts[1]).is_dir() | (package / f"{parts[1]}.py").is_file()
+                and (package / parts[1]).is_dir() | (package / f'{parts[1]}.py').is_file()
             ):
                 yield parts[1:]
 
@@ -127,7 +127,7 @@ def rooms_drawing(rooms: Rooms | None = None) -> str:
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} '
         f'{2 * _MARGIN + top * _ROW + _BOX}" font-family="sans-serif" font-size="{_HEIGHT}">',
-        "<title>Rooms of tree_sway_ros and what they import</title>",
+        '<title>Rooms of tree_sway_ros and what they import</title>',
         '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
         'markerHeight="7" orient="auto"><path d="M0 0 8 4 0 8z" fill="#777"/></marker></defs>',
         '<rect width="100%" height="100%" fill="white"/>',
@@ -135,7 +135,7 @@ def rooms_drawing(rooms: Rooms | None = None) -> str:
     for name in sorted(arrows):
         lines += [_arrow(places[name], places[other]) for other in sorted(arrows[name])]
     lines += [_box(name, places[name]) for name in sorted(places)]
-    return "\n".join([*lines, "</svg>", ""])
+    return '\n'.join([*lines, '</svg>', ''])
 
 
 def _ordered(
@@ -154,14 +154,16 @@ def _arrow(upper: tuple[float, float, float], lower: tuple[float, float, float])
     (x1, y1, _), (x2, y2, _) = upper, lower
     y1, y2 = y1 + _BOX / 2, y2 - _BOX / 2
     bend = (y2 - y1) / 2
-    path = f"M{x1:.0f} {y1:.0f}C{x1:.0f} {y1 + bend:.0f} {x2:.0f} {y2 - bend:.0f} {x2:.0f} {y2:.0f}"
+    path = (
+        f'M{x1:.0f} {y1:.0f}C{x1:.0f} {y1 + bend:.0f} {x2:.0f} {y2 - bend:.0f} {x2:.0f} {y2:.0f}'
+    )
     return f'<path d="{path}" fill="none" stroke="#999" marker-end="url(#tip)"/>'
 
 
 def _box(name: str, place: tuple[float, float, float]) -> str:
     x, y, width = place
-    group = name.split("/")[0]
-    colour = _COLOURS.get(group, _COLOURS["other"])
+    group = name.split('/')[0]
+    colour = _COLOURS.get(group, _COLOURS['other'])
     return (
         f'<g><rect x="{x - width / 2:.0f}" y="{y - _BOX / 2:.0f}" width="{width:.0f}" '
         f'height="{_BOX}" rx="5" fill="{colour}" stroke="#555"/><text x="{x:.0f}" '

@@ -12,8 +12,8 @@ angles and the joint reaction, which for the first are the multipliers themselve
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
+import time
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from tree_sway_ros.study.methods import minimal_form, multiplier_form
 from tree_sway_ros.study.methods.chain import PlanarChain
 from tree_sway_ros.study.methods.registry import method_named
 from tree_sway_ros.study.methods.trajectory import integrate
-from tree_sway_ros.study.paper.key_segments import KeySegments, key_segments
+from tree_sway_ros.study.paper.key_segments import key_segments, KeySegments
 
 RATE = 60
 """Frames per second."""
@@ -37,13 +37,13 @@ SUBSTEPS = 4
 """Steps of Runge-Kutta's method per frame, in both forms."""
 
 FORMS = {
-    "multipliers": ("baumgarte", SUBSTEPS),
-    "reduced": ("rk4", SUBSTEPS),
-    "propagator": ("exact_foh", 1),
+    'multipliers': ('baumgarte', SUBSTEPS),
+    'reduced': ('rk4', SUBSTEPS),
+    'propagator': ('exact_foh', 1),
 }
 """Method and steps per frame of each form."""
 
-CONSTANTS = {"benjamina": (1.2e4, 60.0), "goldcrest": (6.0e3, 15.0)}
+CONSTANTS = {'benjamina': (1.2e4, 60.0), 'goldcrest': (6.0e3, 15.0)}
 """k1 constant in [N m/rad/m^3] and k2 constant in [N m s/rad/m^3] per plant, found by trial."""
 
 FROM_THE_RIGHT = (-1.0, 0.0, 0.0)
@@ -88,8 +88,8 @@ class Experiment:
     solutions
         By the name of the form, as in `FORMS`.
     ours
-        Displacement of the highest tip in [m] under the model ``modes`` of this package in the same
-        wind, (frames + 1, 3).
+        Displacement of the highest tip in [m] under the model ``modes`` of this package in the
+        same wind, (frames + 1, 3).
 
     """
 
@@ -154,8 +154,8 @@ def solve(keys: KeySegments, speed: Floats, method_name: str, substeps: int) -> 
     if not np.isfinite(angle).all():
         raise ParameterError(
             f"the form '{method_name}' is unstable at {RATE * substeps} steps per second",
-            where=f"key segment of {float(keys.frequency[keys.solved].max()):.0f} Hz",
-            cure="lower the constants of stiffness and damping",
+            where=f'key segment of {float(keys.frequency[keys.solved].max()):.0f} Hz',
+            cure='lower the constants of stiffness and damping',
         )
     angle = angle[:, keys.source]
     chain = PlanarChain(keys.table[:1])
@@ -173,9 +173,9 @@ def measured_share(tree: Tree, keys: KeySegments, speed: Floats) -> float:
     counts = np.diff(tree.branch_first)
     several = np.flatnonzero(counts > 1)
     few = [_alone(keys, several), _alone(keys, np.repeat(several, counts[several]))]
-    solve(few[0], speed[:3], *FORMS["multipliers"])
+    solve(few[0], speed[:3], *FORMS['multipliers'])
     seconds = [
-        min(solve(part, speed[:31], *FORMS["multipliers"]).seconds for _ in range(2))
+        min(solve(part, speed[:31], *FORMS['multipliers']).seconds for _ in range(2))
         for part in few
     ]
     return seconds[1] / seconds[0]
@@ -184,13 +184,17 @@ def measured_share(tree: Tree, keys: KeySegments, speed: Floats) -> float:
 def _alone(keys: KeySegments, rows: Ints) -> KeySegments:
     """Return the key segments of some branches, repeated ones as often, each solved."""
     return KeySegments(
-        keys.table[rows], keys.along[rows], keys.across[rows], keys.load[rows], np.arange(len(rows))
+        keys.table[rows],
+        keys.along[rows],
+        keys.across[rows],
+        keys.load[rows],
+        np.arange(len(rows)),
     )
 
 
 def _reaction(form: str, chain: PlanarChain, state: Floats, load: Floats) -> Floats:
     """Force that the joint carries: the multipliers, or mass times acceleration less the load."""
-    if form == "multiplier":
+    if form == 'multiplier':
         return multiplier_form.index1(chain.table, state[0], state[1], load, 0.0, 0.0)[1]
     return np.asarray(minimal_form.reactions(chain.table, state[0], state[1], load)[0])
 
@@ -207,7 +211,7 @@ def _instants(frames: int, substeps: int, nodes: tuple[float, ...]) -> Floats:
 
 def _ours(tree: Tree, species: Species, speed: Floats) -> Floats:
     """Displacement of the highest tip in [m], (frames + 1, 3), in the model ``modes``."""
-    simulator = make_simulator(tree, species, model="modes")
+    simulator = make_simulator(tree, species, model='modes')
     tips = np.zeros((len(speed), 3))
     for frame in range(1, len(speed)):
         mean = 0.5 * (speed[frame - 1] + speed[frame])

@@ -49,7 +49,7 @@ def followed(tree: Tree, keys: KeySegments, angle: Floats) -> tuple[Floats, Floa
             bent = turned[base] @ bent
             foot = start[base] + turned[base] @ (foot - tree.start[base])
         turned[part] = bent
-        ends = foot + np.cumsum(np.einsum("sij,sj->si", bent, rows), axis=0)
+        ends = foot + np.cumsum(np.einsum('sij,sj->si', bent, rows), axis=0)
         end[part] = ends
         start[part] = np.vstack([foot, ends[:-1]])
     return start, end

@@ -1,7 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key segments of a whole plant as the paper sets them: one pinned, sprung rod per branch, in a plane.
+Key segments of a whole plant as the paper sets them: one pinned, sprung rod per branch, in a
+plane.
 
 The segment turns about its root-side node in the plane of its own direction and the wind's
 (2.2.1). Its bending stiffness and its damping come from the volumes of its branch and of the
@@ -45,8 +46,8 @@ class KeySegments:
     table
         Rows of `PlanarChain`: m, J, c, l, k1, k2 of each key segment, (b, 6).
     along, across
-        X and Y axis of each rotation plane: the branch's chord, and what of the wind's direction is
-        square to it, (b, 3). A branch along the wind has no plane of its own and any will do.
+        X and Y axis of each rotation plane: the branch's chord, and what of the wind's direction
+        is square to it, (b, 3). A branch along the wind has no plane of its own and any will do.
     load
         Wind load in the plane at 1 m/s in [N s^2/m^2], (b, 2).
     source
@@ -104,13 +105,13 @@ def key_segments(
         A constant that is not above 0, or no direction.
 
     """
-    for name, value in (("k1 constant", stiffness), ("k2 constant", damping)):
+    for name, value in (('k1 constant', stiffness), ('k2 constant', damping)):
         if not (np.isfinite(value) and value > 0.0):
-            raise ParameterError(f"{name} {value:g}", cure="give a finite number above 0")
+            raise ParameterError(f'{name} {value:g}', cure='give a finite number above 0')
     wind = np.asarray(direction, dtype=np.float64)
     speed = float(np.linalg.norm(wind))
     if not (np.isfinite(speed) and speed > 0.0):
-        raise ParameterError(f"wind direction {wind}", cure="give a vector that is not zero")
+        raise ParameterError(f'wind direction {wind}', cure='give a vector that is not zero')
     first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
     chord = tree.end[last] - tree.start[first]
     along = chord / np.linalg.norm(chord, axis=1)[:, None]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.study.paper.experiment import RATE, Experiment
+from tree_sway_ros.study.paper.experiment import Experiment, RATE
 from tree_sway_ros.study.paper.followers import followed
 from tree_sway_ros.view.plotting import new_figure, save_figure
 from tree_sway_ros.view.projection import Camera
@@ -22,14 +22,19 @@ if TYPE_CHECKING:
 CAMERA = Camera(elevation=0.05)
 """From the south, so that a wind from the right blows to the west."""
 
-_WIND, _BARK, _PALE, _PLANE = "#1f6fb4", "#5b4632", "#b9b2a8", "#dfe9f2"
+_WIND, _BARK, _PALE, _PLANE = '#1f6fb4', '#5b4632', '#b9b2a8', '#dfe9f2'
 
 
 def draw_method(path: str | Path) -> Path:
     """Draw figures 1 and 2: the rotation plane of a segment, and the four steps of a branch."""
     figure = new_figure(11.0, 4.0)
     _rotation_plane(figure.add_axes((0.01, 0.02, 0.3, 0.86)))
-    titles = ("1 wind load", "2 key segment solved", "3 followers placed", "4 joined from the root")
+    titles = (
+        '1 wind load',
+        '2 key segment solved',
+        '3 followers placed',
+        '4 joined from the root',
+    )
     for step, title in enumerate(titles):
         axes = figure.add_axes((0.33 + 0.165 * step, 0.02, 0.16, 0.86))
         _branch_step(axes, step)
@@ -45,13 +50,13 @@ def draw_plants(experiments: list[Experiment], path: str | Path) -> Path:
         axes = figure.add_axes((place / len(experiments), 0.0, 1.0 / len(experiments), 0.92))
         frame = frame_around(np.vstack([tree.start, tree.end]), CAMERA)
         draw_tree(axes, tree, tree.start, tree.end, CAMERA, frame)
-        axes.set_title(f"{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments")
+        axes.set_title(f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments')
     return save_figure(figure, path)
 
 
 def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path:
     """Draw figure 4: a plant in the wind from the right, at even times, over its shape at rest."""
-    tree, angle = experiment.tree, experiment.solutions["reduced"].angle
+    tree, angle = experiment.tree, experiment.solutions['reduced'].angle
     chosen = np.linspace(0, len(angle) - 1, frames).astype(int)
     placed = [followed(tree, experiment.keys, angle[k]) for k in chosen]
     points = np.vstack([tree.start, tree.end, *(node for pair in placed for node in pair)])
@@ -64,7 +69,7 @@ def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path
         draw_ghost(axes, tree, CAMERA)
         draw_tree(axes, tree, start, end, CAMERA, frame)
         draw_wind(axes, frame, CAMERA, np.array([-experiment.speed[k], 0.0, 0.0]))
-        axes.set_title(f"{k / RATE:.1f} s", fontsize=10)
+        axes.set_title(f'{k / RATE:.1f} s', fontsize=10)
     return save_figure(figure, path)
 
 
@@ -74,19 +79,19 @@ def draw_tips(experiment: Experiment, path: str | Path) -> Path:
     wind, tip = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
     seconds = np.arange(len(experiment.speed)) / RATE
     wind.plot(seconds, experiment.speed, color=_WIND)
-    wind.set_ylabel("wind [m/s]")
+    wind.set_ylabel('wind [m/s]')
     styles = {
-        "multipliers": ("#888888", 3.0),
-        "reduced": ("#c0392b", 1.4),
-        "propagator": ("k", 0.7),
+        'multipliers': ('#888888', 3.0),
+        'reduced': ('#c0392b', 1.4),
+        'propagator': ('k', 0.7),
     }
     for name, (color, width) in styles.items():
         path_of_tip = tip_path(experiment, experiment.solutions[name].angle)
-        tip.plot(seconds, -path_of_tip[:, 0], color=color, lw=width, label=f"paper, {name}")
-    tip.plot(seconds, -experiment.ours[:, 0], color="#27803f", label="this package, modes")
-    tip.set(xlabel="time [s]", ylabel="highest tip, downwind [m]")
-    tip.legend(loc="upper left", fontsize=8)
-    figure.suptitle(f"{experiment.tree.name} in a wind from the right")
+        tip.plot(seconds, -path_of_tip[:, 0], color=color, lw=width, label=f'paper, {name}')
+    tip.plot(seconds, -experiment.ours[:, 0], color='#27803f', label='this package, modes')
+    tip.set(xlabel='time [s]', ylabel='highest tip, downwind [m]')
+    tip.legend(loc='upper left', fontsize=8)
+    figure.suptitle(f'{experiment.tree.name} in a wind from the right')
     return save_figure(figure, path)
 
 
@@ -102,41 +107,41 @@ def _rotation_plane(axes: Axes) -> None:
     """Figure 1: a segment, its root-side node, and the plane in which it turns."""
     from matplotlib.patches import Polygon
 
-    axes.set(xlim=(-1.2, 1.5), ylim=(-0.4, 1.9), aspect="equal", title="rotation plane")
-    axes.axis("off")
+    axes.set(xlim=(-1.2, 1.5), ylim=(-0.4, 1.9), aspect='equal', title='rotation plane')
+    axes.axis('off')
     axes.add_patch(Polygon([(-1.0, -0.2), (1.2, 0.1), (1.2, 1.8), (-1.0, 1.5)], color=_PLANE))
-    axes.plot([0.0, 0.0], [0.0, 1.3], color=_PALE, lw=7, solid_capstyle="round")
-    axes.plot([0.0, -0.55], [0.0, 1.12], color=_BARK, lw=7, solid_capstyle="round")
-    axes.plot([0.0], [0.0], "o", color="black", ms=7)
-    axes.annotate("", (-0.1, 0.75), (1.2, 0.93), arrowprops={"arrowstyle": "-|>", "color": _WIND})
-    axes.text(0.65, 0.97, "P", color=_WIND)
-    axes.text(0.07, 1.25, "X")
-    axes.text(-0.95, 0.0, "Y")
-    axes.text(-0.32, 1.25, r"$\theta$")
-    axes.text(0.08, -0.12, "root-side node", fontsize=8)
+    axes.plot([0.0, 0.0], [0.0, 1.3], color=_PALE, lw=7, solid_capstyle='round')
+    axes.plot([0.0, -0.55], [0.0, 1.12], color=_BARK, lw=7, solid_capstyle='round')
+    axes.plot([0.0], [0.0], 'o', color='black', ms=7)
+    axes.annotate('', (-0.1, 0.75), (1.2, 0.93), arrowprops={'arrowstyle': '-|>', 'color': _WIND})
+    axes.text(0.65, 0.97, 'P', color=_WIND)
+    axes.text(0.07, 1.25, 'X')
+    axes.text(-0.95, 0.0, 'Y')
+    axes.text(-0.32, 1.25, r'$\theta$')
+    axes.text(0.08, -0.12, 'root-side node', fontsize=8)
 
 
 def _branch_step(axes: Axes, step: int) -> None:
     """One of the four pictures of figure 2."""
-    axes.set(xlim=(-1.6, 0.9), ylim=(-0.1, 2.2), aspect="equal")
-    axes.axis("off")
+    axes.set(xlim=(-1.6, 0.9), ylim=(-0.1, 2.2), aspect='equal')
+    axes.axis('off')
     upright = np.stack([np.zeros(7), np.linspace(0.0, 2.0, 7)], axis=1)
     turn = 0.9 * (np.arange(6) + 0.5) / 6.0
     rows = np.stack([-np.sin(turn), np.cos(turn)], axis=1) / 3.0
     bent = np.vstack([[0.0, 0.0], np.cumsum(rows, axis=0)])
-    axes.plot(*upright.T, color=_PALE if step else _BARK, lw=5, solid_capstyle="round")
+    axes.plot(*upright.T, color=_PALE if step else _BARK, lw=5, solid_capstyle='round')
     if step == 0:
         for height in np.linspace(0.2, 1.9, 7):
             axes.annotate(
-                "", (0.1, height), (0.8, height), arrowprops={"arrowstyle": "-|>", "color": _WIND}
+                '', (0.1, height), (0.8, height), arrowprops={'arrowstyle': '-|>', 'color': _WIND}
             )
     elif step == 1:
-        axes.plot(*bent[5:].T, color="#c0392b", lw=6, solid_capstyle="round")
+        axes.plot(*bent[5:].T, color='#c0392b', lw=6, solid_capstyle='round')
     elif step == 2:
-        for row, colour in zip(range(6), [_BARK] * 5 + ["#c0392b"], strict=True):
+        for row, colour in zip(range(6), [_BARK] * 5 + ['#c0392b'], strict=True):
             axes.plot(
                 bent[row : row + 2, 0], bent[row : row + 2, 1] + 0.02 * row, color=colour, lw=4
             )
     else:
-        axes.plot(*bent.T, color=_BARK, lw=5, solid_capstyle="round")
-        axes.plot([0.0], [0.0], "o", color="black", ms=7)
+        axes.plot(*bent.T, color=_BARK, lw=5, solid_capstyle='round')
+        axes.plot([0.0], [0.0], 'o', color='black', ms=7)

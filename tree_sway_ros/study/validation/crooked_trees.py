@@ -58,13 +58,13 @@ class _Habit(NamedTuple):
 
 
 HABITS: dict[str, _Habit] = {
-    "one stem": _Habit(
+    'one stem': _Habit(
         (45, 60), ((12, 18), (1, 4), (0, 1)), (0.25, 0.5), (30, 50), (45, 85), 0.2, 3.0, 9.0
     ),
-    "forked": _Habit(
+    'forked': _Habit(
         (24, 34), ((3, 5), (3, 5), (1, 4)), (0.4, 0.65), (28, 45), (25, 60), 0.4, 4.0, 12.0
     ),
-    "arching": _Habit(
+    'arching': _Habit(
         (28, 38), ((5, 8), (3, 5), (1, 2)), (0.35, 0.6), (28, 48), (35, 80), 0.25, -6.0, 10.0
     ),
 }
@@ -91,7 +91,7 @@ def crooked_tree(seed: int) -> Tree:
     name = tuple(HABITS)[seed % len(HABITS)]
     rng = np.random.default_rng(seed)
     while True:
-        tree = _drawn(HABITS[name], rng, f"{name} {seed}")
+        tree = _drawn(HABITS[name], rng, f'{name} {seed}')
         if _FEWEST <= tree.n_branches <= _MOST:
             return tree
 

@@ -30,8 +30,8 @@ from tree_sway_ros.study.validation.winds import FRAME
 
 DAMPING_RATIO = 0.05
 WOOD = Species(
-    "example",
-    "example",
+    'example',
+    'example',
     EXAMPLE_MODULUS,
     EXAMPLE_DENSITY,
     damping_bare=DAMPING_RATIO,
@@ -94,7 +94,7 @@ class Judge:
             twist_ratio=2.0 * WOOD.shear_ratio,
         )
         self.ladder = FidelityLadder(tree, WOOD, SETTINGS)
-        self.first_frequency = float(self.model("coupled").frequencies(1)[0])
+        self.first_frequency = float(self.model('coupled').frequencies(1)[0])
 
     def model(self, model: str, n_modes: int | None = None) -> SwaySimulator:
         """Make a simulator of one model."""
@@ -131,7 +131,7 @@ class Judge:
                     found.append(Verdict(self.tree.name, name, estimate.name, error, over))
         return found
 
-    def steady_sway(self, model: str = "coupled", sways: Iterable[float] = SWAYS) -> list[float]:
+    def steady_sway(self, model: str = 'coupled', sways: Iterable[float] = SWAYS) -> list[float]:
         """
         Find how far a model's steady sway is from the truth's.
 

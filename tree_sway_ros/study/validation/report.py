@@ -10,27 +10,27 @@ written anew after each, so a run that ends early keeps what it has measured.
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import re
 from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
+import multiprocessing
+import os
 from pathlib import Path
+import re
 from typing import Any
 
 from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.whole_file import write_text_whole
-from tree_sway_ros.study.validation.section import HOLDS, MISSES, Effort, Section
+from tree_sway_ros.study.validation.section import Effort, HOLDS, MISSES, Section
 from tree_sway_ros.tools.progress import bar
 
 SECTIONS = (
-    "models", "estimates", "steady_sway", "gust", "engine", "scans", "still_air", "leaves",
-    "slopes", "conifers", "broadleaves", "battery", "paper",
+    'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
+    'leaves', 'slopes', 'conifers', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 
-PAGE = "validation.md"
+PAGE = 'validation.md'
 
 _HEAD = """# Validation
 
@@ -39,7 +39,7 @@ What the models of this package were measured against, with the limit that each 
 more trees and longer winds. A figure beyond its limit is marked as one that misses.
 
 """
-_SECTION = re.compile(r"<!-- section: (?P<name>\w+) -->\n(?P<text>.*?)<!-- end -->\n", re.DOTALL)
+_SECTION = re.compile(r'<!-- section: (?P<name>\w+) -->\n(?P<text>.*?)<!-- end -->\n', re.DOTALL)
 
 
 def write_validation(
@@ -76,13 +76,13 @@ def write_validation(
     for name in names:
         if name not in SECTIONS:
             raise ParameterError(
-                f"no section '{name}'", where="--only", cure=f"name one of: {', '.join(SECTIONS)}"
+                f"no section '{name}'", where='--only', cure=f'name one of: {", ".join(SECTIONS)}'
             )
     page, missed = Path(folder) / PAGE, []
     page.parent.mkdir(parents=True, exist_ok=True)
     # One thread per process: they share the cores already.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    context = multiprocessing.get_context("spawn")
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+    context = multiprocessing.get_context('spawn')
     with ProcessPoolExecutor(mp_context=context) as pool:
 
         def each(function: Callable[..., Any], items: Collection[Any]) -> list[Any]:
@@ -91,16 +91,16 @@ def write_validation(
 
         for name in names:
             section = measured(name, Effort(each, is_full, data))
-            missed += [f"{name}: {check.what}" for check in section.checks if not check.holds]
-            text = page.read_text(encoding="utf-8") if page.is_file() else ""
+            missed += [f'{name}: {check.what}' for check in section.checks if not check.holds]
+            text = page.read_text(encoding='utf-8') if page.is_file() else ''
             write_text_whole(page, with_section(text, name, section.markdown()))
-            print(f"{name}: {sum(c.holds for c in section.checks)} of {len(section.checks)} hold")
+            print(f'{name}: {sum(c.holds for c in section.checks)} of {len(section.checks)} hold')
     return missed
 
 
 def measured(name: str, effort: Effort) -> Section:
     """Measure a section."""
-    found: Section = import_module(f"{__package__}.sections.{name}").measure(effort)
+    found: Section = import_module(f'{__package__}.sections.{name}').measure(effort)
     return found
 
 
@@ -108,14 +108,14 @@ def with_section(page: str, name: str, section: str) -> str:
     """Return the page with a section put in or replaced, in order, and with its summary."""
     texts = sections_of(page) | {name: section}
     ordered = [each for each in SECTIONS if each in texts]
-    lines = ["| section | hold | miss |", "|---|---|---|"]
+    lines = ['| section | hold | miss |', '|---|---|---|']
     for each in ordered:
-        counts = (texts[each].count(f"| {mark} |") for mark in (HOLDS, MISSES))
-        lines.append(f"| {each} | " + " | ".join(map(str, counts)) + " |")
-    body = [f"<!-- section: {each} -->\n{texts[each]}<!-- end -->\n" for each in ordered]
-    return "\n".join((_HEAD + "\n".join(lines) + "\n", *body))
+        counts = (texts[each].count(f'| {mark} |') for mark in (HOLDS, MISSES))
+        lines.append(f'| {each} | ' + ' | '.join(map(str, counts)) + ' |')
+    body = [f'<!-- section: {each} -->\n{texts[each]}<!-- end -->\n' for each in ordered]
+    return '\n'.join((_HEAD + '\n'.join(lines) + '\n', *body))
 
 
 def sections_of(page: str) -> dict[str, str]:
     """Return the text of each section of a page."""
-    return {match["name"]: match["text"] for match in _SECTION.finditer(page)}
+    return {match['name']: match['text'] for match in _SECTION.finditer(page)}

@@ -5,12 +5,13 @@ How steeply the response spectrum of a grown tree falls above its first frequenc
 
 Measured as on real trees: the strain of the stem at its base along the wind and across it, in
 turbulence that lasts, and the power between 1.3 and 3.5 times the first frequency as a straight
-line in logarithms. The same line through one-hour records of the strain of 68 forest trees (data of
-Jackson et al. 2021, Biogeosciences 18, 4059-4072) has a power of -4.0 in the median of conifers,
--5.5 to -1.6 in nine tenths of them, and of -3.3, -5.3 to -0.5, in broadleaved trees; one oscillator
-alone falls with -6.4 to -7. The highest tip has another slope: of broadleaves up to 4 steeper, as a
-mode of frequency f strains the stem by f^2 times the way of its top, of a pine flatter, as the limb
-that bears it swings too.
+line in logarithms. The same line through one-hour records of the strain of 68 forest trees (data
+of Jackson et al. 2021, Biogeosciences 18, 4059-4072) has a power of -4.0 in the median of
+conifers,
+-5.5 to -1.6 in nine tenths of them, and of -3.3, -5.3 to -0.5, in broadleaved trees; one
+oscillator alone falls with -6.4 to -7. The highest tip has another slope: of broadleaves up to 4
+steeper, as a mode of frequency f strains the stem by f^2 times the way of its top, of a pine
+flatter, as the limb that bears it swings too.
 
 """
 
@@ -29,9 +30,9 @@ from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
 
 SPECIES = (
-    "spruce", "sitka", "pine", "douglas_fir", "birch", "oak", "beech", "ash", "sycamore", "walnut",
+    'spruce', 'sitka', 'pine', 'douglas_fir', 'birch', 'oak', 'beech', 'ash', 'sycamore', 'walnut',
 )  # fmt: skip
-HEIGHTS = {"conifer": 15.0, "broadleaf": 12.0}
+HEIGHTS = {'conifer': 15.0, 'broadleaf': 12.0}
 N_MODES = 120
 """Reach to 4.9 times the first frequency and beyond; 40 ended within `BAND` in broadleaves."""
 
@@ -88,7 +89,7 @@ def response_slopes(
         mean_speed, rate=_RATE, duration=seconds, rng=np.random.default_rng(seed)
     )
     record = rig.run(wind, rate=_RATE)
-    first = float(rig.calibrated.bank("modes", N_MODES).frequencies[0])
+    first = float(rig.calibrated.bank('modes', N_MODES).frequencies[0])
 
     def slopes(signal: Floats) -> tuple[float, float]:
         along, across = (slope_above(signal[:, k], first, _RATE) for k in (0, 1))

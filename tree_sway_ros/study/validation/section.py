@@ -1,15 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A section of the validation: checks with figure and limit, a table, and what was measured how."""
+"""A section of the validation: checks with figure and limit, a table, and what was measured
+how.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Iterable, Sequence
+import math
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
-HOLDS, MISSES = "holds", "**misses**"
+HOLDS, MISSES = 'holds', '**misses**'
 
 
 class Each(Protocol):
@@ -67,13 +69,13 @@ class Check(NamedTuple):
     def row(self) -> str:
         """Return it as a row of a table."""
         if math.isinf(self.low):
-            limit = f"at most {self.high:g}"
+            limit = f'at most {self.high:g}'
         elif math.isinf(self.high):
-            limit = f"at least {self.low:g}"
+            limit = f'at least {self.low:g}'
         else:
-            limit = f"{self.low:g} to {self.high:g}"
+            limit = f'{self.low:g} to {self.high:g}'
         return (
-            f"| {self.what} | {self.measured:.3g} | {limit} | {HOLDS if self.holds else MISSES} |"
+            f'| {self.what} | {self.measured:.3g} | {limit} | {HOLDS if self.holds else MISSES} |'
         )
 
 
@@ -97,22 +99,22 @@ class Section(NamedTuple):
     title: str
     text: str
     checks: Sequence[Check]
-    table: str = ""
+    table: str = ''
 
     def markdown(self) -> str:
         """Return the section as Markdown, with its marks."""
-        parts = [f"## {self.title}\n", f"{self.text}\n"]
-        head = "| check | measured | limit | |\n|---|---|---|---|"
+        parts = [f'## {self.title}\n', f'{self.text}\n']
+        head = '| check | measured | limit | |\n|---|---|---|---|'
         if self.checks:
-            parts.append("\n".join((head, *(check.row() for check in self.checks))) + "\n")
+            parts.append('\n'.join((head, *(check.row() for check in self.checks))) + '\n')
         if self.table:
             parts.append(self.table)
-        return "\n".join(parts)
+        return '\n'.join(parts)
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table in Markdown."""
-    lines = [" | ".join(head), "|".join("---" for _ in head), *(" | ".join(row) for row in rows)]
+    lines = [' | '.join(head), '|'.join('---' for _ in head), *(' | '.join(row) for row in rows)]
     return (
-        "\n".join(f"| {line} |" if k != 1 else f"|{line}|" for k, line in enumerate(lines)) + "\n"
+        '\n'.join(f'| {line} |' if k != 1 else f'|{line}|' for k, line in enumerate(lines)) + '\n'
     )

@@ -35,7 +35,7 @@ def from_record(time: Floats, velocity: Floats, seconds: float, scale: float = 1
     """Take the windiest so many seconds of a record, each sample so many times as strong."""
     means = scale * frame_means(time, velocity, FRAME)
     n = min(round(seconds / FRAME), len(means))
-    run = np.convolve(np.linalg.norm(means, axis=1), np.ones(n), mode="valid")
+    run = np.convolve(np.linalg.norm(means, axis=1), np.ones(n), mode='valid')
     first = int(np.argmax(run))
     return means[first : first + n]
 
@@ -51,10 +51,10 @@ def hard_cases(seconds: float, first_frequency: float) -> dict[str, Floats]:
     gust = 3.0 + 4.5 * (1.0 - np.cos(2.0 * np.pi * rise))
     turn = 0.5 * np.pi * np.clip((t - 0.4 * seconds) / 1.0, 0.0, 1.0)
     speeds = {
-        "gust": (gust, still),
-        "step": (np.where(t > 0.1 * seconds, 10.0, 0.0), still),
-        "sine": (5.0 + 1.5 * np.sin(2.0 * np.pi * first_frequency * t), still),
-        "turn": (7.0 * np.cos(turn), 7.0 * np.sin(turn)),
+        'gust': (gust, still),
+        'step': (np.where(t > 0.1 * seconds, 10.0, 0.0), still),
+        'sine': (5.0 + 1.5 * np.sin(2.0 * np.pi * first_frequency * t), still),
+        'turn': (7.0 * np.cos(turn), 7.0 * np.sin(turn)),
     }
     return {
         name: _turned(np.stack([u * along, v * along, still], axis=1))

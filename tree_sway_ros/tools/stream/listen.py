@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 
-from tree_sway_ros.ros.process.ending import LONGEST, Ending
+from tree_sway_ros.ros.process.ending import Ending, LONGEST
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.text import summary
 from tree_sway_ros.tools.stream.watch import checked_seconds, watch
@@ -18,15 +18,15 @@ from tree_sway_ros.tools.stream.watch import checked_seconds, watch
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("--namespace", default="", help="of the tree's nodes")
+    parser.add_argument('--namespace', default='', help="of the tree's nodes")
     parser.add_argument(
-        "--seconds", type=float, metavar="N", help="end after so long; else by Ctrl-C"
+        '--seconds', type=float, metavar='N', help='end after so long; else by Ctrl-C'
     )
     parser.add_argument(
-        "--rate",
+        '--rate',
         type=float,
         default=60.0,
-        help="poses per second that should come [Hz] (%(default)s)",
+        help='poses per second that should come [Hz] (%(default)s)',
     )
 
 

@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import math
-import struct
-import time
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+import math
+import struct
+import time
 from typing import Any
 
 import numpy as np
@@ -20,11 +20,11 @@ from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import TransportError
 from tree_sway_ros.ros.process.listener import Listener
 from tree_sway_ros.ros.process.topics import (
+    message_class,
+    qos_profile,
     SEGMENT_POSES,
     WIND,
     WIND_FILTERED,
-    message_class,
-    qos_profile,
 )
 from tree_sway_ros.tools.stream.totals import StreamTotals
 
@@ -89,8 +89,8 @@ class StreamMonitor(Listener):
     A node that receives poses and wind; without a tree, poses are counted and no tip is followed.
     """
 
-    def __init__(self, context: Any, tree: Tree | None, namespace: str = "") -> None:
-        super().__init__("monitor", namespace, context)
+    def __init__(self, context: Any, tree: Tree | None, namespace: str = '') -> None:
+        super().__init__('monitor', namespace, context)
         self.record, self.totals = StreamRecord(), StreamTotals()
         self._tree = tree
         self._tip = 0 if tree is None else int(np.argmax(tree.end[:, 2]))
@@ -104,15 +104,15 @@ class StreamMonitor(Listener):
 
     def expect_silence(self) -> None:
         """
-        Raise a `TransportError` if somebody publishes already: a second wind or tree would mix with
-        ours.
+        Raise a `TransportError` if somebody publishes already: a second wind or tree would mix
+        with ours.
         """
         self.spin(_LOOK_AROUND)
         for topic in (WIND, SEGMENT_POSES):
             if self.node.count_publishers(topic.name):
                 raise TransportError(
                     f"another program publishes '{topic.name}' in this ROS domain",
-                    cure="end it, or set ROS_DOMAIN_ID to another number up to 101",
+                    cure='end it, or set ROS_DOMAIN_ID to another number up to 101',
                 )
 
     def count_anew(self) -> None:
@@ -122,7 +122,7 @@ class StreamMonitor(Listener):
     def _receive_poses(self, data: bytes) -> None:
         arrival = time.time()
         # CDR: four bytes of header, the stamp, the frame's name; the poses are what it ends with.
-        second, nanosecond = struct.unpack_from("<iI", data, 4)
+        second, nanosecond = struct.unpack_from('<iI', data, 4)
         stamp, tip = second + 1e-9 * nanosecond, self._displacement(data)
         record = self.record
         record.arrival.append(arrival)
@@ -137,7 +137,7 @@ class StreamMonitor(Listener):
         if self._tree is None:
             return None
         offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
-        pose = np.array(struct.unpack_from("<7d", data, offset))
+        pose = np.array(struct.unpack_from('<7d', data, offset))
         _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])
         return end[0] - self._tree.end[self._tip]
 

@@ -3,31 +3,32 @@
 """
 ``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
 
-The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved anew.
+The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved
+anew.
 """
 
 from __future__ import annotations
 
 import argparse
-import time
 from pathlib import Path
+import time
 from typing import Any
 
-from tree_sway_ros.files.recording.bag_writer import FORMATS, BagWriter
+from tree_sway_ros.files.recording.bag_writer import BagWriter, FORMATS
 from tree_sway_ros.ros.process.ending import Ending
 from tree_sway_ros.ros.process.listener import Listener
 from tree_sway_ros.ros.process.topics import (
     DIAGNOSTICS,
     FORCE_PLANE,
     MARKERS,
+    message_class,
+    qos_profile,
     SEGMENT_POSES,
+    Topic,
     TREE_DESCRIPTION,
     TREE_STATE,
     WIND,
     WIND_FILTERED,
-    Topic,
-    message_class,
-    qos_profile,
 )
 from tree_sway_ros.ros.wire.wind_messages import wind_class
 from tree_sway_ros.tools.stream.watch import checked_seconds
@@ -40,11 +41,13 @@ _LOOK = 0.2
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("-o", "--output", required=True, metavar="FOLDER", help="bag to make")
-    add("--format", choices=FORMATS, default=FORMATS[0], help="of the bag (%(default)s)")
-    add("--namespace", default="", help="of the tree's nodes")
-    add("--poses", action="store_true", help="also poses, markers and diagnostics: GB per hour")
-    add("--seconds", type=float, metavar="N", help="so long from the first message; else by Ctrl-C")
+    add('-o', '--output', required=True, metavar='FOLDER', help='bag to make')
+    add('--format', choices=FORMATS, default=FORMATS[0], help='of the bag (%(default)s)')
+    add('--namespace', default='', help="of the tree's nodes")
+    add('--poses', action='store_true', help='also poses, markers and diagnostics: GB per hour')
+    add(
+        '--seconds', type=float, metavar='N', help='so long from the first message; else by Ctrl-C'
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -59,8 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
         ending.look()
         while not ending.is_asked and recorder.recorded < seconds:
             recorder.spin(_LOOK)
-    told = ", ".join(f"{count} of {name}" for name, count in bag.counts.items())
-    print(f"{arguments.output}: {told or 'nothing was sent'}")
+    told = ', '.join(f'{count} of {name}' for name, count in bag.counts.items())
+    print(f'{arguments.output}: {told or "nothing was sent"}')
     return 0
 
 
@@ -70,9 +73,9 @@ class Recorder(Listener):
     """
 
     def __init__(
-        self, context: Any, bag: BagWriter, topics: tuple[Topic, ...], namespace: str = ""
+        self, context: Any, bag: BagWriter, topics: tuple[Topic, ...], namespace: str = ''
     ) -> None:
-        super().__init__("tree_sway_record", namespace, context)
+        super().__init__('tree_sway_record', namespace, context)
         self._bag = bag
         self._began: float | None = None
         self._wanted = {self.node.resolve_topic_name(topic.name): topic for topic in topics}
@@ -90,7 +93,9 @@ class Recorder(Listener):
         super().spin(seconds)
 
     def _join(self, name: str, topic: Topic, kind: str) -> None:
-        self._bag.add(name, kind, reliable=topic.reliable, latched=topic.latched, depth=topic.depth)
+        self._bag.add(
+            name, kind, reliable=topic.reliable, latched=topic.latched, depth=topic.depth
+        )
 
         def write(data: bytes) -> None:
             self._bag.write(name, time.time_ns(), data)
@@ -98,5 +103,5 @@ class Recorder(Listener):
                 self._began = time.monotonic()
 
         of_wind = topic is WIND
-        message = wind_class(kind.replace("/msg/", "/")) if of_wind else message_class(topic)
+        message = wind_class(kind.replace('/msg/', '/')) if of_wind else message_class(topic)
         self.node.create_subscription(message, name, write, qos_profile(topic), raw=True)

@@ -10,14 +10,14 @@ that the viewer has something to do.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator, Mapping
 import contextlib
 import os
+from pathlib import Path
 import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,7 +25,7 @@ import numpy as np
 from tree_sway_ros.errors import ParameterError, TransportError
 from tree_sway_ros.files.trees.source import open_scene
 from tree_sway_ros.page.client import StreamClient
-from tree_sway_ros.ros.process.ending import LONGEST, Ending
+from tree_sway_ros.ros.process.ending import Ending, LONGEST
 from tree_sway_ros.ros.process.topics import DIAGNOSTICS, message_class, qos_profile
 from tree_sway_ros.tools.stream.monitor import StreamMonitor
 from tree_sway_ros.tools.stream.text import summary
@@ -36,7 +36,7 @@ _HOUR = 3600.0
 _LINES = 60
 _PATIENCE = 180.0
 """Until poses come [s]: the first start compiles."""
-_NODE = "from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())"
+_NODE = 'from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}())'
 
 
 class Health(NamedTuple):
@@ -51,33 +51,33 @@ class Health(NamedTuple):
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("--hours", type=float, default=1.0, help="how long (%(default)s)")
-    add("--tree", default="goldcrest", help="what sways (%(default)s)")
-    add("--demo", action="store_true", help="all in one process, as the demo; else one per node")
-    add("--every", type=float, default=20.0, help="seconds from fault to fault (%(default)s)")
+    add('--hours', type=float, default=1.0, help='how long (%(default)s)')
+    add('--tree', default='goldcrest', help='what sways (%(default)s)')
+    add('--demo', action='store_true', help='all in one process, as the demo; else one per node')
+    add('--every', type=float, default=20.0, help='seconds from fault to fault (%(default)s)')
     add(
-        "--speed",
+        '--speed',
         type=float,
         default=1.0,
-        metavar="K",
-        help="K times as many frames and faults (%(default)s)",
+        metavar='K',
+        help='K times as many frames and faults (%(default)s)',
     )
     add(
-        "--slope",
+        '--slope',
         type=float,
         default=1.0,
-        metavar="MB",
-        help="largest growth of the memory of a process per hour [MB/h] (%(default)s)",
+        metavar='MB',
+        help='largest growth of the memory of a process per hour [MB/h] (%(default)s)',
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the chain, then tell what it took; 1 if memory grew, or a callback failed."""
     if not arguments.hours > 0.0:
-        raise ParameterError(f"{arguments.hours:g} h is no time to run", where="--hours")
+        raise ParameterError(f'{arguments.hours:g} h is no time to run', where='--hours')
     if not 0.1 <= arguments.speed <= 10.0:
-        what = f"{arguments.speed:g} times as fast is none of 0.1 to 10"
-        raise ParameterError(what, where="--speed")
+        what = f'{arguments.speed:g} times as fast is none of 0.1 to 10'
+        raise ParameterError(what, where='--speed')
     open_scene(arguments.tree)  # refuses what is no tree
     seconds, rate, every = (
         _HOUR * arguments.hours,
@@ -94,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
             _wait_for_poses(monitor, processes, ending)
             _set_faults(monitor, every)
             seen: dict[str, list[Health]] = {name: [] for name in processes}
-            with StreamClient(f"http://127.0.0.1:{port}/") as page:
+            with StreamClient(f'http://127.0.0.1:{port}/') as page:
                 page.wait(_PATIENCE)
                 monitor.spin(1.0)  # what had queued up is through
                 monitor.count_anew()
@@ -110,13 +110,13 @@ def run(arguments: argparse.Namespace) -> int:
     return code
 
 
-def health(since: float, process: int | str = "self") -> Health:
+def health(since: float, process: int | str = 'self') -> Health:
     """Look at a process, this one if none is named, a time after the start [s]."""
-    where = Path(f"/proc/{process}")
+    where = Path(f'/proc/{process}')
     # Counted page by page; what `status` says is some 100 kB off.
-    pages = (where / "smaps_rollup").read_text(encoding="ascii").splitlines()
-    memory = next(int(line.split()[1]) for line in pages if line.startswith("Rss:"))
-    handles, threads = (len(os.listdir(where / of)) for of in ("fd", "task"))
+    pages = (where / 'smaps_rollup').read_text(encoding='ascii').splitlines()
+    memory = next(int(line.split()[1]) for line in pages if line.startswith('Rss:'))
+    handles, threads = (len(os.listdir(where / of)) for of in ('fd', 'task'))
     return Health(since, memory / 1024.0, handles, threads)
 
 
@@ -129,7 +129,7 @@ def growth(seen: list[Health]) -> tuple[float, float]:
     if len(table):
         table = table[table[:, 0] >= _WARM * table[-1, 0]]
     if len(table) < 10:
-        return float("nan"), float("nan")
+        return float('nan'), float('nan')
     line, covariance = np.polyfit(table[:, 0] / _HOUR, table[:, 1], 1, cov=True)
     return float(line[0]), float(np.sqrt(covariance[0, 0]))
 
@@ -149,50 +149,50 @@ class _Reports:
             self._newest[status.name] = {each.key: each.value for each in status.values}
 
     def _sum(self, status: str, value: str) -> int:
-        found = (said for name, said in self._newest.items() if name.endswith(f": {status}"))
+        found = (said for name, said in self._newest.items() if name.endswith(f': {status}'))
         return sum(int(said.get(value, 0)) for said in found)
 
     def begin(self) -> None:
         """Count frames from here on."""
-        self._before = self._solver("frames"), self._solver("skipped")
+        self._before = self._solver('frames'), self._solver('skipped')
 
     def _solver(self, value: str) -> int:
-        return int(self._newest.get("solver: output", {}).get(value, 0))
+        return int(self._newest.get('solver: output', {}).get(value, 0))
 
     @property
     def skipped(self) -> float:
         """Share of the solver's frames that were skipped since the beginning."""
         frames, skipped = (
             self._solver(value) - before
-            for value, before in zip(("frames", "skipped"), self._before, strict=True)
+            for value, before in zip(('frames', 'skipped'), self._before, strict=True)
         )
         return skipped / max(1, frames + skipped)
 
     @property
     def failed(self) -> int:
         """Callbacks that failed, in all nodes."""
-        return self._sum("callbacks", "failed")
+        return self._sum('callbacks', 'failed')
 
     @property
     def restarted(self) -> int:
         """Restarts of the motion."""
-        return self._sum("model", "restarted")
+        return self._sum('model', 'restarted')
 
 
 def _commands(arguments: argparse.Namespace, rate: float, port: int) -> dict[str, list[str]]:
     """What to run, by the name of the process."""
     if arguments.demo:
-        command = [sys.executable, "-m", "tree_sway_ros.tools.cli", "demo", arguments.tree]
-        return {"demo": [*command, "--rate", f"{rate}", "--port", f"{port}"]}
+        command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'demo', arguments.tree]
+        return {'demo': [*command, '--rate', f'{rate}', '--port', f'{port}']}
     told = {
-        "anemometer": [f"rate:={min(100.0, 20.0 * arguments.speed)}"],
-        "wind": [],
-        "solver": [f"tree:={arguments.tree}", f"rate:={rate}"],
-        "viewer": [f"port:={port}"],
+        'anemometer': [f'rate:={min(100.0, 20.0 * arguments.speed)}'],
+        'wind': [],
+        'solver': [f'tree:={arguments.tree}', f'rate:={rate}'],
+        'viewer': [f'port:={port}'],
     }
     return {
-        name: [sys.executable, "-c", _NODE.format(name), "--ros-args"]
-        + [word for value in values for word in ("-p", value)]
+        name: [sys.executable, '-c', _NODE.format(name), '--ros-args']
+        + [word for value in values for word in ('-p', value)]
         for name, values in told.items()
     }
 
@@ -215,7 +215,7 @@ def _running(commands: Mapping[str, list[str]]) -> Iterator[dict[str, subprocess
 
 def _check(name: str, process: subprocess.Popen[bytes]) -> None:
     if process.poll() is not None:
-        raise TransportError(f"{name} has ended with {process.returncode}")
+        raise TransportError(f'{name} has ended with {process.returncode}')
 
 
 def _wait_for_poses(
@@ -226,7 +226,7 @@ def _wait_for_poses(
         for name, process in processes.items():
             _check(name, process)
         if time.monotonic() > deadline:
-            raise TransportError(f"no poses within {_PATIENCE:g} s")
+            raise TransportError(f'no poses within {_PATIENCE:g} s')
         monitor.spin(0.1)
 
 
@@ -235,9 +235,9 @@ def _set_faults(monitor: StreamMonitor, every: float) -> None:
     from rcl_interfaces.srv import SetParametersAtomically
     from rclpy.parameter import Parameter
 
-    values = {"fault": "all", "fault_every": every, "fault_duration": 0.25 * every}
+    values = {'fault': 'all', 'fault_every': every, 'fault_duration': 0.25 * every}
     told = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
-    service = "anemometer/set_parameters_atomically"
+    service = 'anemometer/set_parameters_atomically'
     client = monitor.node.create_client(SetParametersAtomically, service)
     deadline = time.monotonic() + _PATIENCE
     while not client.service_is_ready() and time.monotonic() < deadline:
@@ -246,7 +246,7 @@ def _set_faults(monitor: StreamMonitor, every: float) -> None:
     while not answer.done() and time.monotonic() < deadline:
         monitor.spin(0.1)
     if not (answer.done() and answer.result().result.successful):
-        raise TransportError("the anemometer takes no faults", where=service)
+        raise TransportError('the anemometer takes no faults', where=service)
 
 
 def _told(
@@ -263,23 +263,23 @@ def _told(
     for name, looks in seen.items():
         slope, error = growth(looks)
         has_grown |= slope > limit
-        told = f"{slope:+.2f} +- {error:.2f} MB/h" if np.isfinite(slope) else "too short to tell"
+        told = f'{slope:+.2f} +- {error:.2f} MB/h' if np.isfinite(slope) else 'too short to tell'
         last = looks[-1]
         print(
-            f"memory   {name} {told} after the first fifth, {last.memory:.1f} MB at the end; "
-            f"handles {looks[0].handles} to {last.handles}, threads {last.threads}"
+            f'memory   {name} {told} after the first fifth, {last.memory:.1f} MB at the end; '
+            f'handles {looks[0].handles} to {last.handles}, threads {last.threads}'
         )
-    print(f"failed   {reports.failed} callbacks; {reports.restarted} restarts of the motion")
+    print(f'failed   {reports.failed} callbacks; {reports.restarted} restarts of the motion')
     return int(has_grown or reports.failed > 0 or reports.restarted > 0)
 
 
 def _line(seen: Mapping[str, list[Health]], rate: float) -> str:
-    memories = ", ".join(f"{name} {looks[-1].memory:.1f}" for name, looks in seen.items())
+    memories = ', '.join(f'{name} {looks[-1].memory:.1f}' for name, looks in seen.items())
     now = next(iter(seen.values()))[-1].time
-    return f"{now:8.1f} s | memory [MB] {memories} | poses {rate:5.1f} Hz"
+    return f'{now:8.1f} s | memory [MB] {memories} | poses {rate:5.1f} Hz'
 
 
 def _free_port() -> int:
     with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
+        trial.bind(('127.0.0.1', 0))
         return int(trial.getsockname()[1])

@@ -12,43 +12,43 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.tools.stream.monitor import StreamRecord
 from tree_sway_ros.tools.stream.totals import StreamTotals
 
-_COMPASS = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
+_COMPASS = ('E', 'NE', 'N', 'NW', 'W', 'SW', 'S', 'SE')
 
 
 def status_line(latest: StreamRecord, elapsed: float) -> str:
     """One line about the last two seconds of a stream."""
-    wind = "wind none yet"
+    wind = 'wind none yet'
     if latest.wind:
         speed, origin = _speed(latest.wind[-1]), _from(latest.wind[-1])
-        wind = f"wind {speed:4.1f} m/s {origin:>7} at {latest.wind_rate:4.1f} Hz"
-    tip = f" tip {1e3 * float(np.linalg.norm(latest.tip[-1])):6.1f} mm |" if latest.tip else ""
-    late = f"{1e3 * latest.latency(0.5):.2f} ms (p95 {1e3 * latest.latency(0.95):.2f})"
-    return f"{elapsed:6.1f} s | {wind} |{tip} poses {latest.pose_rate:5.1f} Hz, latency {late}"
+        wind = f'wind {speed:4.1f} m/s {origin:>7} at {latest.wind_rate:4.1f} Hz'
+    tip = f' tip {1e3 * float(np.linalg.norm(latest.tip[-1])):6.1f} mm |' if latest.tip else ''
+    late = f'{1e3 * latest.latency(0.5):.2f} ms (p95 {1e3 * latest.latency(0.95):.2f})'
+    return f'{elapsed:6.1f} s | {wind} |{tip} poses {latest.pose_rate:5.1f} Hz, latency {late}'
 
 
 def summary(totals: StreamTotals, rate: float) -> str:
     """Several lines about a whole stream; `rate` is the one it was meant to have in [Hz]."""
     if not totals.arrivals.count:
-        return "no poses"
+        return 'no poses'
     late = [1e3 * totals.latency.quantile(share) for share in (0.5, 0.95, 1.0)]
     lines = [
-        f"poses    {totals.arrivals.count} at {totals.arrivals.rate:.2f} Hz (wanted {rate:g}), "
-        f"{totals.missing(rate) or 'none'} missing",
-        f"latency  p50 {late[0]:.2f}, p95 {late[1]:.2f}, max {late[2]:.2f} ms",
+        f'poses    {totals.arrivals.count} at {totals.arrivals.rate:.2f} Hz (wanted {rate:g}), '
+        f'{totals.missing(rate) or "none"} missing',
+        f'latency  p50 {late[0]:.2f}, p95 {late[1]:.2f}, max {late[2]:.2f} ms',
     ]
     wind, tip = totals.wind, totals.tip
     if wind.count:
         lines.append(
-            f"wind     {wind.count} at {totals.wind_stamps.rate:.2f} Hz, mean {wind.length:.2f}, "
-            f"max {wind.largest:.2f} m/s, {_from(wind.vector)}"
+            f'wind     {wind.count} at {totals.wind_stamps.rate:.2f} Hz, mean {wind.length:.2f}, '
+            f'max {wind.largest:.2f} m/s, {_from(wind.vector)}'
         )
     if tip.count:
         east, north, up = 1e3 * tip.vector
         lines.append(
-            f"tip      {1e3 * tip.length:.1f} mm from rest on average, {1e3 * tip.largest:.1f} at "
-            f"most; mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up"
+            f'tip      {1e3 * tip.length:.1f} mm from rest on average, {1e3 * tip.largest:.1f} at '
+            f'most; mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up'
         )
-    return "\n".join(lines)
+    return '\n'.join(lines)
 
 
 def _speed(vector: Floats) -> float:
@@ -58,6 +58,6 @@ def _speed(vector: Floats) -> float:
 def _from(vector: Floats) -> str:
     """Where the wind comes from, as people say it."""
     if _speed(vector) < 0.05:
-        return "calm"
+        return 'calm'
     octant = round(math.atan2(-vector[1], -vector[0]) / (math.pi / 4.0)) % 8
-    return f"from {_COMPASS[octant]}"
+    return f'from {_COMPASS[octant]}'

@@ -39,7 +39,7 @@ class Spread:
             return math.nan
         if share >= 1.0:
             return self.largest
-        place = int(np.searchsorted(np.cumsum(self._counts), share * counted, side="right"))
+        place = int(np.searchsorted(np.cumsum(self._counts), share * counted, side='right'))
         middle = _SHORTEST * 10.0 ** ((place + 0.5) / _PER_DECADE)
         return min(float(middle), self.largest)
 
@@ -116,7 +116,10 @@ class StreamTotals:
         self.wind.add(vector)
 
     def missing(self, rate: float) -> int:
-        """Frames of the grid of a rate in [Hz], between the first and the last, that never came."""
+        """
+        Frames of the grid of a rate in [Hz], between the first and the last, that never
+        came.
+        """
         if self.stamps.count < 2:
             return 0
         return round((self.stamps.last - self.stamps.first) * rate) + 1 - self.stamps.count

@@ -6,12 +6,12 @@ Watching a stream: until its time is over or somebody ends it, with a line that 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import sys
 import time
-from collections.abc import Callable
 
 from tree_sway_ros.errors import ParameterError, TransportError
-from tree_sway_ros.tools.stream.monitor import WINDOW, StreamMonitor
+from tree_sway_ros.tools.stream.monitor import StreamMonitor, WINDOW
 from tree_sway_ros.tools.stream.text import status_line
 
 _SETTLING = 0.5
@@ -21,10 +21,10 @@ _LIVE_PERIOD, _LOG_PERIOD = 0.2, 2.0
 def checked_seconds(seconds: float | None) -> float:
     """Return for how long to watch in [s], for ever if None; refuse what is no length of time."""
     if seconds is None:
-        return float("inf")
+        return float('inf')
     if not seconds > 0.0:
         raise ParameterError(
-            f"{seconds:g} s is no time to run", where="--seconds", cure="give more than 0"
+            f'{seconds:g} s is no time to run', where='--seconds', cure='give more than 0'
         )
     return seconds
 
@@ -43,9 +43,9 @@ def watch(
         monitor.spin(0.1)
         if time.monotonic() > deadline:
             raise TransportError(
-                f"no poses within {patience:g} s",
-                cure="is a solver running in this ROS_DOMAIN_ID? without multicast, "
-                "set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS",
+                f'no poses within {patience:g} s',
+                cure='is a solver running in this ROS_DOMAIN_ID? without multicast, '
+                'set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS',
             )
     monitor.spin(_SETTLING)
     monitor.count_anew()
@@ -57,7 +57,7 @@ def watch(
             now = time.time()
             monitor.record.forget(now - WINDOW)
             line = status_line(monitor.record, now - begin)
-            print(f"\r\033[K{line}" if is_live else line, end="" if is_live else "\n", flush=True)
+            print(f'\r\033[K{line}' if is_live else line, end='' if is_live else '\n', flush=True)
     except KeyboardInterrupt:
         pass
     if is_live:

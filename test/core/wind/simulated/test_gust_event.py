@@ -2,27 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 import math
 
-import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
-from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS, GustEvent, gust, with_events
+from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS, gust, GustEvent, with_events
 from tree_sway_ros.errors import ParameterError
 
 TIME = np.linspace(-5.0, 60.0, 6501)
 EAST = 0.5 * math.pi
 
 
-@pytest.mark.parametrize("kind", EVENT_KINDS)
+@pytest.mark.parametrize('kind', EVENT_KINDS)
 def test_an_event_is_the_shape_of_its_name(kind):
     event = GustEvent(kind, 2.0, 5.0, start=10.0)
     expected = gust(kind, TIME, 2.0, 5.0, 10.0)
     np.testing.assert_allclose(event.at(TIME), expected, atol=1e-13)
-    assert event.is_turn == (kind in ("direction_change", "turn"))
+    assert event.is_turn == (kind in ('direction_change', 'turn'))
 
 
-@pytest.mark.parametrize("kind", ["one_minus_cos", "extreme_operating_gust"])
+@pytest.mark.parametrize('kind', ['one_minus_cos', 'extreme_operating_gust'])
 def test_a_gust_happens_again(kind):
     event = GustEvent(kind, 3.0, 4.0, start=2.0, every=10.0)
     once = GustEvent(kind, 3.0, 4.0, start=2.0)
@@ -33,10 +33,12 @@ def test_a_gust_happens_again(kind):
     assert not event.at(TIME[TIME < 2.0]).any()
 
 
-@pytest.mark.parametrize("kind", ["step", "direction_change", "turn"])
+@pytest.mark.parametrize('kind', ['step', 'direction_change', 'turn'])
 def test_what_lasts_goes_there_and_back(kind):
     event = GustEvent(kind, 3.0, 4.0, start=2.0, every=10.0)
-    np.testing.assert_allclose(event.at([0.0, 11.9, 21.9, 31.9, 41.9]), (0, 3, 0, 3, 0), atol=1e-12)
+    np.testing.assert_allclose(
+        event.at([0.0, 11.9, 21.9, 31.9, 41.9]), (0, 3, 0, 3, 0), atol=1e-12
+    )
     assert np.abs(np.diff(event.at(TIME))).max() < 0.02
 
 
@@ -54,17 +56,17 @@ def test_repeats_never_jump(kind, amplitude, duration, start, every):
 
 
 @pytest.mark.parametrize(
-    ("values", "match"),
+    ('values', 'match'),
     [
-        (("whirl", 1.0, 1.0), "unknown event 'whirl'.*one_minus_cos"),
-        (("one_minus_cos", math.nan, 1.0), "amplitude"),
-        (("turn", math.nan, 1.0), "angle"),
-        (("turn", 1.0, 0.0), "duration"),
-        (("step", 1.0, -1.0), "duration"),
-        (("step", 1.0, 0.0, math.inf), "start"),
-        (("one_minus_cos", 1.0, 5.0, 0.0, 4.0), "every: 4.0 is out of range"),
-        (("one_minus_cos", 1.0, 5.0, 0.0, -1.0), "every"),
-        (("step", 1.0, 0.0, 0.0, math.nan), "every"),
+        (('whirl', 1.0, 1.0), "unknown event 'whirl'.*one_minus_cos"),
+        (('one_minus_cos', math.nan, 1.0), 'amplitude'),
+        (('turn', math.nan, 1.0), 'angle'),
+        (('turn', 1.0, 0.0), 'duration'),
+        (('step', 1.0, -1.0), 'duration'),
+        (('step', 1.0, 0.0, math.inf), 'start'),
+        (('one_minus_cos', 1.0, 5.0, 0.0, 4.0), 'every: 4.0 is out of range'),
+        (('one_minus_cos', 1.0, 5.0, 0.0, -1.0), 'every'),
+        (('step', 1.0, 0.0, 0.0, math.nan), 'every'),
     ],
 )
 def test_what_cannot_be_is_refused(values, match):
@@ -81,18 +83,18 @@ class TestWithEvents:
         assert wind is not self.base
 
     def test_speeds_add_along_the_mean(self):
-        events = (GustEvent("step", 2.0, 0.0, 10.0), GustEvent("step", 1.0, 0.0, 20.0))
+        events = (GustEvent('step', 2.0, 0.0, 10.0), GustEvent('step', 1.0, 0.0, 20.0))
         wind = with_events(TIME, self.base, events, EAST)
         np.testing.assert_allclose(wind[-1], (8.0, 0.0, 0.5), atol=1e-14)
         to_the_north = with_events(TIME, self.base, events, 0.0)
         np.testing.assert_allclose(to_the_north[-1], (5.0, 3.0, 0.5), atol=1e-14)
 
     def test_a_positive_turn_goes_counter_clockwise_seen_from_above(self):
-        wind = with_events(TIME, self.base, (GustEvent("turn", EAST, 5.0),), EAST)
+        wind = with_events(TIME, self.base, (GustEvent('turn', EAST, 5.0),), EAST)
         np.testing.assert_allclose(wind[-1], (0.0, 5.0, 0.5), atol=1e-14)
 
     def test_a_turn_keeps_speeds_and_carries_gusts(self):
-        events = (GustEvent("turn", 1.0, 5.0), GustEvent("one_minus_cos", 4.0, 6.0, 20.0))
+        events = (GustEvent('turn', 1.0, 5.0), GustEvent('one_minus_cos', 4.0, 6.0, 20.0))
         wind = with_events(TIME, self.base, events, EAST)
         speed = np.hypot(wind[:, 0], wind[:, 1])
         np.testing.assert_allclose(speed, 5.0 + events[1].at(TIME), atol=1e-12)

@@ -12,11 +12,11 @@ from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
 
-every = pytest.mark.parametrize("name", SPECTRA)
+every = pytest.mark.parametrize('name', SPECTRA)
 
 
 @every
-@pytest.mark.parametrize("across", [False, True])
+@pytest.mark.parametrize('across', [False, True])
 def test_it_holds_its_variance(name, across):
     total, _ = scipy.integrate.quad(
         lambda n: float(SPECTRA[name].of_component(n, 7.0, 1.5, 40.0, across=across)),

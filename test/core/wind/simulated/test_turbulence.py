@@ -1,8 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import csv
-import math
 from itertools import pairwise
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +13,15 @@ import scipy.stats
 
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
 from tree_sway_ros.core.wind.simulated.turbulence import (
-    Turbulence,
     along_bearing,
     simulate_turbulence,
+    Turbulence,
     turbulence_scale,
 )
 from tree_sway_ros.errors import ParameterError
 
 RATE, HOUR = 20.0, 3600.0
-GOLDEN = Path(__file__).parents[3] / "golden" / "pyconturb" / "spectra.csv"
+GOLDEN = Path(__file__).parents[3] / 'golden' / 'pyconturb' / 'spectra.csv'
 
 
 def along_the_wind(record):
@@ -29,7 +29,7 @@ def along_the_wind(record):
     return record - np.array([7.0, 0.0, 0.0])
 
 
-@pytest.fixture(scope="module", params=SPECTRA)
+@pytest.fixture(scope='module', params=SPECTRA)
 def hour(request):
     turbulence = Turbulence(7.0, request.param)
     record = simulate_turbulence(
@@ -81,7 +81,8 @@ class TestSimulatedHour:
         assert np.abs(scipy.stats.kurtosis(wind)).max() < 0.4
 
     def test_gusts_come_from_above_and_lulls_from_below(self, hour):
-        """The stress over level ground: -0.3 to -0.4 of the deviations (Kaimal & Finnigan 1994)."""
+        """The stress over level ground: -0.3 to -0.4 of the deviations (Kaimal & Finnigan
+        1994)."""
         _, wind = hour
         correlation = np.corrcoef(wind.T)
         assert -0.4 < correlation[0, 2] < -0.3
@@ -111,17 +112,18 @@ def test_vertical_slope_too_where_the_subrange_reaches_the_band():
 
 
 class TestAgainstPyConTurb:
-    """The same case by an independent generator; the table and its program stand in test/golden."""
+    """The same case by an independent generator; the table and its program stand in
+    test/golden."""
 
-    @pytest.fixture(scope="class")
+    @pytest.fixture(scope='class')
     def table(self):
-        with GOLDEN.open(encoding="ascii", newline="") as lines:
+        with GOLDEN.open(encoding='ascii', newline='') as lines:
             rows = np.array([[float(cell) for cell in row] for row in list(csv.reader(lines))[1:]])
         return rows[:, 0], rows[:, 1:4], rows[:, 4:7]
 
     def test_closed_form(self, table):
         frequency, closed, _ = table
-        ours = Turbulence(7.0, "kaimal", 10.0, reference_intensity=0.14).spectrum(frequency)
+        ours = Turbulence(7.0, 'kaimal', 10.0, reference_intensity=0.14).spectrum(frequency)
         # Theirs is the mean over a band, ours the value at its middle.
         np.testing.assert_allclose(ours, closed, rtol=0.03)
 
@@ -141,14 +143,14 @@ class TestAgainstPyConTurb:
 class TestClosedForms:
     def test_both_share_one_inertial_subrange_that_is_locally_isotropic(self):
         frequency = np.array([1e4, 1e5])
-        kaimal = Turbulence(7.0, "kaimal").spectrum(frequency)
-        von_karman = Turbulence(7.0, "von_karman").spectrum(frequency)
+        kaimal = Turbulence(7.0, 'kaimal').spectrum(frequency)
+        von_karman = Turbulence(7.0, 'von_karman').spectrum(frequency)
         np.testing.assert_allclose(von_karman, kaimal, rtol=2e-3)
         np.testing.assert_allclose(kaimal[:, 1:] / kaimal[:, :1], 4 / 3, rtol=0.02)
         np.testing.assert_allclose(kaimal[1] / kaimal[0], 10 ** (-5 / 3), rtol=1e-3)
 
     def test_von_karman_scale_of_u_is_that_of_the_standard(self):
-        scale = Turbulence(7.0, "von_karman", 50.0).scales[0]
+        scale = Turbulence(7.0, 'von_karman', 50.0).scales[0]
         assert scale == pytest.approx(3.5 * 0.7 * 50.0, rel=0.01)
 
     def test_the_scale_stops_growing_at_sixty_metres(self):
@@ -164,14 +166,14 @@ class TestClosedForms:
 
 
 class TestRecords:
-    @pytest.mark.parametrize("rate", [1.0, 4.0, 100.0])
-    @pytest.mark.parametrize("model", SPECTRA)
+    @pytest.mark.parametrize('rate', [1.0, 4.0, 100.0])
+    @pytest.mark.parametrize('model', SPECTRA)
     def test_the_variance_is_kept_at_every_rate(self, rate, model):
         turbulence = Turbulence(5.0, model)
         record = turbulence.record(round(600 * rate), rate, np.random.default_rng(1))
         np.testing.assert_allclose(record.std(axis=0), turbulence.deviations, rtol=1e-12)
 
-    @pytest.mark.parametrize("n_samples", [4, 5, 997, 1000])
+    @pytest.mark.parametrize('n_samples', [4, 5, 997, 1000])
     def test_any_length(self, n_samples):
         turbulence = Turbulence(5.0)
         record = turbulence.record(n_samples, 10.0, np.random.default_rng(1))
@@ -214,7 +216,7 @@ class TestRecords:
 
 class TestBearing:
     @pytest.mark.parametrize(
-        ("degrees_to", "east", "north"), [(0, 0, 1), (90, 1, 0), (180, 0, -1), (270, -1, 0)]
+        ('degrees_to', 'east', 'north'), [(0, 0, 1), (90, 1, 0), (180, 0, -1), (270, -1, 0)]
     )
     def test_mean_blows_to_the_bearing(self, degrees_to, east, north):
         wind = simulate_turbulence(
@@ -234,20 +236,20 @@ class TestBearing:
 
 
 @pytest.mark.parametrize(
-    ("options", "match"),
+    ('options', 'match'),
     [
-        ({"model": "kolmogorov"}, "unknown spectrum 'kolmogorov'.*use one of: kaimal"),
-        ({"mean_speed": 0.0}, "mean_speed: 0.0 is out of range"),
-        ({"mean_speed": math.nan}, "mean_speed"),
-        ({"height": 0.0}, "height"),
-        ({"intensity": -0.1}, "intensity"),
-        ({"reference_intensity": 3.0}, "reference_intensity"),
-        ({"rate": 0.0}, "rate"),
-        ({"duration": -1.0}, "duration"),
-        ({"bearing_to": math.inf}, "bearing_to"),
+        ({'model': 'kolmogorov'}, "unknown spectrum 'kolmogorov'.*use one of: kaimal"),
+        ({'mean_speed': 0.0}, 'mean_speed: 0.0 is out of range'),
+        ({'mean_speed': math.nan}, 'mean_speed'),
+        ({'height': 0.0}, 'height'),
+        ({'intensity': -0.1}, 'intensity'),
+        ({'reference_intensity': 3.0}, 'reference_intensity'),
+        ({'rate': 0.0}, 'rate'),
+        ({'duration': -1.0}, 'duration'),
+        ({'bearing_to': math.inf}, 'bearing_to'),
     ],
 )
 def test_parameters_out_of_range_are_refused(options, match):
-    values = {"mean_speed": 5.0, "rate": 10.0, "duration": 10.0, **options}
+    values = {'mean_speed': 5.0, 'rate': 10.0, 'duration': 10.0, **options}
     with pytest.raises(ParameterError, match=match):
         simulate_turbulence(rng=np.random.default_rng(0), **values)

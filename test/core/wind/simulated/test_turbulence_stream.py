@@ -82,12 +82,12 @@ def test_what_it_returns_is_the_callers_own():
     assert np.abs(stream.at(5)).max() < 40.0
 
 
-@pytest.mark.parametrize(("rate", "seed"), [(0.0, 1), (-1.0, 1), (2e3, 1), (4.0, -1)])
+@pytest.mark.parametrize(('rate', 'seed'), [(0.0, 1), (-1.0, 1), (2e3, 1), (4.0, -1)])
 def test_out_of_range(rate, seed):
-    with pytest.raises(ParameterError, match="out of range"):
+    with pytest.raises(ParameterError, match='out of range'):
         TurbulenceStream(TURBULENCE, rate, seed)
 
 
 def test_a_negative_tick_is_refused():
-    with pytest.raises(ParameterError, match="tick: -1 is out of range"):
+    with pytest.raises(ParameterError, match='tick: -1 is out of range'):
         TurbulenceStream(TURBULENCE, RATE, 1).at(-1)

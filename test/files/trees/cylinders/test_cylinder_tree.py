@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 from pathlib import Path
 
-import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import numpy as np
+import pytest
 
 from tree_sway_ros.errors import ParameterError, TreeError
 from tree_sway_ros.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
-FILE = Path("cylinders.txt")
+FILE = Path('cylinders.txt')
 
 
 def cylinders_of(rows, continues=None):
@@ -23,7 +23,7 @@ def cylinders_of(rows, continues=None):
         np.stack([width, width], axis=1).astype(float),
         np.array(parent),
         None if continues is None else np.array(continues, dtype=bool),
-        [f"cylinder {i}" for i in range(len(rows))],
+        [f'cylinder {i}' for i in range(len(rows))],
     )
 
 
@@ -52,18 +52,18 @@ def test_loose_branches_are_set_on_the_nearest_cylinder():
     assert list(tree_file.tree.segment_parent) == [-1, 0, 1]
     np.testing.assert_allclose(tree_file.tree.start[2], [0.3, 0, 1.6])
     assert tree_file.notes == (
-        "1 branches had no parent and were set on the nearest cylinder, at most 0.3 m away",
+        '1 branches had no parent and were set on the nearest cylinder, at most 0.3 m away',
     )
 
 
 def test_two_trees_are_not_one():
     other = [((9, 0, 0), (9, 0, 1), 0.15, -1)]
-    with pytest.raises(TreeError, match="cylinder 2: 2 roots: a forest of trees"):
+    with pytest.raises(TreeError, match='cylinder 2: 2 roots: a forest of trees'):
         built(STEM + other, [False, True, False])
 
 
 @pytest.mark.parametrize(
-    ("rows", "continues", "n", "dropped", "parents"),
+    ('rows', 'continues', 'n', 'dropped', 'parents'),
     [
         # In the middle of a branch: goes to the one before, and what it bears with it.
         ([*STEM, ((0, 0, 2), (0, 0, 2), 0.1, 1), ((0, 0, 2), (0, 0, 3), 0.1, 2),
@@ -89,8 +89,8 @@ def test_zero_cylinders_are_merged(rows, continues, n, dropped, parents):
     assert list(tree_file.tree.segment_parent) == parents
     gone = len(rows) - n
     assert tree_file.notes == (
-        f"{gone} cylinders shorter than 1e-06 m were merged, "
-        f"{dropped} of them branches of nothing else, left out",
+        f'{gone} cylinders shorter than 1e-06 m were merged, '
+        f'{dropped} of them branches of nothing else, left out',
     )
 
 
@@ -111,15 +111,15 @@ def test_merging_keeps_volume_and_reach(seed, below):
 
 
 @pytest.mark.parametrize(
-    ("rows", "message"),
+    ('rows', 'message'),
     [
-        ([((0, 0, 0), (0, 0, np.nan), 0.1, -1)], "cylinder 0: a number that is not finite"),
-        ([((0, 0, 0), (0, 0, 1e9), 0.1, -1)], "cylinder 0: .* too large"),
-        ([((0, 0, 0), (0, 0, 1), 0.0, -1)], "cylinder 0: diameter"),
-        ([((0, 0, 0), (0, 0, 0), 0.1, -1)], "cylinder 0: zero length"),
-        ([((0, 0, 0), (0, 0, 1), 0.1, 0)], "cylinder 0: cyclic"),
-        ([((0, 0, 0), (0, 0, 1), 0.1, 7)], "cylinder 0: orphan"),
-        ([((0, 0, 0), (0, 0, 1), 0.1, -2)], "cylinder 0: orphan"),
+        ([((0, 0, 0), (0, 0, np.nan), 0.1, -1)], 'cylinder 0: a number that is not finite'),
+        ([((0, 0, 0), (0, 0, 1e9), 0.1, -1)], 'cylinder 0: .* too large'),
+        ([((0, 0, 0), (0, 0, 1), 0.0, -1)], 'cylinder 0: diameter'),
+        ([((0, 0, 0), (0, 0, 0), 0.1, -1)], 'cylinder 0: zero length'),
+        ([((0, 0, 0), (0, 0, 1), 0.1, 0)], 'cylinder 0: cyclic'),
+        ([((0, 0, 0), (0, 0, 1), 0.1, 7)], 'cylinder 0: orphan'),
+        ([((0, 0, 0), (0, 0, 1), 0.1, -2)], 'cylinder 0: orphan'),
     ],
 )
 def test_what_cannot_be(rows, message):
@@ -127,7 +127,7 @@ def test_what_cannot_be(rows, message):
         built(rows)
 
 
-@pytest.mark.parametrize("options", [{"merge_below": -1.0}, {"twig_diameter": float("nan")}])
+@pytest.mark.parametrize('options', [{'merge_below': -1.0}, {'twig_diameter': float('nan')}])
 def test_options_are_checked(options):
     with pytest.raises(ParameterError, match=next(iter(options))):
         CylinderOptions(**options)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A new format is one module in the folder of formats: tried by adding one."""
 
+from pathlib import Path
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -46,35 +46,35 @@ print(one.tree.height, one.tree.start[0][2], one.species.key, len(open_scene(sys
 
 def test_one_file_is_all_it_takes(tmp_path):
     package = Path(tree_sway_ros.__file__).parent
-    (tmp_path / "package").mkdir()
-    copy = tmp_path / "package" / "tree_sway_ros"
+    (tmp_path / 'package').mkdir()
+    copy = tmp_path / 'package' / 'tree_sway_ros'
     # Links to every module but for one folder, which gets the new one.
-    for source in sorted(package.rglob("*")):
+    for source in sorted(package.rglob('*')):
         target = copy / source.relative_to(package)
         if source.is_dir():
             target.mkdir(parents=True, exist_ok=True)
-        elif source.suffix in (".py", ".json", ".yaml", ".csv"):
+        elif source.suffix in ('.py', '.json', '.yaml', '.csv'):
             target.parent.mkdir(parents=True, exist_ok=True)
             target.symlink_to(source)
-    (copy / "files/trees/formats/poles.py").write_text(MODULE)
-    (tmp_path / "two.poles").write_text("POLES\n6.0 0.2\n5.0 0.1\n")
+    (copy / 'files/trees/formats/poles.py').write_text(MODULE)
+    (tmp_path / 'two.poles').write_text('POLES\n6.0 0.2\n5.0 0.1\n')
     result = subprocess.run(
-        [sys.executable, "-c", USE, str(tmp_path / "two.poles")],
-        cwd=tmp_path / "package",
-        env={"PYTHONPATH": str(tmp_path / "package"), "PATH": "", "HOME": str(tmp_path)},
+        [sys.executable, '-c', USE, str(tmp_path / 'two.poles')],
+        cwd=tmp_path / 'package',
+        env={'PYTHONPATH': str(tmp_path / 'package'), 'PATH': '', 'HOME': str(tmp_path)},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert result.stderr == ""
-    assert result.stdout.split() == ["6.0", "2.0", "oak", "2"]
+    assert result.stderr == ''
+    assert result.stdout.split() == ['6.0', '2.0', 'oak', '2']
 
 
 def test_names_are_their_own():
     assert len({known.name for known in TREE_FORMATS}) == len(TREE_FORMATS) >= 9
 
 
-@pytest.mark.parametrize("known", TREE_FORMATS, ids=lambda known: known.name)
+@pytest.mark.parametrize('known', TREE_FORMATS, ids=lambda known: known.name)
 def test_no_format_takes_what_is_nothing(known):
-    for head in ("", "\n", "#", "\x00\x01", "a,b,c\n1,2,3\n"):
+    for head in ('', '\n', '#', '\x00\x01', 'a,b,c\n1,2,3\n'):
         assert not known.recognise(head)

@@ -1,6 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The same small tree in every format; the files list the side branch before the stem's own end."""
+"""The same small tree in every format; the files list the side branch before the stem's own
+end."""
 
 from pathlib import Path
 
@@ -12,9 +13,9 @@ from tree_sway_ros.errors import FormatError, MissingDependencyError, TreeError,
 from tree_sway_ros.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
 
-DATA = Path(__file__).parents[2] / "data"
-CYLINDER_FILES = ["fork.simpleforest.csv", "fork.archi.csv", "fork.treeqsm23.txt",
-                  "fork.treeqsm24.txt", "fork.pytlidar.txt"]  # fmt: skip
+DATA = Path(__file__).parents[2] / 'data'
+CYLINDER_FILES = ['fork.simpleforest.csv', 'fork.archi.csv', 'fork.treeqsm23.txt',
+                  'fork.treeqsm24.txt', 'fork.pytlidar.txt']  # fmt: skip
 OFFSET = (100.0, 200.0, 50.0)
 VOLUME = np.pi * (0.10**2 + 0.08**2 + 0.03**2 + 0.02**2)
 
@@ -32,112 +33,113 @@ def assert_is_the_fork(tree_file, volume=VOLUME):
     np.testing.assert_allclose(tree_file.origin, OFFSET)
 
 
-@pytest.mark.parametrize("name", CYLINDER_FILES)
+@pytest.mark.parametrize('name', CYLINDER_FILES)
 def test_the_same_tree_from_each(name):
     assert_is_the_fork(read_tree(DATA / name))
 
 
-@pytest.mark.parametrize("name", CYLINDER_FILES)
+@pytest.mark.parametrize('name', CYLINDER_FILES)
 def test_where_it_stands_is_reported_or_kept(name):
     moved = read_tree(DATA / name)
-    assert "moved by -100, -200, -50 m, the base to the origin" in moved.notes
+    assert 'moved by -100, -200, -50 m, the base to the origin' in moved.notes
     kept = read_tree(DATA / name, to_origin=False)
     np.testing.assert_allclose(kept.tree.start[0], OFFSET)
     assert kept.notes == ()
 
 
 def columns_of_fork(base=1):
-    (cylinders,) = read_treeqsm_text(DATA / "fork.treeqsm24.txt")
+    (cylinders,) = read_treeqsm_text(DATA / 'fork.treeqsm24.txt')
     axis = cylinders.end - cylinders.start
     length = np.linalg.norm(axis, axis=1)
     parent = np.array([0, 1, 1, 2]) + base - 1
     extension = np.array([3, 4, 0, 0]) + base - 1
     return {
-        "radius": cylinders.diameter[:, 0] / 2, "length": length, "start": cylinders.start,
-        "axis": axis / length[:, None], "parent": parent, "extension": extension,
+        'radius': cylinders.diameter[:, 0] / 2, 'length': length, 'start': cylinders.start,
+        'axis': axis / length[:, None], 'parent': parent, 'extension': extension,
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("compressed", [False, True])
+@pytest.mark.parametrize('compressed', [False, True])
 def test_matlab_structs(tmp_path, compressed):
-    path = tmp_path / "fork.mat"
-    savemat(path, {"QSM": {"cylinder": columns_of_fork(), "x": 1}}, do_compression=compressed)
+    path = tmp_path / 'fork.mat'
+    savemat(path, {'QSM': {'cylinder': columns_of_fork(), 'x': 1}}, do_compression=compressed)
     assert_is_the_fork(read_tree(path))
 
 
 def test_matlab_loose_variables_and_arrays_of_structs(tmp_path):
-    names = {"radius": "Rad", "length": "Len", "start": "Sta", "axis": "Axe", "parent": "CPar",
-             "extension": "CExt"}  # fmt: skip
+    names = {'radius': 'Rad', 'length': 'Len', 'start': 'Sta', 'axis': 'Axe', 'parent': 'CPar',
+             'extension': 'CExt'}  # fmt: skip
     loose = {names[key]: value for key, value in columns_of_fork().items()}
-    savemat(tmp_path / "loose.mat", loose)
-    assert_is_the_fork(read_tree(tmp_path / "loose.mat"))
-    cells = np.array([{"cylinder": columns_of_fork()}, {"cylinder": columns_of_fork()}])
-    structs = np.array([(columns_of_fork(),), (columns_of_fork(),)], dtype=[("cylinder", object)])
+    savemat(tmp_path / 'loose.mat', loose)
+    assert_is_the_fork(read_tree(tmp_path / 'loose.mat'))
+    cells = np.array([{'cylinder': columns_of_fork()}, {'cylinder': columns_of_fork()}])
+    structs = np.array([(columns_of_fork(),), (columns_of_fork(),)], dtype=[('cylinder', object)])
     for models in (cells, structs):
-        savemat(tmp_path / "two.mat", {"models": models})
-        for tree_file in read_trees(tmp_path / "two.mat"):
+        savemat(tmp_path / 'two.mat', {'models': models})
+        for tree_file in read_trees(tmp_path / 'two.mat'):
             assert_is_the_fork(tree_file)
-        assert read_tree(tmp_path / "two.mat").notes[-1] == "the file holds 1 more trees"
+        assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file holds 1 more trees'
 
 
-@pytest.mark.parametrize("referenced", [False, True])
+@pytest.mark.parametrize('referenced', [False, True])
 def test_matlab_7_3(tmp_path, referenced):
-    h5py = pytest.importorskip("h5py", reason="h5py is not installed")
-    path = tmp_path / "fork.mat"
-    with h5py.File(path, "w", userblock_size=512) as file:
-        inside = "#refs#/a" if referenced else "QSM/cylinder"
+    h5py = pytest.importorskip('h5py', reason='h5py is not installed')
+    path = tmp_path / 'fork.mat'
+    with h5py.File(path, 'w', userblock_size=512) as file:
+        inside = '#refs#/a' if referenced else 'QSM/cylinder'
         for name, values in columns_of_fork().items():
-            file[f"{inside}/{name}"] = np.atleast_2d(values.T)
+            file[f'{inside}/{name}'] = np.atleast_2d(values.T)
         if referenced:
-            file.create_dataset("QSM/cylinder", (1, 1), dtype=h5py.ref_dtype)
-            file["QSM/cylinder"][0, 0] = file[inside].ref
-    with path.open("r+b") as stream:
-        stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512))
+            file.create_dataset('QSM/cylinder', (1, 1), dtype=h5py.ref_dtype)
+            file['QSM/cylinder'][0, 0] = file[inside].ref
+    with path.open('r+b') as stream:
+        stream.write(b'MATLAB 7.3 MAT-file, Platform: GLNXA64'.ljust(512))
     assert_is_the_fork(read_tree(path))
 
 
 def test_matlab_7_3_without_h5py(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "h5py", None)
-    (tmp_path / "new.mat").write_bytes(b"MATLAB 7.3 MAT-file".ljust(600))
-    with pytest.raises(MissingDependencyError, match="needs h5py; pip install h5py, or save it"):
-        read_tree(tmp_path / "new.mat")
+    monkeypatch.setitem(__import__('sys').modules, 'h5py', None)
+    (tmp_path / 'new.mat').write_bytes(b'MATLAB 7.3 MAT-file'.ljust(600))
+    with pytest.raises(MissingDependencyError, match='needs h5py; pip install h5py, or save it'):
+        read_tree(tmp_path / 'new.mat')
 
 
 def test_matlab_without_a_model(tmp_path):
-    savemat(tmp_path / "other.mat", {"a": np.zeros(3)})
+    savemat(tmp_path / 'other.mat', {'a': np.zeros(3)})
     with pytest.raises(FormatError, match="no struct with a field 'cylinder'"):
-        read_tree(tmp_path / "other.mat")
-    savemat(tmp_path / "part.mat", {"QSM": {"cylinder": {"radius": [1.0], "length": [1.0]}}})
+        read_tree(tmp_path / 'other.mat')
+    savemat(tmp_path / 'part.mat', {'QSM': {'cylinder': {'radius': [1.0], 'length': [1.0]}}})
     with pytest.raises(FormatError, match="QSM has no field 'start'"):
-        read_tree(tmp_path / "part.mat")
-    text = {**columns_of_fork(), "axis": "up"}
-    savemat(tmp_path / "text.mat", {"QSM": {"cylinder": text}})
+        read_tree(tmp_path / 'part.mat')
+    text = {**columns_of_fork(), 'axis': 'up'}
+    savemat(tmp_path / 'text.mat', {'QSM': {'cylinder': text}})
     with pytest.raises(FormatError, match="QSM: 'axis' is not numeric"):
-        read_tree(tmp_path / "text.mat")
-    (tmp_path / "cut.mat").write_bytes((tmp_path / "text.mat").read_bytes()[:300])
-    with pytest.raises(FormatError, match="not a MATLAB file that can be read"):
-        read_tree(tmp_path / "cut.mat")
+        read_tree(tmp_path / 'text.mat')
+    (tmp_path / 'cut.mat').write_bytes((tmp_path / 'text.mat').read_bytes()[:300])
+    with pytest.raises(FormatError, match='not a MATLAB file that can be read'):
+        read_tree(tmp_path / 'cut.mat')
 
 
 @pytest.mark.parametrize(
-    ("name", "old", "new", "kind", "message"),
+    ('name', 'old', 'new', 'kind', 'message'),
     [
-        ("fork.simpleforest.csv", "\n3,1,", "\n3,9,", TreeError,
-         ":5: cylinder 3: orphan: its parent 9 is not"),
-        ("fork.simpleforest.csv", "0,-1,", "0,0,", TreeError, "cylinder 0: cyclic"),
-        ("fork.simpleforest.csv", "2,0,", "1,0,", FormatError,
-         ":4: cylinder 1: number 1 stands twice"),
-        ("fork.archi.csv", "cyl_ID,parent", "cyl_ID,parnt", FormatError,
+        ('fork.simpleforest.csv', '\n3,1,', '\n3,9,', TreeError,
+         ':5: cylinder 3: orphan: its parent 9 is not'),
+        ('fork.simpleforest.csv', '0,-1,', '0,0,', TreeError, 'cylinder 0: cyclic'),
+        ('fork.simpleforest.csv', '2,0,', '1,0,', FormatError,
+         ':4: cylinder 1: number 1 stands twice'),
+        ('fork.archi.csv', 'cyl_ID,parent', 'cyl_ID,parnt', FormatError,
          ":1: no column 'parent_ID'"),
-        ("fork.archi.csv", "0.03", "x", FormatError, ":3: radius_cyl is 'x', not a finite"),
-        ("fork.treeqsm23.txt", "0.08", "nan", FormatError, ":3: 9 good numbers of 10"),
-        ("fork.treeqsm23.txt", "\t2\t0\t", "\t2.5\t0\t", FormatError, ":4: .* is 2.5, not a whole"),
-        ("fork.treeqsm23.txt", "\t1\t0\t0\t0.08", "\t77\t0\t0\t0.08", TreeError,
-         ":3: cylinder 3: orphan"),
-        ("fork.treeqsm24.txt", "0.08", "-0.08", TreeError, ":4: cylinder 3: diameter"),
-        ("fork.treeqsm24.txt", "100\t200\t51", "100\t200\t5e99", TreeError,
-         ":4: cylinder 3: .* too large"),
-        ("fork.pytlidar.txt", "\t-1.0\t2.0", "\t5.0\t2.0", TreeError, ":2: cylinder 1: orphan"),
+        ('fork.archi.csv', '0.03', 'x', FormatError, ":3: radius_cyl is 'x', not a finite"),
+        ('fork.treeqsm23.txt', '0.08', 'nan', FormatError, ':3: 9 good numbers of 10'),
+        ('fork.treeqsm23.txt', '\t2\t0\t', '\t2.5\t0\t', FormatError,
+         ':4: .* is 2.5, not a whole'),
+        ('fork.treeqsm23.txt', '\t1\t0\t0\t0.08', '\t77\t0\t0\t0.08', TreeError,
+         ':3: cylinder 3: orphan'),
+        ('fork.treeqsm24.txt', '0.08', '-0.08', TreeError, ':4: cylinder 3: diameter'),
+        ('fork.treeqsm24.txt', '100\t200\t51', '100\t200\t5e99', TreeError,
+         ':4: cylinder 3: .* too large'),
+        ('fork.pytlidar.txt', '\t-1.0\t2.0', '\t5.0\t2.0', TreeError, ':2: cylinder 1: orphan'),
     ],
 )  # fmt: skip
 def test_errors_name_the_line(tmp_path, name, old, new, kind, message):
@@ -153,38 +155,40 @@ def cyl_data():
     """The fork as a bare matrix of 14 columns, as TreeQSM 2.0 and older keep it."""
     columns = columns_of_fork()
     branch, order = [1, 2, 1, 2], [0, 1, 0, 1]
-    return np.column_stack([columns["radius"], columns["length"], columns["start"], columns["axis"],
-                            columns["parent"], columns["extension"], branch, order, [1, 1, 2, 2],
-                            np.zeros(4)])  # fmt: skip
+    return np.column_stack([columns['radius'], columns['length'], columns['start'],
+                            columns['axis'], columns['parent'], columns['extension'],
+                            branch, order, [1, 1, 2, 2], np.zeros(4)])  # fmt: skip
 
 
-@pytest.mark.parametrize("stretch", [1.0, 3.0])
+@pytest.mark.parametrize('stretch', [1.0, 3.0])
 def test_a_bare_matrix_of_cylinders(tmp_path, stretch):
     matrix = cyl_data()
     matrix[:, 5:8] *= stretch  # axes need not be of length 1
-    savemat(tmp_path / "a.mat", {"CylData": matrix, "Other": np.zeros((20, 14))})
-    assert_is_the_fork(read_tree(tmp_path / "a.mat"))
-    for separator in ("\t", " ", ",", "; "):
-        rows = [separator.join(f"{value:.9g}" for value in row) for row in matrix]
-        (tmp_path / "a.txt").write_text("\n".join(rows))
-        assert_is_the_fork(read_tree(tmp_path / "a.txt"))
-        (tmp_path / "b.txt").write_text("\n".join([separator.join("abcdefghijklmn"), *rows]))
-        assert_is_the_fork(read_tree(tmp_path / "b.txt"))
+    savemat(tmp_path / 'a.mat', {'CylData': matrix, 'Other': np.zeros((20, 14))})
+    assert_is_the_fork(read_tree(tmp_path / 'a.mat'))
+    for separator in ('\t', ' ', ',', '; '):
+        rows = [separator.join(f'{value:.9g}' for value in row) for row in matrix]
+        (tmp_path / 'a.txt').write_text('\n'.join(rows))
+        assert_is_the_fork(read_tree(tmp_path / 'a.txt'))
+        (tmp_path / 'b.txt').write_text('\n'.join([separator.join('abcdefghijklmn'), *rows]))
+        assert_is_the_fork(read_tree(tmp_path / 'b.txt'))
 
 
 def test_a_first_row_does_not_mislead(tmp_path):
-    text = (DATA / "fork.treeqsm23.txt").read_text().replace("0\t0\t1\t0\t3", "0\t0\t0.5\t0\t3", 1)
-    (tmp_path / "a.txt").write_text(text)
-    assert_is_the_fork(read_tree(tmp_path / "a.txt"))
-    (tmp_path / "a.txt").write_text(text.replace("0\t0\t0.5\t0\t3", "0\t0\t0\t0\t3", 1))
-    with pytest.raises(FormatError, match=r"a.txt:1: cylinder 1: an axis of no direction"):
-        read_tree(tmp_path / "a.txt")
+    text = (DATA / 'fork.treeqsm23.txt').read_text().replace('0\t0\t1\t0\t3', '0\t0\t0.5\t0\t3', 1)
+    (tmp_path / 'a.txt').write_text(text)
+    assert_is_the_fork(read_tree(tmp_path / 'a.txt'))
+    (tmp_path / 'a.txt').write_text(text.replace('0\t0\t0.5\t0\t3', '0\t0\t0\t0\t3', 1))
+    with pytest.raises(FormatError, match=r'a.txt:1: cylinder 1: an axis of no direction'):
+        read_tree(tmp_path / 'a.txt')
 
 
 def test_decimal_commas_say_so(tmp_path):
-    text = (DATA / "fork.treeqsm23.txt").read_text().replace(".", ",")
-    (tmp_path / "a.txt").write_text(text)
-    with pytest.raises(FormatError, match="a decimal comma; export it with decimal points"):
-        read_tree(tmp_path / "a.txt")
-    with pytest.raises(FormatError, match=r":1: 9 good numbers of 10: '0,1', with a decimal comma"):
-        read_tree(tmp_path / "a.txt", format="treeqsm-text")
+    text = (DATA / 'fork.treeqsm23.txt').read_text().replace('.', ',')
+    (tmp_path / 'a.txt').write_text(text)
+    with pytest.raises(FormatError, match='a decimal comma; export it with decimal points'):
+        read_tree(tmp_path / 'a.txt')
+    with pytest.raises(
+        FormatError, match=r":1: 9 good numbers of 10: '0,1', with a decimal comma"
+    ):
+        read_tree(tmp_path / 'a.txt', format='treeqsm-text')

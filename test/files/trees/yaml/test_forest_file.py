@@ -14,42 +14,42 @@ from tree_sway_ros.errors import ParameterError
 from tree_sway_ros.files.trees.source import open_scene, open_tree
 from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
-FILE = open_tree(Path(__file__).parents[2] / "data" / "seedling.yaml")
+FILE = open_tree(Path(__file__).parents[2] / 'data' / 'seedling.yaml')
 
 
 def forest_of(*leaf_on):
     trees = tuple(
-        PlacedTree(f"tree{i}", FILE.tree, x=3.0 * i, species=FILE.species, leaf_on=each)
+        PlacedTree(f'tree{i}', FILE.tree, x=3.0 * i, species=FILE.species, leaf_on=each)
         for i, each in enumerate(leaf_on)
     )
-    return ForestFile("row", trees, "row.yaml")
+    return ForestFile('row', trees, 'row.yaml')
 
 
 def test_it_is_drawn_and_described_as_one_record():
     tree = forest_of(None, None).tree
-    assert (tree.name, tree.n_segments) == ("row", 2 * FILE.tree.n_segments)
-    assert tree.segment_names[FILE.tree.n_segments] == "tree1/stem/0"
+    assert (tree.name, tree.n_segments) == ('row', 2 * FILE.tree.n_segments)
+    assert tree.segment_names[FILE.tree.n_segments] == 'tree1/stem/0'
 
 
 def test_it_sways_as_a_forest():
     file = replace(forest_of(None, True), anemometer=(-9.0, 0.0, 0.0), convection_ratio=2.0)
-    forest = file.simulator(model="subtree", damping_ratio=0.2)
+    forest = file.simulator(model='subtree', damping_ratio=0.2)
     assert isinstance(forest, Forest)
-    assert forest.model == "subtree"
+    assert forest.model == 'subtree'
     assert [each.settings.in_leaf for each in forest.simulators] == [False, True]
     forest.step((6.0, 0.0, 0.0), 1.0 / 60.0)
     assert forest.gusts.delay == pytest.approx([0.75, 1.0])
 
 
 def test_of_one_wood_its_leaves_are_too():
-    birches = forest_of(None, None).of_species(species_named("birch"))
+    birches = forest_of(None, None).of_species(species_named('birch'))
     assert (
         {each.species.key for each in birches.trees}
         == {each.tree.species for each in birches.trees}
-        == {"birch"}
+        == {'birch'}
     )
-    birch = FILE.of_species(species_named("birch"))
-    assert (birch.species.key, birch.tree.species) == ("birch", "birch")
+    birch = FILE.of_species(species_named('birch'))
+    assert (birch.species.key, birch.tree.species) == ('birch', 'birch')
 
 
 def test_leaves_stand_on_their_own_trees():
@@ -63,24 +63,24 @@ def test_leaves_stand_on_their_own_trees():
 
 
 def test_a_tree_file_makes_its_simulator_too():
-    sim = FILE.simulator(model="coupled", in_leaf=True)
-    assert sim.model == "coupled"
+    sim = FILE.simulator(model='coupled', in_leaf=True)
+    assert sim.model == 'coupled'
     assert sim.settings.leaf_area == pytest.approx(foliage_of(FILE.tree).drag_area)
     assert FILE.leaves(False, 40) is None
     assert FILE.leaves(True, 40).segment.shape == (40,)
 
 
 def test_trees_of_one_file_stand_where_they_do_in_it():
-    path = Path(__file__).parents[2] / "data" / "forest.treefile.txt"
+    path = Path(__file__).parents[2] / 'data' / 'forest.treefile.txt'
     forest = open_scene(path)
     assert [(each.name, each.x, each.y, each.z) for each in forest.trees] == [
-        ("forest.treefile1", 0.0, 0.0, 0.0),
-        ("forest.treefile2", 10.0, 0.0, 0.0),
+        ('forest.treefile1', 0.0, 0.0, 0.0),
+        ('forest.treefile2', 10.0, 0.0, 0.0),
     ]
     assert forest.tree.start[:, 0].max() >= 10.0
     second = open_scene(path, tree=2)
-    assert (second.tree.name, second.origin) == ("forest.treefile2", (110.0, 200.0, 50.0))
-    with pytest.raises(ParameterError, match="tree 3 of 2; give 1 to 2"):
+    assert (second.tree.name, second.origin) == ('forest.treefile2', (110.0, 200.0, 50.0))
+    with pytest.raises(ParameterError, match='tree 3 of 2; give 1 to 2'):
         open_scene(path, tree=3)
     with pytest.raises(ParameterError, match=r"option tree is '1.5'; give a whole number"):
         open_scene(path, tree=1.5)

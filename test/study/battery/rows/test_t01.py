@@ -24,5 +24,5 @@ def test_every_row_in_full():
 
 
 def test_energy_that_grows_is_seen():
-    assert case.growth(method_named("semi_implicit_euler"), 2.1, 0.0, 200, 1e-2, float) > 1.0
-    assert case.growth(method_named("rk4"), 1.0, 0.0, 200, 1e-2, float) <= 0.0
+    assert case.growth(method_named('semi_implicit_euler'), 2.1, 0.0, 200, 1e-2, float) > 1.0
+    assert case.growth(method_named('rk4'), 1.0, 0.0, 200, 1e-2, float) <= 0.0

@@ -16,5 +16,5 @@ def test_every_row_is_as_it_should_be():
 
 
 def test_a_gain_beyond_the_limit_blows_up():
-    assert np.isinf(case.largest_gap("semi_implicit_euler", 0.9))
-    assert case.largest_gap("semi_implicit_euler", 0.8) < 1e-2
+    assert np.isinf(case.largest_gap('semi_implicit_euler', 0.9))
+    assert case.largest_gap('semi_implicit_euler', 0.8) < 1e-2

@@ -12,8 +12,8 @@ from tree_sway_ros.core.oscillators.rule_names import REAL_TIME
 from tree_sway_ros.study.methods.chain import (
     DAMPING,
     LEVER,
-    STIFFNESS,
     single_segment,
+    STIFFNESS,
     uniform_chain,
 )
 from tree_sway_ros.study.methods.minimal_form import linearised
@@ -21,8 +21,8 @@ from tree_sway_ros.study.methods.registry import method_named
 from tree_sway_ros.study.methods.trajectory import integrate
 
 MINIMAL = (
-    *("semi_implicit_euler", "verlet", "rk4", "implicit_midpoint", "tr_bdf2", "bdf2"),
-    *("exact_zoh", "exact_foh", "exponential_rosenbrock", "exact_about_equilibrium"),
+    *('semi_implicit_euler', 'verlet', 'rk4', 'implicit_midpoint', 'tr_bdf2', 'bdf2'),
+    *('exact_zoh', 'exact_foh', 'exponential_rosenbrock', 'exact_about_equilibrium'),
 )
 
 
@@ -43,14 +43,14 @@ def free(name, dt, steps=300):
 
 
 @pytest.mark.parametrize(
-    ("name", "energy"),
+    ('name', 'energy'),
     [
-        ("semi_implicit_euler", lambda x, v, h: v * v + x * x - h * x * v),
-        ("verlet", lambda x, v, h: v * v + x * x * (1 - h * h / 4)),
-        ("implicit_midpoint", lambda x, v, h: v * v + x * x),
-        ("exact_foh", lambda x, v, h: v * v + x * x),
-        ("exact_zoh", lambda x, v, h: v * v + x * x),
-        ("exact_about_equilibrium", lambda x, v, h: v * v + x * x),
+        ('semi_implicit_euler', lambda x, v, h: v * v + x * x - h * x * v),
+        ('verlet', lambda x, v, h: v * v + x * x * (1 - h * h / 4)),
+        ('implicit_midpoint', lambda x, v, h: v * v + x * x),
+        ('exact_foh', lambda x, v, h: v * v + x * x),
+        ('exact_zoh', lambda x, v, h: v * v + x * x),
+        ('exact_about_equilibrium', lambda x, v, h: v * v + x * x),
     ],
 )
 def test_a_free_oscillator_keeps_the_energy_of_the_method(name, energy):
@@ -59,7 +59,7 @@ def test_a_free_oscillator_keeps_the_energy_of_the_method(name, energy):
     assert kept == pytest.approx(np.full(301, kept[0]), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["rk4", "tr_bdf2", "bdf2"])
+@pytest.mark.parametrize('name', ['rk4', 'tr_bdf2', 'bdf2'])
 def test_what_damps_by_itself_loses_energy(name):
     x, v = free(name, 0.4)
     energy = x * x + v * v
@@ -68,12 +68,12 @@ def test_what_damps_by_itself_loses_energy(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "n", "slack"),
+    ('name', 'n', 'slack'),
     [
         # Verlet only where no centrifugal force needs the rate it predicts: a segment alone.
-        ("verlet", 1, 1e-12),
-        ("implicit_midpoint", 3, 1e-10),
-        ("rk4", 1, 1e-3),
+        ('verlet', 1, 1e-12),
+        ('implicit_midpoint', 3, 1e-10),
+        ('rk4', 1, 1e-3),
     ],
 )
 def test_symmetric_methods_run_backwards(name, n, slack):
@@ -87,11 +87,11 @@ def test_symmetric_methods_run_backwards(name, n, slack):
         moved = np.abs(state[0] - theta).max()
         state[1] *= -1.0
     assert moved < slack
-    assert name != "rk4" or moved > 1e-11, "of an even order, but not symmetric"
+    assert name != 'rk4' or moved > 1e-11, 'of an even order, but not symmetric'
 
 
-@pytest.mark.parametrize("name", REAL_TIME)
-@pytest.mark.parametrize("ratio", [0.0, 0.05, 1.0])
+@pytest.mark.parametrize('name', REAL_TIME)
+@pytest.mark.parametrize('ratio', [0.0, 0.05, 1.0])
 def test_propagators_agree_with_the_exact_one_as_the_step_shrinks(name, ratio):
     method, w = method_named(name), 3.0
     args = np.array([0.7]), np.array([2 * ratio * w * 0.7]), np.array([0.7 * w * w])
@@ -101,11 +101,11 @@ def test_propagators_agree_with_the_exact_one_as_the_step_shrinks(name, ratio):
         for h in (0.02, 0.01)
     ]
     assert gap[1] <= gap[0] / 2 ** (method.order + 0.7) + 1e-14, (
-        "one step errs one power above the order"
+        'one step errs one power above the order'
     )
 
 
-@pytest.mark.parametrize("name", MINIMAL)
+@pytest.mark.parametrize('name', MINIMAL)
 def test_equilibrium_under_a_steady_load_is_kept(name):
     chain, method = single_segment(1.0, 0.05), method_named(name)
     row, angle = chain.table[0], 0.4
@@ -117,7 +117,7 @@ def test_equilibrium_under_a_steady_load_is_kept(name):
     assert state[:2, 0] == pytest.approx([angle, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["exponential_rosenbrock", "exact_about_equilibrium"])
+@pytest.mark.parametrize('name', ['exponential_rosenbrock', 'exact_about_equilibrium'])
 def test_motion_about_a_bent_state_has_its_own_frequency(name):
     """A load of many times the stiffness pulls straight: the bent branch swings much faster."""
     chain, method, dt = single_segment(1.0, 0.0), method_named(name), 0.05
@@ -151,5 +151,5 @@ def test_zero_order_hold_is_late_by_half_a_step():
         return integrate(method, chain, loads, dt).theta[-1, 0]
 
     exact = rate * (400 * dt - c / k) / k
-    assert ramp("exact_foh") == pytest.approx(exact, abs=2e-8)
-    assert ramp("exact_zoh") == pytest.approx(exact - rate * 0.5 * dt / k, abs=2e-8)
+    assert ramp('exact_foh') == pytest.approx(exact, abs=2e-8)
+    assert ramp('exact_zoh') == pytest.approx(exact - rate * 0.5 * dt / k, abs=2e-8)

@@ -16,7 +16,7 @@ CHAIN = uniform_chain(3, 2.0, 0.05)
 LOAD = np.array([[1.0, 2.0], [-0.5, 1.0], [0.2, 0.4]])
 
 
-@pytest.mark.parametrize("step", [1e-3, 1 / 60, 0.05])
+@pytest.mark.parametrize('step', [1e-3, 1 / 60, 0.05])
 def test_the_solution_satisfies_the_stage(step):
     base, base_rate = np.array([0.1, 0.2, -0.1]), np.array([1.0, 0.0, -2.0])
     theta, omega = base.copy(), base_rate.copy()
@@ -35,7 +35,7 @@ def test_a_good_guess_is_worth_iterations():
     assert solve_stage(CHAIN.table, base, rate, LOAD, 0.1, theta, omega) <= 2
 
 
-@pytest.mark.parametrize("name", ["implicit_midpoint", "tr_bdf2", "bdf2"])
+@pytest.mark.parametrize('name', ['implicit_midpoint', 'tr_bdf2', 'bdf2'])
 def test_what_cannot_be_solved_is_told_and_leaves_the_state(name):
     method = method_named(name)
     state = method.start(CHAIN, np.full(3, 0.1), np.zeros(3), LOAD, 0.01)

@@ -13,7 +13,7 @@ from tree_sway_ros.study.methods.multiplier.baumgarte import Baumgarte
 from tree_sway_ros.study.methods.multiplier.index3_newton import solve_index3
 from tree_sway_ros.study.methods.multiplier.project import project_position, project_velocity
 from tree_sway_ros.study.methods.multiplier.projection import Projection
-from tree_sway_ros.study.methods.registry import METHODS, method_named
+from tree_sway_ros.study.methods.registry import method_named, METHODS
 from tree_sway_ros.study.methods.trajectory import integrate
 
 CHAIN = uniform_chain(2, 1.0, 0.0)
@@ -21,14 +21,14 @@ MASS = CHAIN.table[:, [0, 0, 1]].ravel()
 THETA, OMEGA = np.array([0.4, 0.9]), np.array([1.0, -3.0])
 LOAD = np.array([[1.0, 2.0], [-0.5, 1.0]])
 HELD = (
-    "projection",
-    "rattle",
-    "radau_ggl",
-    "multiplier_implicit_midpoint",
-    "newmark",
-    "hht",
-    "generalized_alpha",
-    "multiplier_bdf2",
+    'projection',
+    'rattle',
+    'radau_ggl',
+    'multiplier_implicit_midpoint',
+    'newmark',
+    'hht',
+    'generalized_alpha',
+    'multiplier_bdf2',
 )
 
 
@@ -41,14 +41,14 @@ def speed_gap(state):
     return np.abs(form.jacobian(CHAIN.table, state[0]) @ state[1]).max()
 
 
-@pytest.mark.parametrize("name", HELD)
+@pytest.mark.parametrize('name', HELD)
 def test_positions_stay_on_the_constraint_to_rounding(name):
     method = method_named(name)
     assert method.gap(CHAIN, run(method, 5.0)) < 1e-12
 
 
 @pytest.mark.parametrize(
-    "name", ["projection", "rattle", "radau_ggl", "multiplier_implicit_midpoint"]
+    'name', ['projection', 'rattle', 'radau_ggl', 'multiplier_implicit_midpoint']
 )
 def test_velocities_too_where_the_method_says_so(name):
     assert speed_gap(run(method_named(name), 5.0)) < 1e-11
@@ -56,7 +56,7 @@ def test_velocities_too_where_the_method_says_so(name):
 
 def test_a_bare_index_1_form_drifts():
     drift = [
-        method_named("multiplier_rk4").gap(CHAIN, run(method_named("multiplier_rk4"), t))
+        method_named('multiplier_rk4').gap(CHAIN, run(method_named('multiplier_rk4'), t))
         for t in (4, 16)
     ]
     assert drift[1] > 4 * drift[0] > 1e-9
@@ -66,7 +66,7 @@ def test_a_bare_index_1_form_drifts():
     assert speed_gap(run(Projection(velocity=False), 4)) > 1e-9
 
 
-@pytest.mark.parametrize("base", ["rk4", "semi_implicit_euler"])
+@pytest.mark.parametrize('base', ['rk4', 'semi_implicit_euler'])
 def test_baumgarte_heals_a_gap_at_the_pace_of_its_gains(base):
     """With alpha = beta the gap is critically damped: (1 + alpha t) e^(-alpha t)."""
     dt, method = 1e-3, Baumgarte(alpha=0.02, beta=0.02, base=base)
@@ -84,7 +84,7 @@ def test_baumgarte_heals_a_gap_at_the_pace_of_its_gains(base):
 
 
 def test_projection_is_the_shortest_way_in_the_mass_metric():
-    method = method_named("projection")
+    method = method_named('projection')
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)
     state[0] += 1e-3 * np.cos(np.arange(6.0))
     state[1] += 0.1 * np.sin(np.arange(6.0))
@@ -100,7 +100,7 @@ def test_projection_is_the_shortest_way_in_the_mass_metric():
     assert free @ (MASS * (state[1] - before[1])) == pytest.approx(0.0, abs=1e-13)
     kept = state.copy()
     project_velocity(CHAIN.table, state)
-    assert state == pytest.approx(kept, abs=1e-13), "once there, it stays"
+    assert state == pytest.approx(kept, abs=1e-13), 'once there, it stays'
 
 
 def test_index_3_solution_satisfies_its_equations():
@@ -119,14 +119,14 @@ def test_index_3_solution_satisfies_its_equations():
 
 
 @pytest.mark.parametrize(
-    "name",
+    'name',
     [
-        "newmark",
-        "hht",
-        "generalized_alpha",
-        "multiplier_bdf2",
-        "multiplier_implicit_midpoint",
-        "radau_ggl",
+        'newmark',
+        'hht',
+        'generalized_alpha',
+        'multiplier_bdf2',
+        'multiplier_implicit_midpoint',
+        'radau_ggl',
     ],
 )
 def test_a_step_that_fails_is_told_and_leaves_the_state(name):
@@ -139,7 +139,7 @@ def test_a_step_that_fails_is_told_and_leaves_the_state(name):
 
 
 def test_rattle_runs_backwards():
-    method = METHODS["rattle"]()
+    method = METHODS['rattle']()
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)
     for _ in range(2):
         for _ in range(50):

@@ -19,15 +19,15 @@ from tree_sway_ros.study.methods.trajectory import integrate
 def test_radau_satisfies_the_conditions_of_order_five():
     c, b = np.array(NODES), WEIGHTS[-1]
     for k in range(1, 4):
-        assert c ** (k - 1) @ WEIGHTS.T == pytest.approx(c**k / k, rel=1e-13), "collocation"
+        assert c ** (k - 1) @ WEIGHTS.T == pytest.approx(c**k / k, rel=1e-13), 'collocation'
     for k in range(1, 6):
-        assert b @ c ** (k - 1) == pytest.approx(1 / k, rel=1e-13), "quadrature"
-    assert b @ c**5 != pytest.approx(1 / 6, rel=1e-4), "and not of six"
-    assert np.linalg.solve(WEIGHTS.T, b) == pytest.approx([0, 0, 1], abs=1e-12), "stiffly accurate"
+        assert b @ c ** (k - 1) == pytest.approx(1 / k, rel=1e-13), 'quadrature'
+    assert b @ c**5 != pytest.approx(1 / 6, rel=1e-4), 'and not of six'
+    assert np.linalg.solve(WEIGHTS.T, b) == pytest.approx([0, 0, 1], abs=1e-12), 'stiffly accurate'
 
 
 @pytest.mark.parametrize(
-    "method",
+    'method',
     [
         GeneralizedAlpha(rho=0.0),
         GeneralizedAlpha(rho=0.5),
@@ -51,7 +51,7 @@ def amplification(method, ratio):
     return np.abs(np.linalg.eigvals(np.linalg.solve(now, old))).max()
 
 
-@pytest.mark.parametrize("rho", [0.2, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize('rho', [0.2, 0.5, 0.8, 1.0])
 def test_the_radius_at_infinity_is_the_one_asked_for(rho):
     assert amplification(GeneralizedAlpha(rho=rho), 1e5) == pytest.approx(rho, abs=5e-3)
     assert amplification(GeneralizedAlpha(rho=rho), 1e-2) == pytest.approx(1.0, abs=1e-6)
@@ -63,7 +63,7 @@ def test_hht_without_alpha_is_newmark():
 
 
 @pytest.mark.parametrize(
-    ("rho", "least", "most"), [(1.0, 0.995, 1.001), (0.8, 0.9, 0.999), (0.0, 0.0, 0.6)]
+    ('rho', 'least', 'most'), [(1.0, 0.995, 1.001), (0.8, 0.9, 0.999), (0.0, 0.0, 0.6)]
 )
 def test_the_smaller_the_radius_the_faster_a_coarse_swing_dies(rho, least, most):
     """A hundred steps of w h = 0.63: Newmark's rule keeps the swing, full damping eats it."""
@@ -74,7 +74,7 @@ def test_the_smaller_the_radius_the_faster_a_coarse_swing_dies(rho, least, most)
 
 def test_linearly_implicit_euler_damps_as_declared():
     """At 0.02 and 2 Hz, 60 steps per second, the decay is that of about 0.12."""
-    chain, method = single_segment(2.0, 0.02), method_named("linearly_implicit_euler")
+    chain, method = single_segment(2.0, 0.02), method_named('linearly_implicit_euler')
     theta = integrate(method, chain, np.zeros((120, 1, 1, 2)), 1 / 60, theta=[1e-3]).theta[:, 0]
     peaks = np.abs(theta)[1:-1][
         (np.abs(theta)[1:-1] >= np.abs(theta)[:-2]) & (np.abs(theta)[1:-1] > np.abs(theta)[2:])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.wind.simulated.gust_event import GustEvent, with_events
 from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
-from tree_sway_ros.core.wind.simulated.turbulence import Turbulence, along_bearing
+from tree_sway_ros.core.wind.simulated.turbulence import along_bearing, Turbulence
 from tree_sway_ros.core.wind.simulated.turbulence_stream import TurbulenceStream
 from tree_sway_ros.errors import ParameterError
 
@@ -53,7 +53,7 @@ class AnemometerModel:
         mean_speed: float = 5.0,
         *,
         bearing_to: float = 0.5 * np.pi,
-        turbulence: str = "kaimal",
+        turbulence: str = 'kaimal',
         height: float = 10.0,
         intensity: float | None = None,
         reference_intensity: float = 0.14,
@@ -62,30 +62,30 @@ class AnemometerModel:
         seed: int = 0,
     ) -> None:
         """Check the parameters."""
-        within("mean_speed", mean_speed, 0.0, 40.0, "m/s")
-        if turbulence not in (*SPECTRA, "none"):
+        within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
+        if turbulence not in (*SPECTRA, 'none'):
             raise ParameterError(
                 f"unknown spectrum '{turbulence}'",
-                where="turbulence",
-                cure=f"use one of: {', '.join((*SPECTRA, 'none'))}",
+                where='turbulence',
+                cure=f'use one of: {", ".join((*SPECTRA, "none"))}',
             )
-        self._rate = within("rate", rate, 1.0, 100.0, "Hz")
-        self._bearing_to = within("bearing_to", bearing_to, -1e3, 1e3, "rad")
+        self._rate = within('rate', rate, 1.0, 100.0, 'Hz')
+        self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
         self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
         self._stream: TurbulenceStream | None = None
-        if turbulence != "none" and mean_speed > 0.0:
+        if turbulence != 'none' and mean_speed > 0.0:
             parameters = Turbulence(mean_speed, turbulence, height, intensity, reference_intensity)
             self._stream = TurbulenceStream(parameters, self._rate, seed)
 
     @property
     def rate(self) -> float:
-        """Samples per second in [Hz]."""
+        """Return the samples per second in [Hz]."""
         return self._rate
 
     def sample(self, tick: int) -> Floats:
         """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""
-        within("tick", tick, 0, 2**63)
+        within('tick', tick, 0, 2**63)
         wind = self._mean if self._stream is None else self._mean + self._stream.at(tick)
         enu = along_bearing(wind, self._bearing_to)
         if not self._events:

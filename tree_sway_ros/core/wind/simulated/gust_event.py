@@ -25,7 +25,7 @@ _LARGEST_SPEED, _LARGEST_ANGLE, _LONGEST = 100.0, 1e3, 1e6
 
 
 class _Shape(NamedTuple):
-    """Share of the amplitude at a share x of the duration; whether it turns the wind, and lasts."""
+    """Share of the amplitude at a share x of the duration; whether it turns the wind, lasts."""
 
     share: Callable[[Floats], Floats]
     is_turn: bool = False
@@ -34,15 +34,15 @@ class _Shape(NamedTuple):
 
 _SHAPES = {
     # A 1-cos gust, at its peak halfway: IEC 61400-1:2005, 6.3.2.
-    "one_minus_cos": _Shape(lambda x: 0.5 * (1.0 - np.cos(2.0 * np.pi * x))),
+    'one_minus_cos': _Shape(lambda x: 0.5 * (1.0 - np.cos(2.0 * np.pi * x))),
     # A dip, a peak of 0.74, a dip: 6.3.2.2, where the amplitude is 3.3 s / (1 + 0.1 D / Lambda1).
-    "extreme_operating_gust": _Shape(
+    'extreme_operating_gust': _Shape(
         lambda x: -0.37 * np.sin(3.0 * np.pi * x) * (1.0 - np.cos(2.0 * np.pi * x))
     ),
-    "step": _Shape(lambda x: x, lasts=True),
+    'step': _Shape(lambda x: x, lasts=True),
     # 6.3.2.4, where the angle is 4 atan(s / (U (1 + 0.1 D / Lambda1))).
-    "direction_change": _Shape(lambda x: 0.5 * (1.0 - np.cos(np.pi * x)), True, True),
-    "turn": _Shape(lambda x: x, True, True),
+    'direction_change': _Shape(lambda x: 0.5 * (1.0 - np.cos(np.pi * x)), True, True),
+    'turn': _Shape(lambda x: x, True, True),
 }
 EVENT_KINDS = tuple(_SHAPES)
 
@@ -80,15 +80,15 @@ def gust(
     if kind not in _SHAPES:
         raise ParameterError(
             f"unknown event '{kind}'",
-            where="gust event",
-            cure=f"use one of: {', '.join(EVENT_KINDS)}",
+            where='gust event',
+            cure=f'use one of: {", ".join(EVENT_KINDS)}',
         )
     shape = _SHAPES[kind]
-    largest, unit = (_LARGEST_ANGLE, "rad") if shape.is_turn else (_LARGEST_SPEED, "m/s")
-    name = "angle" if shape.is_turn else "amplitude"
+    largest, unit = (_LARGEST_ANGLE, 'rad') if shape.is_turn else (_LARGEST_SPEED, 'm/s')
+    name = 'angle' if shape.is_turn else 'amplitude'
     size = within(name, amplitude, -largest, largest, unit)
-    span = within("duration", duration, 0.0, _LONGEST, "s", above=kind != "step")
-    begin = within("start", start, -_LONGEST, _LONGEST, "s")
+    span = within('duration', duration, 0.0, _LONGEST, 's', above=kind != 'step')
+    begin = within('start', start, -_LONGEST, _LONGEST, 's')
     elapsed = np.asarray(time, dtype=np.float64) - begin
     if span == 0.0:
         return np.where(elapsed >= 0.0, size, 0.0)
@@ -108,8 +108,8 @@ class GustEvent:
     amplitude, duration, start
         As of `gust`.
     every
-        Time after which it happens again in [s], at least `duration`; 0 for once. What lasts (step,
-        direction change, turn) goes back every second time.
+        Time after which it happens again in [s], at least `duration`; 0 for once. What lasts
+        (step, direction change, turn) goes back every second time.
 
     Raises
     ------
@@ -128,7 +128,7 @@ class GustEvent:
         """Refuse what the shape itself refuses, and repeats that overlap."""
         gust(self.kind, 0.0, self.amplitude, self.duration, self.start)
         if self.every != 0.0:
-            within("every", self.every, self.duration, 1e6, "s", above=self.duration == 0.0)
+            within('every', self.every, self.duration, 1e6, 's', above=self.duration == 0.0)
 
     @property
     def is_turn(self) -> bool:

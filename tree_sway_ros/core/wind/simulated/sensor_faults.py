@@ -51,42 +51,39 @@ class SensorFaults:
 
     """
 
-    def __init__(self, kind: str = "none", every: float = 20.0, duration: float = 1.0) -> None:
+    def __init__(self, kind: str = 'none', every: float = 20.0, duration: float = 1.0) -> None:
         """Check the parameters."""
         if kind not in FAULTS:
             raise ParameterError(
-                f"unknown fault '{kind}'", where="fault", cure=f"use one of: {', '.join(FAULTS)}"
+                f"unknown fault '{kind}'", where='fault', cure=f'use one of: {", ".join(FAULTS)}'
             )
         self._kind = kind
-        self._every = within("every", every, 0.0, 1e6, "s", above=True)
-        self._duration = within("duration", duration, 0.0, every, "s", above=True)
+        self._every = within('every', every, 0.0, 1e6, 's', above=True)
+        self._duration = within('duration', duration, 0.0, every, 's', above=True)
         self._held: list[Sample] = []
         self._frozen: Floats | None = None
         self._is_restarting = False
 
     def at(self, time: float) -> str:
-        """Return the fault at a time in [s] since the sensor was started, ``none`` between them."""
+        """Return the fault at a time in [s] since the sensor's start, ``none`` between them."""
         number, since = divmod(time, self._every)
-        if self._kind == "none" or number < 1 or since >= self._duration:
-            return "none"
-        return _KINDS[int(number - 1) % len(_KINDS)] if self._kind == "all" else self._kind
+        if self._kind == 'none' or number < 1 or since >= self._duration:
+            return 'none'
+        return _KINDS[int(number - 1) % len(_KINDS)] if self._kind == 'all' else self._kind
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
-        """
-        What is sent, in order, for a sample at a time since the start [s], of a stamp [ns] and wind
-        [m/s].
-        """
+        """Return what is sent for a sample at a time [s], of a stamp [ns] and wind [m/s]."""
         fault = self.at(time)
-        if fault != "freeze":
+        if fault != 'freeze':
             self._frozen = None
         if fault not in _HOLDING:
             yield from self._held
             self._held = []
-        if self._is_restarting and fault != "restart":
+        if self._is_restarting and fault != 'restart':
             yield Sample(stamp, np.zeros(3))  # the first line after it has started
             self._is_restarting = False
             return
-        self._is_restarting = fault == "restart"
+        self._is_restarting = fault == 'restart'
         yield from _SENDS.get(fault, _as_it_is)(self, Sample(stamp, vector))
 
     def _hold(self, sample: Sample) -> Iterator[Sample]:
@@ -139,18 +136,18 @@ def _from_the_future(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
 
 
 _SENDS: dict[str, Callable[[SensorFaults, Sample], Iterator[Sample]]] = {
-    "dropout": _nothing,
-    "spike": _spike,
-    "freeze": SensorFaults._freeze,
-    "nan": _reading(float("nan")),
-    "no_reading": _reading(_NO_READING),
-    "delay": SensorFaults._hold,
-    "reorder": SensorFaults._swap,
-    "duplicate": _twice,
-    "zero_stamp": _unstamped,
-    "future_stamp": _from_the_future,
-    "restart": _nothing,
+    'dropout': _nothing,
+    'spike': _spike,
+    'freeze': SensorFaults._freeze,
+    'nan': _reading(float('nan')),
+    'no_reading': _reading(_NO_READING),
+    'delay': SensorFaults._hold,
+    'reorder': SensorFaults._swap,
+    'duplicate': _twice,
+    'zero_stamp': _unstamped,
+    'future_stamp': _from_the_future,
+    'restart': _nothing,
 }
-_HOLDING = ("delay", "reorder")
+_HOLDING = ('delay', 'reorder')
 _KINDS = tuple(_SENDS)
-FAULTS = ("none", *_KINDS, "all")
+FAULTS = ('none', *_KINDS, 'all')

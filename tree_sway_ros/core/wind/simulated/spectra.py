@@ -30,9 +30,7 @@ class ComponentSpectrum(Protocol):
         *,
         across: bool,
     ) -> Floats:
-        """
-        Power spectral density, one-sided, of integral ``deviation**2``; see `von_karman_spectrum`.
-        """
+        """Power spectral density, one-sided, of integral ``deviation**2``, as by von Karman."""
 
 
 class Spectrum(NamedTuple):
@@ -47,7 +45,12 @@ class Spectrum(NamedTuple):
 
 
 def kaimal_spectrum(
-    frequency: ArrayLike, mean_speed: float, deviation: float, scale: float, *, across: bool = False
+    frequency: ArrayLike,
+    mean_speed: float,
+    deviation: float,
+    scale: float,
+    *,
+    across: bool = False,
 ) -> Floats:
     """
     Kaimal spectrum of one component, one-sided.
@@ -78,7 +81,12 @@ def kaimal_spectrum(
 
 
 def von_karman_spectrum(
-    frequency: ArrayLike, mean_speed: float, deviation: float, scale: float, *, across: bool = False
+    frequency: ArrayLike,
+    mean_speed: float,
+    deviation: float,
+    scale: float,
+    *,
+    across: bool = False,
 ) -> Floats:
     """
     Von Karman spectrum of one component, one-sided; arguments as of `kaimal_spectrum`.
@@ -106,8 +114,8 @@ _VON_KARMAN_SCALES = _KAIMAL_SCALES * (_SUBRANGE_VON_KARMAN / _SUBRANGE_KAIMAL) 
 
 SPECTRA = MappingProxyType(
     {
-        "kaimal": Spectrum(kaimal_spectrum, tuple(_KAIMAL_SCALES.tolist())),
-        "von_karman": Spectrum(von_karman_spectrum, tuple(_VON_KARMAN_SCALES.tolist())),
+        'kaimal': Spectrum(kaimal_spectrum, tuple(_KAIMAL_SCALES.tolist())),
+        'von_karman': Spectrum(von_karman_spectrum, tuple(_VON_KARMAN_SCALES.tolist())),
     }
 )
 """Models of turbulence by their names."""

@@ -4,14 +4,14 @@
 Turbulent wind at one point: records drawn from a spectrum of `SPECTRA`.
 
 A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
-Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by line
-and its variance exactly, and tends to a Gaussian process. Gusts come from above and lulls from
-below: u and w are correlated by `STRESS`, most in slow gusts, as the cospectrum of Kaimal &
+Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by
+line and its variance exactly, and tends to a Gaussian process. Gusts come from above and lulls
+from below: u and w are correlated by `STRESS`, most in slow gusts, as the cospectrum of Kaimal &
 Finnigan has it; v is independent of both.
 
 A sampled record cannot hold what lies above half its rate, nor below one over its period. That
-variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz, 10
-m and 7 m/s this lifts u, v, w by 0.1, 0.2, 0.4 dB; at 1 Hz it lifts w by 3 dB, so do not read
+variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz,
+10 m and 7 m/s this lifts u, v, w by 0.1, 0.2, 0.4 dB; at 1 Hz it lifts w by 3 dB, so do not read
 spectra from a slow record.
 
 Symbols: U mean speed [m/s], z height [m], n frequency [Hz], L integral scale [m], s standard
@@ -38,8 +38,8 @@ _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
 
 STRESS = -1.0 / 3.0
 """
-Correlation of u and w in [-]: -u*^2 over their deviations, 2.4 and 1.25 times u*, over level ground
-(Kaimal & Finnigan 1994, chapter 1).
+Correlation of u and w in [-]: -u*^2 over their deviations, 2.4 and 1.25 times u*, over level
+ground (Kaimal & Finnigan 1994, chapter 1).
 
 """
 
@@ -73,7 +73,7 @@ class Turbulence:
     """
 
     mean_speed: float
-    model: str = "kaimal"
+    model: str = 'kaimal'
     height: float = 10.0
     intensity: float | None = None
     reference_intensity: float = 0.14
@@ -83,20 +83,18 @@ class Turbulence:
         if self.model not in SPECTRA:
             raise ParameterError(
                 f"unknown spectrum '{self.model}'",
-                where="turbulence model",
-                cure=f"use one of: {', '.join(SPECTRA)}",
+                where='turbulence model',
+                cure=f'use one of: {", ".join(SPECTRA)}',
             )
-        within("mean_speed", self.mean_speed, 0.0, 40.0, "m/s", above=True)
-        within("height", self.height, 0.0, 1000.0, "m", above=True)
+        within('mean_speed', self.mean_speed, 0.0, 40.0, 'm/s', above=True)
+        within('height', self.height, 0.0, 1000.0, 'm', above=True)
         if self.intensity is not None:
-            within("intensity", self.intensity, 0.0, 2.0)
-        within("reference_intensity", self.reference_intensity, 0.0, 2.0)
+            within('intensity', self.intensity, 0.0, 2.0)
+        within('reference_intensity', self.reference_intensity, 0.0, 2.0)
 
     @cached_property
     def deviations(self) -> Floats:
-        """
-        Standard deviations of u, v, w in [m/s], (3,): IEC 61400-1:2005, equation 11 and table B.1.
-        """
+        """Return the deviations of u, v, w [m/s], (3,): IEC 61400-1:2005, eq. 11, table B.1."""
         if self.intensity is not None:
             along = self.intensity * self.mean_speed
         else:
@@ -109,9 +107,7 @@ class Turbulence:
         return turbulence_scale(self.height) * np.array(SPECTRA[self.model].scales)
 
     def spectrum(self, frequency: ArrayLike) -> Floats:
-        """
-        Return the one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3).
-        """
+        """Return one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""
         of_component = SPECTRA[self.model].of_component
         columns = [
             of_component(frequency, self.mean_speed, deviation, scale, across=component > 0)
@@ -192,7 +188,7 @@ def simulate_turbulence(
     rate: float,
     duration: float,
     rng: np.random.Generator,
-    model: str = "kaimal",
+    model: str = 'kaimal',
     height: float = 10.0,
     intensity: float | None = None,
     reference_intensity: float = 0.14,
@@ -208,8 +204,8 @@ def simulate_turbulence(
     rate
         Samples per second in [Hz], up to 1000.
     duration
-        Length of the record in [s]; one shorter than `SHORTEST_PERIOD` is cut from a period of that
-        length, so that it holds the slow part of the spectrum too.
+        Length of the record in [s]; one shorter than `SHORTEST_PERIOD` is cut from a period of
+        that length, so that it holds the slow part of the spectrum too.
     rng
         Source of the phases.
     bearing_to
@@ -227,9 +223,9 @@ def simulate_turbulence(
 
     """
     turbulence = Turbulence(mean_speed, model, height, intensity, reference_intensity)
-    within("rate", rate, 0.0, 1000.0, "Hz", above=True)
-    within("duration", duration, 0.0, 1e6, "s", above=True)
-    within("bearing_to", bearing_to, -1e3, 1e3, "rad")
+    within('rate', rate, 0.0, 1000.0, 'Hz', above=True)
+    within('duration', duration, 0.0, 1e6, 's', above=True)
+    within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
     n_samples = round(rate * duration)
     n_period = max(n_samples, int(np.ceil(rate * SHORTEST_PERIOD)), 4)
     wind = turbulence.record(n_period, rate, rng)[:n_samples]

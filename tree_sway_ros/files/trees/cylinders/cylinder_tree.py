@@ -19,14 +19,14 @@ import numpy as np
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import FormatError, ParameterError, TreeError
-from tree_sway_ros.files.trees.assembly import MAX_COORDINATE, SegmentTable, checked_order
+from tree_sway_ros.files.trees.assembly import checked_order, MAX_COORDINATE, SegmentTable
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.diameter_fit import corrected_twigs, fitted_taper
 from tree_sway_ros.files.trees.cylinders.joining import branch_keys, join_loose_branches
 from tree_sway_ros.files.trees.cylinders.merging import merge_tiny
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 
-_LONGEST = {"merge_below": 10.0, "twig_diameter": 0.1, "trusted_diameter": 2.0}
+_LONGEST = {'merge_below': 10.0, 'twig_diameter': 0.1, 'trusted_diameter': 2.0}
 """Largest value of each option in [m]."""
 
 
@@ -53,7 +53,7 @@ class CylinderOptions:
 
     """
 
-    species: str = "broadleaf"
+    species: str = 'broadleaf'
     merge_below: float = 1e-6
     taper: bool = False
     twig_diameter: float | None = None
@@ -65,8 +65,8 @@ class CylinderOptions:
         for name in _LONGEST:
             value = getattr(self, name)
             if value is not None and not 0.0 <= value <= _LONGEST[name]:
-                cure = f"give 0 to {_LONGEST[name]:g} m, 0.003 for 3 mm"
-                raise ParameterError(f"{name} is {value:g} m", cure=cure)
+                cure = f'give 0 to {_LONGEST[name]:g} m, 0.003 for 3 mm'
+                raise ParameterError(f'{name} is {value:g} m', cure=cure)
 
 
 def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions) -> TreeFile:
@@ -81,23 +81,25 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
     if (joined := join_loose_branches(cylinders)) is not None:
         cylinders = replace(cylinders, parent=joined.parent)
         notes.append(
-            f"{joined.loose} branches had no parent and were set on the nearest cylinder, "
-            f"at most {joined.distance:.3g} m away"
+            f'{joined.loose} branches had no parent and were set on the nearest cylinder, '
+            f'at most {joined.distance:.3g} m away'
         )
     order = checked_order(cylinders.parent, cylinders.labels)
     merged = merge_tiny(cylinders, order, options.merge_below)
     cylinders = merged.cylinders
     if merged.tiny:
         notes.append(
-            f"{merged.tiny} cylinders shorter than {options.merge_below:g} m were merged, "
-            f"{merged.dropped} of them branches of nothing else, left out"
+            f'{merged.tiny} cylinders shorter than {options.merge_below:g} m were merged, '
+            f'{merged.dropped} of them branches of nothing else, left out'
         )
     tree = _table(cylinders).build(source, cylinders.name or path.stem, species.key)
     tree, fitted = _diameters(tree, options)
     origin = tree.start[0].copy()
     if options.to_origin and origin.any():
         tree = replace(tree, start=tree.start - origin, end=tree.end - origin)
-        notes.append(f"moved by {', '.join(f'{-x:.6g}' for x in origin)} m, the base to the origin")
+        notes.append(
+            f'moved by {", ".join(f"{-x:.6g}" for x in origin)} m, the base to the origin'
+        )
     else:
         origin = np.zeros(3)
     position = (float(origin[0]), float(origin[1]), float(origin[2]))
@@ -106,15 +108,15 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
 
 def _check(cylinders: Cylinders, source: str) -> None:
     if len(cylinders.start) == 0:
-        raise FormatError("no cylinders", where=source)
+        raise FormatError('no cylinders', where=source)
     values = np.hstack([cylinders.start, cylinders.end, cylinders.diameter])
     for index in np.flatnonzero(
         ~np.isfinite(values).all(axis=1) | (np.abs(values) > MAX_COORDINATE).any(axis=1)
     ):
         raise TreeError(
-            f"a number that is not finite or too large: {values[index].tolist()}",
+            f'a number that is not finite or too large: {values[index].tolist()}',
             where=cylinders.labels[index],
-            cure="check that the columns are what they should be, in metres",
+            cure='check that the columns are what they should be, in metres',
         )
 
 
@@ -137,6 +139,6 @@ def _diameters(tree: Tree, options: CylinderOptions) -> tuple[Tree, list[str]]:
         notes.append("diameters of each branch are a straight taper fitted to the file's")
     if options.twig_diameter is not None:
         tree = corrected_twigs(tree, options.twig_diameter, options.trusted_diameter)
-        notes.append(f"what is thinner than {options.trusted_diameter:g} m tapers to "
-                     f"{options.twig_diameter:g} m at the tips")  # fmt: skip
+        notes.append(f'what is thinner than {options.trusted_diameter:g} m tapers to '
+                     f'{options.twig_diameter:g} m at the tips')  # fmt: skip
     return tree, notes

@@ -29,11 +29,11 @@ class Cylinders:
     parent: Ints
     continues: NDArray[np.bool_] | None
     labels: list[str]
-    name: str = ""
+    name: str = ''
     notes: tuple[str, ...] = ()
 
 
 def cylinder_axes(table: TextTable, radius: str) -> tuple[Floats, Floats, Floats]:
     """Starts, ends (n, 3) and diameters (n, 2) of a table with both ends and a radius."""
-    values = table.strict(["startX", "startY", "startZ", "endX", "endY", "endZ", radius, radius])
+    values = table.strict(['startX', 'startY', 'startZ', 'endX', 'endY', 'endZ', radius, radius])
     return values[:, :3], values[:, 3:6], 2.0 * values[:, 6:]

@@ -57,9 +57,9 @@ def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -
     Make what is thinner than a scan can see taper to a measured twig diameter, both in [m].
 
     From the place where a branch first gets thinner than is trusted, its diameter falls in a
-    straight line to that of a twig at its tip; it begins no thicker than what it sits on. After the
-    idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of untrusted cylinders
-    by a taper towards twigs measured by hand.
+    straight line to that of a twig at its tip; it begins no thicker than what it sits on. After
+    the idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of untrusted
+    cylinders by a taper towards twigs measured by hand.
     """
     base, tip = tree.base_diameter.copy(), tree.tip_diameter.copy()
     for branch in range(tree.n_branches):

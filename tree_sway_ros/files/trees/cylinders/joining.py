@@ -19,7 +19,10 @@ _MAX_LOOSE_VOLUME = 0.2
 
 
 class JoinedBranches(NamedTuple):
-    """Parents after loose branches were joined, how many, and how far from the axis at most [m]."""
+    """
+    Parents after loose branches were joined, how many, and how far from the axis at most
+    [m].
+    """
 
     parent: Ints
     loose: int
@@ -47,9 +50,9 @@ def join_loose_branches(cylinders: Cylinders) -> JoinedBranches | None:
     largest = int(loose[np.argmax(volume[loose])])
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
         raise TreeError(
-            f"{len(roots)} roots: a forest of trees that are not connected",
+            f'{len(roots)} roots: a forest of trees that are not connected',
             where=cylinders.labels[largest],
-            cure="give each tree a file of its own, or this cylinder a parent",
+            cure='give each tree a file of its own, or this cylinder a parent',
         )
     on_stem = np.flatnonzero(root_of == stem)
     joined, farthest = parent.copy(), 0.0
@@ -70,7 +73,9 @@ def heirs(cylinders: Cylinders) -> Ints:
     """
     heir = np.full(len(cylinders.parent), -1, dtype=np.int64)
     width = cylinders.diameter[:, 0]
-    may = np.ones(len(heir), dtype=np.bool_) if cylinders.continues is None else cylinders.continues
+    may = (
+        np.ones(len(heir), dtype=np.bool_) if cylinders.continues is None else cylinders.continues
+    )
     for child in np.flatnonzero(may & (cylinders.parent >= 0)):
         above = cylinders.parent[child]
         if heir[above] < 0 or width[child] > width[heir[above]]:

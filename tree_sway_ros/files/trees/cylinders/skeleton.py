@@ -1,6 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes with a radius and a parent, as skeleton formats have them, to the segments between them."""
+"""Nodes with a radius and a parent, as skeleton formats have them, to the segments between
+them.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,10 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
 @dataclass(frozen=True)
 class Skeleton:
-    """Nodes of a tree: positions (n, 3) and diameters (n,) in [m], parents (n,), -1 at the root."""
+    """
+    Nodes of a tree: positions (n, 3) and diameters (n,) in [m], parents (n,), -1 at the
+    root.
+    """
 
     point: Floats
     diameter: Floats
@@ -26,14 +31,14 @@ class Skeleton:
         """
         Segments of a tree with one root: one from its parent to each node but the root.
 
-        Several segments may begin at the root node: the thickest is the stem, the others sit on it.
-        Cones have the diameters of their two nodes, others that of the outer one. A `FormatError`
-        tells of nothing but a root.
+        Several segments may begin at the root node: the thickest is the stem, the others sit on
+        it. Cones have the diameters of their two nodes, others that of the outer one. A
+        `FormatError` tells of nothing but a root.
         """
         outer = np.flatnonzero(self.parent >= 0)
         if len(outer) == 0:
             raise FormatError(
-                "a root with nothing on it", where=source, cure="give at least two nodes"
+                'a root with nothing on it', where=source, cure='give at least two nodes'
             )
         inner, width = self.parent[outer], self.diameter
         number = np.full(len(self.parent), -1, dtype=np.int64)

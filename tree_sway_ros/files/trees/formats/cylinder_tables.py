@@ -20,34 +20,34 @@ import numpy as np
 from tree_sway_ros.files.file_format import has_columns
 from tree_sway_ros.files.table_file import parse_table
 from tree_sway_ros.files.text_file import read_lines
-from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders, cylinder_axes
+from tree_sway_ros.files.trees.cylinders.cylinders import cylinder_axes, Cylinders
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 
 def _read_archi(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of an aRchi table."""
     table = parse_table(read_lines(path), str(path))
-    labels, parent = table.family("cyl_ID", "parent_ID", [0, -1], "cylinder")
-    number, after = table.strict(["cyl_ID", "extension_ID"]).T
-    extension = table.whole(after, "extension_ID")
+    labels, parent = table.family('cyl_ID', 'parent_ID', [0, -1], 'cylinder')
+    number, after = table.strict(['cyl_ID', 'extension_ID']).T
+    extension = table.whole(after, 'extension_ID')
     continues = (parent >= 0) & (extension[parent] == number)
-    return (Cylinders(*cylinder_axes(table, "radius_cyl"), parent, continues, labels),)
+    return (Cylinders(*cylinder_axes(table, 'radius_cyl'), parent, continues, labels),)
 
 
 def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
     """Cylinders of a SimpleForest table."""
     table = parse_table(read_lines(path), str(path))
-    labels, parent = table.family("ID", "parentID", [-1], "cylinder")
-    order, growth = table.strict(["branchOrder", "growthLength"]).T
+    labels, parent = table.family('ID', 'parentID', [-1], 'cylinder')
+    order, growth = table.strict(['branchOrder', 'growthLength']).T
     rivals = np.flatnonzero((parent >= 0) & (order == order[parent]))
     rivals = rivals[np.lexsort((rivals, -growth[rivals], parent[rivals]))]
     _, first = np.unique(parent[rivals], return_index=True)
     continues = np.zeros(len(parent), dtype=np.bool_)
     continues[rivals[first]] = True
-    return (Cylinders(*cylinder_axes(table, "radius"), parent, continues, labels),)
+    return (Cylinders(*cylinder_axes(table, 'radius'), parent, continues, labels),)
 
 
-ARCHI = TreeFormat("archi", (), has_columns("cyl_ID", "extension_ID"), _read_archi)
+ARCHI = TreeFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi)
 SIMPLEFOREST = TreeFormat(
-    "simpleforest", (), has_columns("ID", "parentID", "growthLength"), _read_simpleforest
+    'simpleforest', (), has_columns('ID', 'parentID', 'growthLength'), _read_simpleforest
 )

@@ -10,15 +10,15 @@ vertex above in its own column, else from the latest in the column before.
 Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its
 diameter there in millimetres, as AMAPmod's digitising has them; ``length_unit`` and
 ``diameter_unit`` say otherwise. A vertex of a coarser scale, such as an axis, has the position of
-its base. A segment goes from the vertex before, or from the base of its axis, to each vertex of the
-finest scales.
+its base. A segment goes from the vertex before, or from the base of its axis, to each vertex of
+the finest scales.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
+import re
 
 import numpy as np
 
@@ -27,15 +27,16 @@ from tree_sway_ros.files.text_file import finite, read_lines
 from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
-_POSITION = ("XX", "YY", "ZZ")
-_DIAMETER = "TopDia"
-_CODE = re.compile(r"([/<+])([A-Za-z]\w*)(?=[/<+]|$)", re.ASCII)
+_POSITION = ('XX', 'YY', 'ZZ')
+_DIAMETER = 'TopDia'
+_CODE = re.compile(r'([/<+])([A-Za-z]\w*)(?=[/<+]|$)', re.ASCII)
 
 
 @dataclass(slots=True)
 class _Vertex:
     """
-    A vertex on its scale, tied by ``edge`` to the one before it: what it is a part of, and sits on.
+    A vertex on its scale, tied by ``edge`` to the one before it: what it is a part of, and sits
+    on.
     """
 
     label: str
@@ -48,7 +49,7 @@ class _Vertex:
 
 def _is_mtg(head: str) -> bool:
     """Whether the beginning of a file is that of an MTG file."""
-    return any(line.startswith("CODE") and "FORM-" in line for line in head.splitlines())
+    return any(line.startswith('CODE') and 'FORM-' in line for line in head.splitlines())
 
 
 def _read(
@@ -57,7 +58,7 @@ def _read(
     """Segments of a digitised tree; the units of positions and of diameters are in [m]."""
     for unit in (length_unit, diameter_unit):
         if not 0.0 < unit < 1e6:
-            raise ParameterError(f"a unit is {unit:g} m", cure="give more than 0")
+            raise ParameterError(f'a unit is {unit:g} m', cure='give more than 0')
     source = str(path)
     vertices = _parse(read_lines(path), source)
     placed = [all(name in vertex.features for name in _POSITION) for vertex in vertices]
@@ -80,11 +81,11 @@ def _read(
         end.append([vertex.features[name] for name in _POSITION])
         diameter.append([width[before] if width[before] > 0.0 else width[index], width[index]])
         parent.append(on)
-        continues.append(vertex.edge == "<" and before == vertex.parent and on >= 0)
+        continues.append(vertex.edge == '<' and before == vertex.parent and on >= 0)
         labels.append(vertex.label)
     if not start:
         raise FormatError(
-            f"no two vertices with {', '.join(_POSITION)}", where=source, cure="digitise the tree"
+            f'no two vertices with {", ".join(_POSITION)}', where=source, cure='digitise the tree'
         )
     cylinders = Cylinders(
         length_unit * np.array(start),
@@ -96,7 +97,8 @@ def _read(
     )
     missing = len(vertices) - sum(placed)
     cylinders.notes = (
-        f"{sum(placed)} vertices with a position, {missing} without; {len(start)} of them segments",
+        f'{sum(placed)} vertices with a position, {missing} without; '
+        f'{len(start)} of them segments',
     )
     return (cylinders,)
 
@@ -112,40 +114,41 @@ def _before(vertices: list[_Vertex], vertex: _Vertex, placed: list[bool], place:
     """
     Vertex at whose position another one begins, -1 if there is none.
 
-    The base of the axis that it is the first part of, if that has a position; else what it sits on.
+    The base of the axis that it is the first part of, if that has a position; else what it sits
+    on.
     """
-    whole = vertex.complex if vertex.edge == "/" else -1
+    whole = vertex.complex if vertex.edge == '/' else -1
     while whole >= 0:
         if placed[whole]:
             return whole
-        whole = vertices[whole].complex if vertices[whole].edge == "/" else -1
+        whole = vertices[whole].complex if vertices[whole].edge == '/' else -1
     return place[vertex.parent] if vertex.parent >= 0 else -1
 
 
 def _parse(lines: list[str], source: str) -> list[_Vertex]:
     """Parse the vertices of an MTG file."""
     scales = _scales(lines, source)
-    begin = next((i for i, line in enumerate(lines) if line.startswith("ENTITY-CODE")), None)
+    begin = next((i for i, line in enumerate(lines) if line.startswith('ENTITY-CODE')), None)
     if begin is None:
-        raise FormatError("no line ENTITY-CODE", where=source, cure="save it as FORM-A")
-    header = [cell.strip() for cell in lines[begin].split("\t")]
+        raise FormatError('no line ENTITY-CODE', where=source, cure='save it as FORM-A')
+    header = [cell.strip() for cell in lines[begin].split('\t')]
     first = next((i for i, cell in enumerate(header) if i and cell), len(header))
     vertices: list[_Vertex] = []
     latest: list[int] = []
     for number, line in enumerate(lines[begin + 1 :], start=begin + 2):
-        cells = line.rstrip().split("\t")
+        cells = line.rstrip().split('\t')
         if not line.strip():
             continue
-        where = f"{source}:{number}"
+        where = f'{source}:{number}'
         column = next((i for i, cell in enumerate(cells[:first]) if cell.strip()), None)
         if column is None:
-            raise FormatError(f"no code in the first {first} columns", where=where)
+            raise FormatError(f'no code in the first {first} columns', where=where)
         code = cells[column].strip()
-        goes_on = code.startswith("^")
+        goes_on = code.startswith('^')
         if column - (not goes_on) >= len(latest):
-            raise TreeError(f"'{code[:20]}' sits on nothing", where=where, cure="check its column")
+            raise TreeError(f"'{code[:20]}' sits on nothing", where=where, cure='check its column')
         reference = latest[column] if goes_on else (latest[column - 1] if column else -1)
-        reference = _add(vertices, code.removeprefix("^"), reference, scales, where)
+        reference = _add(vertices, code.removeprefix('^'), reference, scales, where)
         del latest[column:]
         latest.append(reference)
         for name, cell in zip(header[first:], cells[first:], strict=False):
@@ -153,16 +156,16 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
             if value is not None:
                 vertices[reference].features[name] = value
     if not vertices:
-        raise FormatError("no vertices", where=source)
+        raise FormatError('no vertices', where=source)
     return vertices
 
 
 def _scales(lines: list[str], source: str) -> dict[str, int]:
     """Scale of each class, from the section CLASSES."""
-    code = next((line.partition(":")[2].strip() for line in lines if line.startswith("CODE")), "")
-    if not code.startswith("FORM-A"):
+    code = next((line.partition(':')[2].strip() for line in lines if line.startswith('CODE')), '')
+    if not code.startswith('FORM-A'):
         raise FormatError(f"the code is '{code[:20]}', not FORM-A", where=source)
-    begin = next((i for i, line in enumerate(lines) if line.startswith("SYMBOL")), len(lines))
+    begin = next((i for i, line in enumerate(lines) if line.startswith('SYMBOL')), len(lines))
     scales = {}
     for line in lines[begin + 1 :]:
         cells = line.split()
@@ -170,7 +173,7 @@ def _scales(lines: list[str], source: str) -> dict[str, int]:
             break
         scales[cells[0]] = int(finite(cells[1]) or 0)
     if not scales:
-        raise FormatError("no CLASSES with SYMBOL and SCALE", where=source)
+        raise FormatError('no CLASSES with SYMBOL and SCALE', where=source)
     return scales
 
 
@@ -179,19 +182,19 @@ def _add(
 ) -> int:
     """Add the vertices of a code, such as ``/P1/A1``, and return the last one."""
     parts = list(_CODE.finditer(code))
-    if not parts or "".join(part[0] for part in parts) != code:
+    if not parts or ''.join(part[0] for part in parts) != code:
         raise FormatError(
-            f"'{code[:20]}' is not a code", where=where, cure="such as /P1, <S2 or +A1"
+            f"'{code[:20]}' is not a code", where=where, cure='such as /P1, <S2 or +A1'
         )
     for edge, name in (part.groups() for part in parts):
-        symbol = name.rstrip("0123456789")
+        symbol = name.rstrip('0123456789')
         if symbol not in scales:
-            raise FormatError(f"no class '{symbol}'", where=where, cure="list it under CLASSES")
+            raise FormatError(f"no class '{symbol}'", where=where, cure='list it under CLASSES')
         scale, above = scales[symbol], vertices[reference].scale if reference >= 0 else 0
-        label = f"{where}: {name}"
-        if edge == "/":
+        label = f'{where}: {name}'
+        if edge == '/':
             if scale != above + 1:
-                raise TreeError(f"scale {scale} in scale {above}", where=label)
+                raise TreeError(f'scale {scale} in scale {above}', where=label)
             # The first part of a branch sits where its branch sits.
             on = vertices[reference].parent if reference >= 0 else -1
             vertex = _Vertex(label, scale, edge, reference, on)
@@ -207,4 +210,4 @@ def _add(
     return reference
 
 
-FORMAT = TreeFormat("mtg", (".mtg",), _is_mtg, _read)
+FORMAT = TreeFormat('mtg', ('.mtg',), _is_mtg, _read)

@@ -21,13 +21,13 @@ from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 
-def _read(path: Path, species: str = "broadleaf") -> TreeFile:
+def _read(path: Path, species: str = 'broadleaf') -> TreeFile:
     """Tree from a table of segments."""
     text = parse_table(read_lines(path), str(path))
     columns = {column.lower() for column in text.columns}
-    labels, parents = text.family("segment", "parent", [-1], "segment")
-    tip = "d1" if "d1" in columns else "d0"
-    values = text.strict(["x0", "y0", "z0", "x1", "y1", "z1", "d0", tip])
+    labels, parents = text.family('segment', 'parent', [-1], 'segment')
+    tip = 'd1' if 'd1' in columns else 'd0'
+    values = text.strict(['x0', 'y0', 'z0', 'x1', 'y1', 'z1', 'd0', tip])
     table = SegmentTable(
         values[:, :3].tolist(),
         values[:, 3:6].tolist(),
@@ -35,10 +35,10 @@ def _read(path: Path, species: str = "broadleaf") -> TreeFile:
         parents.tolist(),
         labels=labels,
     )
-    if "branch" in columns:
-        table.branch = text.whole(text.strict(["branch"])[:, 0], "branch").tolist()
+    if 'branch' in columns:
+        table.branch = text.whole(text.strict(['branch'])[:, 0], 'branch').tolist()
     wood = species_named(species)
     return TreeFile(table.build(str(path), path.stem, wood.key), wood, str(path))
 
 
-FORMAT = TreeFormat("csv", (".csv",), has_columns("x0", "y0", "z0", "x1", "d0"), _read)
+FORMAT = TreeFormat('csv', ('.csv',), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read)

@@ -3,8 +3,8 @@
 """
 SWC, the skeleton format of neuroscience, which tree reconstructions use too.
 
-A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of its
-own. SWC has no unit: ``unit`` says how many metres one is.
+A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of
+its own. SWC has no unit: ``unit`` says how many metres one is.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 from tree_sway_ros.files.trees.cylinders.skeleton import Skeleton
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
-_COLUMNS = ("number", "type", "x", "y", "z", "radius", "parent")
+_COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
 
 
 def _is_swc(head: str) -> bool:
@@ -34,12 +34,12 @@ def _is_swc(head: str) -> bool:
 def _read(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
     """Trees of an SWC file, whose unit is so many [m]."""
     if not 0.0 < unit < 1e6:
-        raise ParameterError(f"unit is {unit:g} m", cure="give more than 0")
+        raise ParameterError(f'unit is {unit:g} m', cure='give more than 0')
     table = parse_columns(read_lines(path), str(path), _COLUMNS)
     if not table.texts:
-        raise FormatError("no nodes", where=str(path), cure="give a node in each line")
+        raise FormatError('no nodes', where=str(path), cure='give a node in each line')
     nodes = unit * table.strict(_COLUMNS)[:, 2:6]
-    labels, parent = table.family("number", "parent", [-1], "node")
+    labels, parent = table.family('number', 'parent', [-1], 'node')
     order = checked_order(parent, labels)
     members: dict[int, list[int]] = {}
     root, place = np.arange(len(parent)), np.full(len(parent), -1)
@@ -51,9 +51,11 @@ def _read(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
     trees = []
     for rows in members.values():
         above = np.where(parent[rows] >= 0, place[parent[rows]], -1)
-        skeleton = Skeleton(nodes[rows, :3], 2.0 * nodes[rows, 3], above, [labels[i] for i in rows])
+        skeleton = Skeleton(
+            nodes[rows, :3], 2.0 * nodes[rows, 3], above, [labels[i] for i in rows]
+        )
         trees.append(skeleton.cylinders(str(path), cones=True))
     return tuple(trees)
 
 
-FORMAT = TreeFormat("swc", (".swc",), _is_swc, _read)
+FORMAT = TreeFormat('swc', ('.swc',), _is_swc, _read)

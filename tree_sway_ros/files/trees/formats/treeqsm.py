@@ -10,8 +10,9 @@ the branch; any other starts one, on its parent's axis or skin and not at its en
 
 MATLAB: structs with a field ``cylinder``; version 2.0 saves loose variables, older ones a matrix
 ``CylData`` of a row per cylinder. A file may hold several models, as variables or as an array of
-structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which names start
-and axis once, though each has three columns; tabs, spaces, commas or semicolons between the cells.
+structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which names
+start and axis once, though each has three columns; tabs, spaces, commas or semicolons between the
+cells.
 """
 
 from __future__ import annotations
@@ -32,8 +33,8 @@ from tree_sway_ros.files.trees.cylinders.mat_file import looks_like_mat, numbers
 from tree_sway_ros.files.trees.tree_format import TreeFormat
 
 _FIELDS = {
-    "radius": ("Rad", 1), "length": ("Len", 1), "start": ("Sta", 3), "axis": ("Axe", 3),
-    "parent": ("CPar", 1), "extension": ("CExt", 1),
+    'radius': ('Rad', 1), 'length': ('Len', 1), 'start': ('Sta', 3), 'axis': ('Axe', 3),
+    'parent': ('CPar', 1), 'extension': ('CExt', 1),
 }  # fmt: skip
 """Fields of ``cylinder`` in the order of the columns: name as a loose variable, and width."""
 _COLUMNS = 10
@@ -58,7 +59,7 @@ def _are_cylinders(table: NDArray[np.generic]) -> bool:
 def _is_text(head: str) -> bool:
     """Whether a file is a TreeQSM text, judged by many rows of its beginning."""
     lines = [line for line in head.splitlines() if line.strip()]
-    if lines and lines[0].lower().startswith("radius") and "axis_direction" in lines[0]:
+    if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
     rows = [[finite(cell) for cell in _cells(line)] for line in lines[:_MANY]]
     # The first line may be a header of some kind, the last one of many cut in the middle.
@@ -73,15 +74,17 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     source, trees = str(path), list[Cylinders]()
     for name, model in _models(read_mat(path)):
         is_matrix = isinstance(model, np.ndarray)
-        table = model[:, :_COLUMNS].astype(np.float64) if is_matrix else _table(name, model, source)
-        labels = [f"{source}: {name} cylinder {i + 1}" for i in range(len(table))]
+        table = (
+            model[:, :_COLUMNS].astype(np.float64) if is_matrix else _table(name, model, source)
+        )
+        labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
         trees.append(_cylinders(table, labels, source))
         trees[-1].name = name
     if not trees:
         raise FormatError(
             "no struct with a field 'cylinder' and no matrix of cylinders",
             where=source,
-            cure="save the QSM struct of TreeQSM",
+            cure='save the QSM struct of TreeQSM',
         )
     return tuple(trees)
 
@@ -91,26 +94,26 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
     lines = read_lines(path)
     first = next((i for i, line in enumerate(lines) if line.strip()), 0)
     if lines and all(finite(cell) is None for cell in _cells(lines[first])):
-        lines[first] = ""
-    table = parse_columns(lines, str(path), [""] * _COLUMNS, _cells)
+        lines[first] = ''
+    table = parse_columns(lines, str(path), [''] * _COLUMNS, _cells)
     values = table.values(range(_COLUMNS))
     for row in np.flatnonzero(np.isnan(values).any(axis=1))[:1]:
         bad = next(
-            (f": {why_no_number(c)}" for c in _cells(table.texts[row]) if finite(c) is None), ""
+            (f': {why_no_number(c)}' for c in _cells(table.texts[row]) if finite(c) is None), ''
         )
         raise FormatError(
-            f"{np.isfinite(values[row]).sum()} good numbers of {_COLUMNS}{bad}",
+            f'{np.isfinite(values[row]).sum()} good numbers of {_COLUMNS}{bad}',
             where=table.where(row),
-            cure="a row is radius, length, start, axis, parent, extension ...",
+            cure='a row is radius, length, start, axis, parent, extension ...',
         )
-    labels = [f"{table.where(row)}: cylinder {row + 1}" for row in range(len(values))]
+    labels = [f'{table.where(row)}: cylinder {row + 1}' for row in range(len(values))]
     return (_cylinders(values, labels, str(path)),)
 
 
 def _cells(line: str) -> list[str]:
     """Cells of a row; commas separate only where neither semicolons nor white space do."""
-    cells = line.replace(";", " ").split()
-    return cells if len(cells) >= _COLUMNS else line.replace(",", " ").split()
+    cells = line.replace(';', ' ').split()
+    return cells if len(cells) >= _COLUMNS else line.replace(',', ' ').split()
 
 
 def _models(variables: dict[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -118,13 +121,13 @@ def _models(variables: dict[str, Any]) -> Iterator[tuple[str, Any]]:
     for name, value in variables.items():
         several = isinstance(value, list) and len(value) > 1
         for number, struct in enumerate(_structs(value), start=1):
-            inside = next(iter(_structs(struct.get("cylinder", struct))), {})
-            if "radius" in inside:
-                yield (f"{name}{number}" if several else name), inside
-    if "Rad" in variables:
-        yield "QSM", variables
+            inside = next(iter(_structs(struct.get('cylinder', struct))), {})
+            if 'radius' in inside:
+                yield (f'{name}{number}' if several else name), inside
+    if 'Rad' in variables:
+        yield 'QSM', variables
     for name, value in variables.items():
-        if isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.ndim == 2:
+        if isinstance(value, np.ndarray) and value.dtype.kind == 'f' and value.ndim == 2:
             if _are_cylinders(value):
                 yield name, value
 
@@ -144,35 +147,35 @@ def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
         try:
             column = numbers(fields[found], found)
         except FormatError as error:
-            raise error.at(f"{source}: {name}") from None
+            raise error.at(f'{source}: {name}') from None
         if column.size % width:
-            raise FormatError(f"{name}.{found} has {column.size} values", where=source)
+            raise FormatError(f'{name}.{found} has {column.size} values', where=source)
         columns.append(column.reshape(-1, width))
     if len({len(column) for column in columns}) > 1:
-        raise FormatError("columns of different lengths", where=source, cure="export it anew")
+        raise FormatError('columns of different lengths', where=source, cure='export it anew')
     return np.hstack(columns)
 
 
 def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     """Cylinders from the columns, (n, 10), with what an error calls each row."""
     if len(table) == 0:
-        raise FormatError("no cylinders", where=source)
+        raise FormatError('no cylinders', where=source)
     reach, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
     is_whole = (relatives == np.round(relatives)) & (np.abs(relatives) <= 2**53)
     for row, column in np.argwhere(~is_whole)[:1]:
         raise FormatError(
-            f"parent or extension is {relatives[row, column]:g}, not a whole number",
+            f'parent or extension is {relatives[row, column]:g}, not a whole number',
             where=labels[row],
         )
     first = 1 + int(relatives[:, 0].min())
     if first not in (0, 1):
         raise FormatError(
-            f"the least parent is {first - 1}", where=source, cure="the root has parent 0, or -1"
+            f'the least parent is {first - 1}', where=source, cure='the root has parent 0, or -1'
         )
     above, after = relatives.T.astype(np.int64) - first
     norm = np.linalg.norm(axes, axis=1)
     for row in np.flatnonzero((norm == 0.0) & (reach > 0.0))[:1]:
-        raise FormatError("an axis of no direction", where=labels[row])
+        raise FormatError('an axis of no direction', where=labels[row])
     ends = starts + (reach / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
     valid = (after >= 0) & (after < len(table))
     continues = np.zeros(len(table), dtype=np.bool_)
@@ -181,5 +184,5 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
 
 
-MAT = TreeFormat("treeqsm-mat", (".mat",), looks_like_mat, _read_mat)
-TEXT = TreeFormat("treeqsm-text", (".cyl",), _is_text, read_treeqsm_text)
+MAT = TreeFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
+TEXT = TreeFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text)

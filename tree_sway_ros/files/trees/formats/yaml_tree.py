@@ -9,5 +9,5 @@ from tree_sway_ros.files.trees.tree_format import TreeFormat
 from tree_sway_ros.files.trees.yaml.tree_yaml import read_yaml_tree
 from tree_sway_ros.files.yaml_document import YAML_SUFFIXES
 
-_KEY = contains(r"^\{?\s*(tree_sway|branches|segments)\s*:")
-FORMAT = TreeFormat("yaml", YAML_SUFFIXES, _KEY, read_yaml_tree)
+_KEY = contains(r'^\{?\s*(tree_sway|branches|segments)\s*:')
+FORMAT = TreeFormat('yaml', YAML_SUFFIXES, _KEY, read_yaml_tree)

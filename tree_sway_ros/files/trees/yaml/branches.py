@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.errors import FormatError, TreeError, nearest
-from tree_sway_ros.files.trees.assembly import SegmentTable, checked_order, nearest_axis
+from tree_sway_ros.errors import FormatError, nearest, TreeError
+from tree_sway_ros.files.trees.assembly import checked_order, nearest_axis, SegmentTable
 from tree_sway_ros.files.yaml_document import YamlDocument
 
 Values = dict[str, Any]
@@ -39,13 +39,13 @@ def branch_segments(document: YamlDocument) -> SegmentTable:
         A parent that is not there, a cycle, not exactly one stem, a branch in the air.
 
     """
-    branches = document.values["branches"]
+    branches = document.values['branches']
     where = [
         f"{document.where('branches', i)}: branch '{b['name']}'" for i, b in enumerate(branches)
     ]
     index = _indices(branches, where)
     parents = _parents(branches, index, where)
-    table = SegmentTable(branch_names=[branch["name"] for branch in branches])
+    table = SegmentTable(branch_names=[branch['name'] for branch in branches])
     placed: dict[int, _Placed] = {}
     for number in checked_order(parents, where):
         branch, its_parent = branches[number], placed.get(parents[number])
@@ -62,9 +62,9 @@ def branch_segments(document: YamlDocument) -> SegmentTable:
         table.parent += [base, *range(rows.first, rows.first + len(start) - 1)]
         table.branch += [number] * len(start)
         # A segment between two nodes is called by the line of the second.
-        key, ahead = ("nodes", 1) if "nodes" in branch else ("segments", 0)
+        key, ahead = ('nodes', 1) if 'nodes' in branch else ('segments', 0)
         table.labels += [
-            f"{document.where('branches', number, key, i + ahead)}: "
+            f'{document.where("branches", number, key, i + ahead)}: '
             f"segment {i} of branch '{branch['name']}'"
             for i in range(len(start))
         ]
@@ -74,29 +74,29 @@ def branch_segments(document: YamlDocument) -> SegmentTable:
 def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
     index: dict[str, int] = {}
     for number, branch in enumerate(branches):
-        if branch["name"] in index:
-            first = where[index[branch["name"]]].rsplit(": ", 1)[0]
+        if branch['name'] in index:
+            first = where[index[branch['name']]].rsplit(': ', 1)[0]
             raise FormatError(
-                f"a second branch of that name, the first is at {first}",
+                f'a second branch of that name, the first is at {first}',
                 where=where[number],
-                cure="give each branch a name of its own",
+                cure='give each branch a name of its own',
             )
-        index[branch["name"]] = number
+        index[branch['name']] = number
     return index
 
 
 def _parents(branches: list[Values], index: dict[str, int], where: list[str]) -> list[int]:
     parents = []
     for number, branch in enumerate(branches):
-        name = branch.get("parent")
+        name = branch.get('parent')
         if name is not None and name not in index:
-            cure = nearest(name, index) or "name a branch of this file"
+            cure = nearest(name, index) or 'name a branch of this file'
             raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
         parents.append(-1 if name is None else index[name])
     stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]
     if len(stems) > 1:
         raise TreeError(
-            "a second branch without a parent",
+            'a second branch without a parent',
             where=where[stems[1]],
             cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
         )
@@ -104,19 +104,19 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
 
 
 def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
-    if ("nodes" in branch) == ("segments" in branch):
+    if ('nodes' in branch) == ('segments' in branch):
         raise FormatError(
-            "both nodes and segments" if "nodes" in branch else "neither nodes nor segments",
+            'both nodes and segments' if 'nodes' in branch else 'neither nodes nor segments',
             where=where,
-            cure="give one of the two",
+            cure='give one of the two',
         )
-    if "nodes" in branch:
-        nodes = np.array(branch["nodes"], dtype=np.float64)
+    if 'nodes' in branch:
+        nodes = np.array(branch['nodes'], dtype=np.float64)
         return nodes[:-1, :3], nodes[1:, :3], np.stack([nodes[:-1, 3], nodes[1:, 3]], axis=1)
-    links = branch["segments"]
-    start = np.array([link["start"] for link in links], dtype=np.float64)
-    end = np.array([link["end"] for link in links], dtype=np.float64)
-    return start, end, np.array([diameter_pair(link["diameter"]) for link in links])
+    links = branch['segments']
+    start = np.array([link['start'] for link in links], dtype=np.float64)
+    end = np.array([link['end'] for link in links], dtype=np.float64)
+    return start, end, np.array([diameter_pair(link['diameter']) for link in links])
 
 
 def diameter_pair(diameter: float | list[float]) -> list[float]:
@@ -128,26 +128,26 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
     """Return the parent's segment, and the point that the branch's own points are offsets from."""
     axis = on.end - on.start
     length = np.linalg.norm(axis, axis=1)
-    place = branch.get("at")
-    if place is not None and "segment" in branch:
-        raise FormatError("both at and segment", where=where, cure="give one of the two")
+    place = branch.get('at')
+    if place is not None and 'segment' in branch:
+        raise FormatError('both at and segment', where=where, cure='give one of the two')
     if isinstance(place, (int, float)):
         reach = np.cumsum(length)
         along = place * reach[-1]
         segment = int(min(np.searchsorted(reach, along), len(length) - 1))
         fraction = 1.0 - (reach[segment] - along) / max(length[segment], 1e-12)
         return segment, on.start[segment] + fraction * axis[segment]
-    if place is not None or "segment" in branch:
-        segment = place["segment"] if place is not None else branch["segment"]
+    if place is not None or 'segment' in branch:
+        segment = place['segment'] if place is not None else branch['segment']
         if segment >= len(length):
             raise FormatError(
                 f"no segment {segment} on its parent '{branch['parent']}'",
                 where=where,
-                cure=f"name a segment from 0 to {len(length) - 1}",
+                cure=f'name a segment from 0 to {len(length) - 1}',
             )
         if place is None:
             return segment, np.zeros(3)
-        return segment, on.start[segment] + place.get("fraction", 1.0) * axis[segment]
+        return segment, on.start[segment] + place.get('fraction', 1.0) * axis[segment]
     return _nearest(branch, on, first_node, where), np.zeros(3)
 
 

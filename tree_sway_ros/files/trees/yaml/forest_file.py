@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import (
-    LeafClusters,
     foliage_of,
     joined_clusters,
     leaf_clusters,
+    LeafClusters,
     no_clusters,
 )
 from tree_sway_ros.core.scene.forest import Forest
-from tree_sway_ros.core.scene.placed_tree import PlacedTree, joined
+from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.plausibility import doubts
 from tree_sway_ros.core.tree.species import Species, species_named
@@ -57,7 +57,7 @@ class ForestFile:
     def warnings(self) -> tuple[str, ...]:
         """What is odd about each tree, as `TreeFile.warnings`."""
         return tuple(
-            f"{each.name}: {doubt}"
+            f'{each.name}: {doubt}'
             for each in self.trees
             for doubt in doubts(each.tree, each.species or species_named(each.tree.species))
         )
@@ -66,7 +66,7 @@ class ForestFile:
         """Return the same forest if every tree's numbers can be those of one."""
         for each in self.trees:
             species = each.species or species_named(each.tree.species)
-            TreeFile(each.tree, species, f"{self.source}: {each.name}").checked()
+            TreeFile(each.tree, species, f'{self.source}: {each.name}').checked()
         return self
 
     def with_trees(self, trees: Sequence[PlacedTree]) -> ForestFile:
@@ -123,13 +123,16 @@ class ForestFile:
 
 
 def forest_of_files(files: Sequence[TreeFile], name: str) -> ForestFile:
-    """Return the trees of one file as a forest: where they stand in it, the first at the origin."""
+    """
+    Return the trees of one file as a forest: where they stand in it, the first at the
+    origin.
+    """
     first = np.array(files[0].origin)
     trees = []
     for each in files:
         x, y, z = (np.array(each.origin) - first + each.tree.start[0]).tolist()
         trees.append(PlacedTree(each.tree.name, each.tree, x, y, z, species=each.species))
-    notes = [f"{each.tree.name}: {note}" for each in files for note in each.notes]
+    notes = [f'{each.tree.name}: {note}' for each in files for note in each.notes]
     return ForestFile(name, tuple(trees), files[0].source, tuple(notes))
 
 
@@ -137,17 +140,17 @@ def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None
     """Raise a `FormatError` for the first tree with a slash in its name, or that of another."""
     first: dict[str, int] = {}
     for number, name in enumerate(names):
-        if "/" in name:
+        if '/' in name:
             raise FormatError(
                 f"a slash in the name '{name}'",
                 where=where(number),
-                cure="leave it out: it stands between tree and branch in the names of segments",
+                cure='leave it out: it stands between tree and branch in the names of segments',
             )
         if name in first:
-            line = where(first[name]).rsplit(":", 1)[1]
+            line = where(first[name]).rsplit(':', 1)[1]
             raise FormatError(
                 f"two trees called '{name}', the first in line {line}",
                 where=where(number),
-                cure="give each a name of its own",
+                cure='give each a name of its own',
             )
         first[name] = number

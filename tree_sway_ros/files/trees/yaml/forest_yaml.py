@@ -35,7 +35,7 @@ OpenSpecies = Callable[[str], Species]
 
 def is_forest(path: Path) -> bool:
     """Whether a file looks like a forest: YAML with ``trees`` at its outermost."""
-    return begins_with_key(path, "trees")
+    return begins_with_key(path, 'trees')
 
 
 def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) -> ForestFile:
@@ -69,30 +69,30 @@ def read_forest(path: Path, open_tree: Callable[[str | Path, int], TreeFile]) ->
 def parse_forest(
     text: str,
     open_tree: OpenTree,
-    source: str = "text",
+    source: str = 'text',
     *,
-    default_name: str = "forest",
+    default_name: str = 'forest',
     open_species: OpenSpecies = open_species,
 ) -> ForestFile:
     """Read a forest from YAML text; see `read_forest`."""
-    document = read_yaml(text, source, packaged_schema("forest_schema.json"))
+    document = read_yaml(text, source, packaged_schema('forest_schema.json'))
     values = document.values
-    names = [entry["name"] for entry in values["trees"]]
-    refuse_same_names(names, lambda number: document.where("trees", number))
+    names = [entry['name'] for entry in values['trees']]
+    refuse_same_names(names, lambda number: document.where('trees', number))
     trees, notes = [], []
-    for number, entry in enumerate(values["trees"]):
-        where = document.where("trees", number)
+    for number, entry in enumerate(values['trees']):
+        where = document.where('trees', number)
         standing, file_notes = _standing(entry, open_tree, open_species, where)
         trees.append(standing)
-        notes += [f"{standing.name}: {note}" for note in file_notes]
-    anemometer = values.get("anemometer")
+        notes += [f'{standing.name}: {note}' for note in file_notes]
+    anemometer = values.get('anemometer')
     return ForestFile(
-        name=values.get("name", default_name),
+        name=values.get('name', default_name),
         trees=tuple(trees),
         source=source,
         notes=tuple(notes),
         anemometer=None if anemometer is None else tuple(anemometer),
-        convection_ratio=values.get("convection_ratio", 1.0),
+        convection_ratio=values.get('convection_ratio', 1.0),
     )
 
 
@@ -100,16 +100,16 @@ def _standing(
     entry: dict[str, Any], open_tree: OpenTree, open_species: OpenSpecies, where: str
 ) -> tuple[PlacedTree, tuple[str, ...]]:
     """One tree of the list, and the notes of its file."""
-    name = entry["name"]
+    name = entry['name']
     try:
-        tree_file = open_tree(entry["tree"], entry.get("seed", 0))
-        if "species" in entry:
-            tree_file = tree_file.of_species(open_species(entry["species"]))
+        tree_file = open_tree(entry['tree'], entry.get('seed', 0))
+        if 'species' in entry:
+            tree_file = tree_file.of_species(open_species(entry['species']))
     except TreeSwayError as error:
-        inner = f"{error.where}: {error.what}" if error.where else error.what
+        inner = f'{error.where}: {error.what}' if error.where else error.what
         raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
-    place: dict[str, Any] = {key: entry[key] for key in ("x", "y", "z", "yaw") if key in entry}
+    place: dict[str, Any] = {key: entry[key] for key in ('x', 'y', 'z', 'yaw') if key in entry}
     standing = PlacedTree(
-        name, tree_file.tree, species=tree_file.species, leaf_on=entry.get("leaf_on"), **place
+        name, tree_file.tree, species=tree_file.species, leaf_on=entry.get('leaf_on'), **place
     )
     return standing, tree_file.notes

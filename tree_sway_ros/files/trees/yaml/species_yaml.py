@@ -20,7 +20,7 @@ from tree_sway_ros.core.tree.species import Species, species_keys, species_named
 from tree_sway_ros.errors import SpeciesError
 from tree_sway_ros.files.text_file import path_of, read_text
 from tree_sway_ros.files.trees.yaml.tree_yaml import species_of
-from tree_sway_ros.files.yaml_document import YAML_SUFFIXES, Schema, read_yaml, tree_schema
+from tree_sway_ros.files.yaml_document import read_yaml, Schema, tree_schema, YAML_SUFFIXES
 
 
 def open_species(key_or_path: str | Path) -> Species:
@@ -42,26 +42,26 @@ def open_species(key_or_path: str | Path) -> Species:
     if not path.exists():
         raise SpeciesError(
             f"no species file '{text}'",
-            cure=f"give a file, or one of: {', '.join(sorted(species_keys()))}",
+            cure=f'give a file, or one of: {", ".join(sorted(species_keys()))}',
         )
     return parse_species(read_text(path), str(path))
 
 
-def parse_species(text: str, source: str = "text") -> Species:
+def parse_species(text: str, source: str = 'text') -> Species:
     """Read a species from YAML text; see `open_species`."""
     document = read_yaml(text, source, species_schema())
     species = species_of(document)
-    return replace(species, title=document.values.get("name", species.title))
+    return replace(species, title=document.values.get('name', species.title))
 
 
 def species_schema() -> Schema:
     """Return the JSON schema of a species file: that of a tree's YAML without the tree."""
     whole = tree_schema()
-    known = ("tree_sway", "name", "species", "wood")
+    known = ('tree_sway', 'name', 'species', 'wood')
     return {
-        "type": "object",
-        "additionalProperties": False,
-        "required": ["species"],
-        "properties": {key: whole["properties"][key] for key in known},
-        "$defs": whole["$defs"],
+        'type': 'object',
+        'additionalProperties': False,
+        'required': ['species'],
+        'properties': {key: whole['properties'][key] for key in known},
+        '$defs': whole['$defs'],
     }

@@ -3,9 +3,10 @@
 """
 The YAML form of a tree, which a person can write by hand.
 
-Either ``branches``, each with a name, the parent's name and its nodes (x, y, z, diameter), or plain
-``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its values
-by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` beside this file::
+Either ``branches``, each with a name, the parent's name and its nodes (x, y, z, diameter), or
+plain ``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its
+values by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` beside this
+file::
 
     name: seedling
     species: oak
@@ -29,7 +30,7 @@ from tree_sway_ros.files.text_file import read_text
 from tree_sway_ros.files.trees.assembly import SegmentTable
 from tree_sway_ros.files.trees.imported_tree import TreeFile
 from tree_sway_ros.files.trees.yaml.branches import branch_segments, diameter_pair
-from tree_sway_ros.files.yaml_document import YamlDocument, read_yaml, tree_schema
+from tree_sway_ros.files.yaml_document import read_yaml, tree_schema, YamlDocument
 
 
 def read_yaml_tree(path: Path) -> TreeFile:
@@ -49,59 +50,59 @@ def read_yaml_tree(path: Path) -> TreeFile:
     return parse_yaml_tree(read_text(path), str(path), default_name=path.stem)
 
 
-def parse_yaml_tree(text: str, source: str = "text", default_name: str = "tree") -> TreeFile:
+def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree') -> TreeFile:
     """Read a tree from YAML text; see `read_yaml_tree`."""
     document = read_yaml(text, source, tree_schema())
     values, species = document.values, species_of(document)
-    if ("branches" in values) == ("segments" in values):
-        found = "both branches and segments" if "branches" in values else "no branches or segments"
-        raise FormatError(found, where=document.where(), cure="give one of the two")
-    if "branches" in values:
+    if ('branches' in values) == ('segments' in values):
+        found = 'both branches and segments' if 'branches' in values else 'no branches or segments'
+        raise FormatError(found, where=document.where(), cure='give one of the two')
+    if 'branches' in values:
         table = branch_segments(document)
     else:
         table = _plain_segments(document)
-    tree = table.build(source, values.get("name", default_name), species.key)
+    tree = table.build(source, values.get('name', default_name), species.key)
     return TreeFile(tree, species, source)
 
 
 def species_of(document: YamlDocument) -> Species:
     """Return the table's species that a document names, with its wood in place of the table's."""
     values = document.values
-    key = values.get("species", "broadleaf")
+    key = values.get('species', 'broadleaf')
     try:
         species = species_named(key)
     except SpeciesError as error:
-        raise error.at(document.where("species")) from None
-    wood = dict(values.get("wood", {}))
-    if "damping_ratio" in wood:
-        ratio = wood.pop("damping_ratio")
-        for state in ("damping_bare", "damping_in_leaf"):
+        raise error.at(document.where('species')) from None
+    wood = dict(values.get('wood', {}))
+    if 'damping_ratio' in wood:
+        ratio = wood.pop('damping_ratio')
+        for state in ('damping_bare', 'damping_in_leaf'):
             if state in wood:
                 raise FormatError(
-                    f"both damping_ratio and {state}",
-                    where=document.where("wood", state),
-                    cure="give damping_ratio alone, or the two states apart",
+                    f'both damping_ratio and {state}',
+                    where=document.where('wood', state),
+                    cure='give damping_ratio alone, or the two states apart',
                 )
             wood[state] = ratio
     # A modulus from the file is a measured one, and no longer the table's guess.
-    return replace(species, **wood, is_estimate=species.is_estimate and "modulus" not in wood)
+    return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)
 
 
 def _plain_segments(document: YamlDocument) -> SegmentTable:
-    table, segments = SegmentTable(), document.values["segments"]
-    with_parent = sum("parent" in segment for segment in segments)
+    table, segments = SegmentTable(), document.values['segments']
+    with_parent = sum('parent' in segment for segment in segments)
     for number, segment in enumerate(segments):
-        label = f"{document.where('segments', number)}: segment {number}"
-        if 0 < with_parent < len(segments) and "parent" not in segment:
+        label = f'{document.where("segments", number)}: segment {number}'
+        if 0 < with_parent < len(segments) and 'parent' not in segment:
             raise TreeError(
-                "no parent, where others have one",
+                'no parent, where others have one',
                 where=label,
-                cure="give parent to every segment (-1 to the root) or to none",
+                cure='give parent to every segment (-1 to the root) or to none',
             )
-        table.start.append(segment["start"])
-        table.end.append(segment["end"])
-        table.diameter.append(diameter_pair(segment["diameter"]))
+        table.start.append(segment['start'])
+        table.end.append(segment['end'])
+        table.diameter.append(diameter_pair(segment['diameter']))
         if with_parent:
-            table.parent.append(segment["parent"])
+            table.parent.append(segment['parent'])
         table.labels.append(label)
     return table

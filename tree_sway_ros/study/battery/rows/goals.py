@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.study.battery.branch_runs import Branch, chord
-from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.battery.row import holds, Row
 from tree_sway_ros.study.battery.work_precision import flops_a_step, loads_for, winds
 from tree_sway_ros.study.methods.branch_bank import guards
 from tree_sway_ros.study.methods.branch_blocks import BranchBlocks
@@ -19,7 +19,7 @@ from tree_sway_ros.study.methods.chain import uniform_chain
 from tree_sway_ros.study.methods.registry import method_named
 from tree_sway_ros.study.methods.trajectory import integrate
 
-TITLE = "goals of the default integrator"
+TITLE = 'goals of the default integrator'
 RATE, FINE = 60, 960
 
 
@@ -27,7 +27,7 @@ def planar_error(wind_name: str) -> float:
     """Error of exact_foh in [rad] rms, one segment, 60 steps per second, against the reference."""
     chain, wind = uniform_chain(1, 2.0, 0.05), winds(1)[wind_name]
     first = wind(np.zeros(1))[0]
-    reference, method = method_named("radau_ggl"), method_named("exact_foh")
+    reference, method = method_named('radau_ggl'), method_named('exact_foh')
     exact = integrate(
         reference, chain, loads_for(reference, wind, wind_name, FINE), 1 / FINE, first=first
     )
@@ -36,7 +36,10 @@ def planar_error(wind_name: str) -> float:
 
 
 def spatial_error(size: float) -> tuple[float, float]:
-    """Error over the length, rms, and the largest deflection in degrees, of swaying in two axes."""
+    """
+    Error over the length, rms, and the largest deflection in degrees, of swaying in two
+    axes.
+    """
 
     def wind(t: NDArray[np.float64]) -> NDArray[np.float64]:
         e1 = 0.75 * np.sin(2 * np.pi * 0.23 * t) + 0.3 * np.sin(2 * np.pi * 0.7 * t)
@@ -79,29 +82,29 @@ def milliseconds_a_frame(n: int = 100_000, frames: int = 40) -> float:
 
 def run(full: bool = False) -> list[Row]:
     """Measure each goal; the time per frame only in full, as it asks for a quiet machine."""
-    cost = flops_a_step(method_named("exact_foh"), uniform_chain(1), winds(1)["smooth"], RATE)
-    rows = [holds("operations per step, one segment", "<= 130 flops", f"{cost}", cost <= 130)]
-    for name, bound in (("smooth", 1.5e-4), ("gusty", 7e-4)):
+    cost = flops_a_step(method_named('exact_foh'), uniform_chain(1), winds(1)['smooth'], RATE)
+    rows = [holds('operations per step, one segment', '<= 130 flops', f'{cost}', cost <= 130)]
+    for name, bound in (('smooth', 1.5e-4), ('gusty', 7e-4)):
         error = planar_error(name)
         rows.append(
-            holds(f"{name} wind, 60 Hz", f"<= {bound:.1e} rad rms", f"{error:.1e}", error <= bound)
+            holds(f'{name} wind, 60 Hz', f'<= {bound:.1e} rad rms', f'{error:.1e}', error <= bound)
         )
     for size, degrees, bound in ((0.14, 10, 2e-4), (0.42, 30, 2e-3), (1.2, 60, 1e-2)):
         error, peak = spatial_error(size)
         rows.append(
             holds(
-                f"two axes to {degrees} degrees",
-                f"<= {bound:.0e} L rms",
-                f"{error:.1e} at {peak:.0f} degrees",
+                f'two axes to {degrees} degrees',
+                f'<= {bound:.0e} L rms',
+                f'{error:.1e} at {peak:.0f} degrees',
                 error <= bound and peak >= degrees,
             )
         )
     turn = precession(0.2, 0.1)
     rows.append(
         holds(
-            "free elliptic swing",
-            "(2 pi / 3) a b a cycle within 1 %",
-            f"{turn:.4f} of it",
+            'free elliptic swing',
+            '(2 pi / 3) a b a cycle within 1 %',
+            f'{turn:.4f} of it',
             abs(abs(turn) - 1) <= 0.01,
         )
     )
@@ -109,9 +112,9 @@ def run(full: bool = False) -> list[Row]:
         spent = milliseconds_a_frame()
         rows.append(
             holds(
-                "100,000 two-axis branches, float32, one core",
-                "<= 1 ms per frame",
-                f"{spent:.2f} ms",
+                '100,000 two-axis branches, float32, one core',
+                '<= 1 ms per frame',
+                f'{spent:.2f} ms',
                 spent <= 1.0,
             )
         )

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.study.battery.branch_runs import run_branch
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.branch_bank import single_precision
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.method import Method
 from tree_sway_ros.study.methods.registry import method_named
 
-TITLE = "free decay"
+TITLE = 'free decay'
 DT = 1 / 60
 RATIOS = (0.01, 0.1, 1.0, 1.9, 2.1, 3.0, 10.0, 30.0, 100.0, 1000.0)
 DAMPING = (0.0, 0.05, 1.0, 5.0)
@@ -33,37 +33,37 @@ def run(full: bool = False) -> list[Row]:
         worst = max(kernel_growth(r, z, kind) for r in RATIOS for z in DAMPING)
         rows.append(
             holds(
-                f"exact_foh kernel, w h .01-1000, z 0-5, {kind.__name__}",
-                f"energy never grows ({bound:.0e})",
-                f"{worst:.1e}",
+                f'exact_foh kernel, w h .01-1000, z 0-5, {kind.__name__}',
+                f'energy never grows ({bound:.0e})',
+                f'{worst:.1e}',
                 worst <= bound,
             )
         )
     steps = STEPS if full else 200
     for kind, bound in ((np.float64, 1e-9), (np.float32, 1e-5)):
         worst = max(
-            growth(method_named("radau_ggl"), r, z, steps, 1e-2, kind)
+            growth(method_named('radau_ggl'), r, z, steps, 1e-2, kind)
             for r in RATIOS
             for z in DAMPING
         )
         rows.append(
             holds(
-                f"radau_ggl, the same, {steps} steps, {kind.__name__}",
-                f"energy never grows ({bound:.0e})",
-                f"{worst:.1e}",
+                f'radau_ggl, the same, {steps} steps, {kind.__name__}',
+                f'energy never grows ({bound:.0e})',
+                f'{worst:.1e}',
                 worst <= bound,
             )
         )
     for name, ratio in (
-        ("semi_implicit_euler", 2.1),
-        ("rk4", 3.0),
-        ("multiplier_explicit_euler", 0.1),
-        ("newmark", 1.9),
+        ('semi_implicit_euler', 2.1),
+        ('rk4', 3.0),
+        ('multiplier_explicit_euler', 0.1),
+        ('newmark', 1.9),
     ):
         energy = growth(method_named(name), ratio, 0.0, STEPS, 1e-2, np.float64)
         rows.append(
             fails(
-                f"{name} at w h = {ratio}", "dies", f"energy x {1 + energy:.1e}", not energy < DEAD
+                f'{name} at w h = {ratio}', 'dies', f'energy x {1 + energy:.1e}', not energy < DEAD
             )
         )
     return rows
@@ -116,5 +116,5 @@ def growth(
 
 def _rise(energy: NDArray[np.float64]) -> float:
     lowest = np.minimum.accumulate(energy)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid='ignore'):
         return float(np.max((energy[1:] - lowest[:-1]) / energy[0]))

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.study.battery.branch_runs import Branch
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.registry import method_named
 from tree_sway_ros.study.methods.trajectory import integrate
 
-TITLE = "numerical damping and frequency"
+TITLE = 'numerical damping and frequency'
 DT = 1 / 60
 RATIO = 0.02
 
@@ -46,9 +46,9 @@ def run(full: bool = False) -> list[Row]:
             worst = max(worst, abs(found / frequency - 1), abs(ratio - RATIO))
         rows.append(
             holds(
-                f"exact_foh kernel, .5-16 Hz, {kind.__name__}",
-                f"f/f0 - 1 and z - .02 <= {bound:.0e}",
-                f"{worst:.1e}",
+                f'exact_foh kernel, .5-16 Hz, {kind.__name__}',
+                f'f/f0 - 1 and z - .02 <= {bound:.0e}',
+                f'{worst:.1e}',
                 worst <= bound,
             )
         )
@@ -56,14 +56,14 @@ def run(full: bool = False) -> list[Row]:
         chain = single_segment(frequency, RATIO)
         calm = np.zeros((240, 1, 1, 2))
         theta = integrate(
-            method_named("linearly_implicit_euler"), chain, calm, DT, theta=np.array([1e-4])
+            method_named('linearly_implicit_euler'), chain, calm, DT, theta=np.array([1e-4])
         ).theta[20:, 0]
         ratio = fit(theta, DT)[1]
         rows.append(
             fails(
-                f"implicit Euler at {frequency:.0f} Hz",
-                "shows z .120-.126",
-                f"{ratio:.3f}",
+                f'implicit Euler at {frequency:.0f} Hz',
+                'shows z .120-.126',
+                f'{ratio:.3f}',
                 0.120 <= ratio <= 0.126,
             )
         )

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods import multiplier_form
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.method import Method
 from tree_sway_ros.study.methods.multiplier.projection import Projection
 from tree_sway_ros.study.methods.registry import method_named
 
-TITLE = "drift of the constraint"
+TITLE = 'drift of the constraint'
 DT = 1 / 60
 PERIOD = 240  # steps of the wind's period
 Array = NDArray[Any]
@@ -26,29 +26,29 @@ def run(full: bool = False) -> list[Row]:
     """Follow the gap of the default, of the reference and of two methods that let it grow."""
     steps = 10_000_000 if full else 100_000
     rows = []
-    for name in ("exact_foh", "radau_ggl"):
-        length = steps if name == "exact_foh" else steps // 10
+    for name in ('exact_foh', 'radau_ggl'):
+        length = steps if name == 'exact_foh' else steps // 10
         for kind, bound in ((np.float64, 1e-12), (np.float32, 1e-6)):
             worst = float(gaps(method_named(name), length, kind)[1].max())
             rows.append(
                 holds(
-                    f"{name}, {length:.0e} steps, {kind.__name__}",
-                    f"gap <= {bound:.0e} m",
-                    f"{worst:.1e} m",
+                    f'{name}, {length:.0e} steps, {kind.__name__}',
+                    f'gap <= {bound:.0e} m',
+                    f'{worst:.1e} m',
                     worst <= bound,
                 )
             )
     for label, method, slope in (
-        ("rk4 unstabilised", method_named("multiplier_rk4"), 2.0),
-        ("velocity projection", Projection(position=False), 1.0),
+        ('rk4 unstabilised', method_named('multiplier_rk4'), 2.0),
+        ('velocity projection', Projection(position=False), 1.0),
     ):
         length = min(steps, 1_000_000)
         found = drift_slope(*gaps(method, length, np.float64))
         rows.append(
             fails(
                 label,
-                f"gap grows as t^{slope:.1f} +- .1",
-                f"t^{found:.2f}",
+                f'gap grows as t^{slope:.1f} +- .1',
+                f't^{found:.2f}',
                 abs(found - slope) <= 0.1,
             )
         )
@@ -85,7 +85,7 @@ def gaps(method: Method, steps: int, kind: Any) -> tuple[Array, Array]:
 def _gap(method: Method, table: Array, state: Array) -> float:
     """Violation of the constraints, of the coordinates as the method itself places them."""
     q = state[0]
-    if method.form == "minimal":
+    if method.form == 'minimal':
         q, _ = multiplier_form.place(table, state[0], state[1])
     return float(np.abs(multiplier_form.constraint(table, q)).max())
 

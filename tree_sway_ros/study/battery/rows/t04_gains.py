@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.battery.row import holds, Row
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.multiplier.baumgarte import Baumgarte
 
@@ -38,8 +38,8 @@ def run(full: bool = False) -> list[Row]:
     """Find the limit of the gain by bisection and the gain with the smallest gap by a scan."""
     rows = []
     for base, limit, best in (
-        ("semi_implicit_euler", 0.828, (0.7, 0.83)),
-        ("rk4", 2.785, (0.1, 0.4)),
+        ('semi_implicit_euler', 0.828, (0.7, 0.83)),
+        ('rk4', 2.785, (0.1, 0.4)),
     ):
         low, high = 0.3, 4.0
         while high - low > 0.01:
@@ -49,9 +49,9 @@ def run(full: bool = False) -> list[Row]:
             )
         rows.append(
             holds(
-                f"{base}, limit of alpha h",
-                f"within 10 % of {limit}",
-                f"{low:.3f}",
+                f'{base}, limit of alpha h',
+                f'within 10 % of {limit}',
+                f'{low:.3f}',
                 abs(low / limit - 1) <= 0.1,
             )
         )
@@ -59,9 +59,9 @@ def run(full: bool = False) -> list[Row]:
         found = float(scan[np.argmin([largest_gap(base, gain) for gain in scan])])
         rows.append(
             holds(
-                f"{base}, best alpha h",
-                f"{best[0]} to {best[1]}",
-                f"{found:g}",
+                f'{base}, best alpha h',
+                f'{best[0]} to {best[1]}',
+                f'{found:g}',
                 best[0] <= found <= best[1],
             )
         )

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.chain import uniform_chain
 from tree_sway_ros.study.methods.multiplier.generalized_alpha import GeneralizedAlpha
 
@@ -32,15 +32,15 @@ def run(full: bool = False) -> list[Row]:
     failed = int(np.count_nonzero(old < 0))
     return [
         fails(
-            "from the old acceleration",
-            f"fails {STEPS} of {STEPS} steps",
-            f"{failed} of {STEPS}",
+            'from the old acceleration',
+            f'fails {STEPS} of {STEPS} steps',
+            f'{failed} of {STEPS}',
             failed == STEPS,
         ),
         holds(
-            "from q + h v",
-            "at most 5 iterations",
-            f"{good.min()} to {good.max()}",
+            'from q + h v',
+            'at most 5 iterations',
+            f'{good.min()} to {good.max()}',
             bool(good.min() > 0 and good.max() <= 5),
         ),
     ]

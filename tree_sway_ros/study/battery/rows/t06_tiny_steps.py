@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.registry import method_named
 
-TITLE = "multipliers at tiny steps"
+TITLE = 'multipliers at tiny steps'
 
 
 def noise(name: str, dt: float, steps: int = 60) -> float:
@@ -30,17 +30,17 @@ def noise(name: str, dt: float, steps: int = 60) -> float:
 def run(full: bool = False) -> list[Row]:
     """Measure the growth of index-3 noise from h = 1e-6 to 1e-7, and GGL at 1e-6."""
     rows = []
-    for name in ("generalized_alpha", "multiplier_bdf2"):
+    for name in ('generalized_alpha', 'multiplier_bdf2'):
         coarse, fine = noise(name, 1e-6), noise(name, 1e-7)
         slope = np.log10(fine / coarse)
         rows.append(
             fails(
-                f"{name} on index 3",
-                "noise ~ eps / h^2",
-                f"{coarse:.1e} at 1e-6, {fine:.1e} at 1e-7: h^-{slope:.1f}",
+                f'{name} on index 3',
+                'noise ~ eps / h^2',
+                f'{coarse:.1e} at 1e-6, {fine:.1e} at 1e-7: h^-{slope:.1f}',
                 1.5 <= slope <= 2.5,
             )
         )
-    error = noise("radau_ggl", 1e-6)
-    rows.append(holds("radau_ggl at h = 1e-6", "<= 1e-9", f"{error:.1e}", error <= 1e-9))
+    error = noise('radau_ggl', 1e-6)
+    rows.append(holds('radau_ggl at h = 1e-6', '<= 1e-9', f'{error:.1e}', error <= 1e-9))
     return rows

@@ -6,18 +6,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.study.battery.row import Row, holds
-from tree_sway_ros.study.methods.chain import DAMPING, STIFFNESS, PlanarChain
+from tree_sway_ros.study.battery.row import holds, Row
+from tree_sway_ros.study.methods.chain import DAMPING, PlanarChain, STIFFNESS
 from tree_sway_ros.study.methods.registry import method_named
 from tree_sway_ros.study.methods.trajectory import integrate, sample
 
-TITLE = "mass ratio"
+TITLE = 'mass ratio'
 STEPS, DT = 120, 1 / 60
 RATIOS = tuple(10.0**k for k in range(-6, 7, 2))
 
 
 def pair(ratio: float) -> PlanarChain:
-    """Two rods of half a metre, joints as stiff as what they carry is heavy, first mode at 2 Hz."""
+    """
+    Two rods of half a metre, joints as stiff as what they carry is heavy, first mode at 2
+    Hz.
+    """
     mass = np.array([1.0, ratio])
     table = np.array([[m, m * 0.25 / 12, 0.25, 0.5, 0.0, 0.0] for m in mass])
     w = 2 * np.pi * 2.0
@@ -36,8 +39,10 @@ def error(name: str, ratio: float, refine: int = 1) -> float:
         shape = np.stack([0.2 * np.sin(3 * t), 0.4 * np.sin(2 * t)], -1)
         return np.asarray(shape[:, None, :] * weight)
 
-    truth, method = method_named("radau_ggl"), method_named(name)
-    exact = integrate(truth, chain, sample(wind, truth.nodes, DT / 4, 4 * STEPS), DT / 4).theta[::4]
+    truth, method = method_named('radau_ggl'), method_named(name)
+    exact = integrate(truth, chain, sample(wind, truth.nodes, DT / 4, 4 * STEPS), DT / 4).theta[
+        ::4
+    ]
     got = integrate(
         method, chain, sample(wind, method.nodes, DT / refine, refine * STEPS), DT / refine
     ).theta[::refine]
@@ -47,15 +52,15 @@ def error(name: str, ratio: float, refine: int = 1) -> float:
 def run(full: bool = False) -> list[Row]:
     """Compare each ratio's error with the one at 1."""
     rows = []
-    for name, floor in (("exact_foh", 0.0), ("radau_ggl", 1e-9)):
+    for name, floor in (('exact_foh', 0.0), ('radau_ggl', 1e-9)):
         at_one = max(error(name, 1.0), floor)
         errors = {ratio: error(name, ratio) for ratio in RATIOS}
         worst = max(errors, key=lambda ratio: errors[ratio])
         rows.append(
             holds(
-                f"{name}, 1e-6 to 1e6",
-                "within 3x of the error at 1",
-                f"{errors[worst]:.1e} rad at {worst:.0e}, {at_one:.1e} at 1",
+                f'{name}, 1e-6 to 1e6',
+                'within 3x of the error at 1',
+                f'{errors[worst]:.1e} rad at {worst:.0e}, {at_one:.1e} at 1',
                 errors[worst] <= 3 * at_one,
             )
         )

@@ -9,9 +9,9 @@ from scipy.optimize import brentq
 
 from tree_sway_ros.core.oscillators.two_axis import limit_load
 from tree_sway_ros.study.battery.branch_runs import Branch
-from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.battery.row import holds, Row
 
-TITLE = "strong wind from the side"
+TITLE = 'strong wind from the side'
 SIZES = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4)
 
 
@@ -34,25 +34,25 @@ def run(full: bool = False) -> list[Row]:
             counted = counted and limit_load(0.0, load, 0.0, limit)[3] == (load > limit)
         rows.append(
             holds(
-                f"s = .1 to 1e4, {kind.__name__}",
-                "bounded, below pi",
-                f"peak {peak:.2f} rad",
+                f's = .1 to 1e4, {kind.__name__}',
+                'bounded, below pi',
+                f'peak {peak:.2f} rad',
                 peak < np.pi,
             )
         )
         rows.append(
             holds(
-                f"s <= 10, {kind.__name__}",
-                "static angle right to 2 %",
-                f"{error:.1e}",
+                f's <= 10, {kind.__name__}',
+                'static angle right to 2 %',
+                f'{error:.1e}',
                 error <= 0.02,
             )
         )
         rows.append(
             holds(
-                f"held loads, {kind.__name__}",
-                "counted, each one and no other",
-                "counted" if counted else "miscounted",
+                f'held loads, {kind.__name__}',
+                'counted, each one and no other',
+                'counted' if counted else 'miscounted',
                 counted,
             )
         )

@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway_ros.study.battery.branch_runs import Branch
-from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.battery.row import holds, Row
 
-TITLE = "head-on wind"
+TITLE = 'head-on wind'
 
 
 def grows(size: float) -> bool:
@@ -26,9 +26,9 @@ def run(full: bool = False) -> list[Row]:
         low, high = (low, middle) if grows(middle) else (middle, high)
     rows = [
         holds(
-            "exact_foh kernel",
-            "buckles within 1 % of s = 1",
-            f"s = {high:.4f}",
+            'exact_foh kernel',
+            'buckles within 1 % of s = 1',
+            f's = {high:.4f}',
             abs(high - 1) <= 0.01,
         )
     ]
@@ -40,9 +40,9 @@ def run(full: bool = False) -> list[Row]:
         gap = abs(angle - size * np.sin(angle))
         rows.append(
             holds(
-                f"buckled at s = {size}",
-                "theta = s sin theta to 1e-6",
-                f"{np.degrees(angle):.1f} deg, {gap:.0e}",
+                f'buckled at s = {size}',
+                'theta = s sin theta to 1e-6',
+                f'{np.degrees(angle):.1f} deg, {gap:.0e}',
                 gap <= 1e-6 and angle > 0.3,
             )
         )

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.study.battery.branch_runs import Branch, chord
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.rebuilt_plane import run_in_rebuilt_plane
 
-TITLE = "wind parallel to the branch"
+TITLE = 'wind parallel to the branch'
 STEPS = 600
 
 
@@ -37,9 +37,9 @@ def run(full: bool = False) -> list[Row]:
     branch, rows = Branch(), []
     for kind in (np.float64, np.float32):
         for name, off, turbulence in (
-            ("parallel", 0.0, 0.0),
-            ("1e-8 off", 1e-8, 0.0),
-            ("1 % turbulence", 0.0, 0.01),
+            ('parallel', 0.0, 0.0),
+            ('1e-8 off', 1e-8, 0.0),
+            ('1 % turbulence', 0.0, 0.01),
         ):
             worst, finite = 0.0, True
             for along in (-0.9, -0.3, 0.5, 2.0):
@@ -52,15 +52,15 @@ def run(full: bool = False) -> list[Row]:
                 worst = max(worst, (ours + floor) / (theirs + floor))
             rows.append(
                 holds(
-                    f"exact_foh, {name}, {kind.__name__}",
+                    f'exact_foh, {name}, {kind.__name__}',
                     "frame step <= 1.05 of truth's",
-                    f"{worst:.4f}",
+                    f'{worst:.4f}',
                     finite and worst <= 1.05,
                 )
             )
     loads = branch.means(_wind(-0.5, 0.0, 0.0), 60) * branch.stiffness
     seen = bool(np.isnan(run_in_rebuilt_plane(loads, branch.row)).any())
-    rows.append(fails("rebuilt plane, parallel", "NaN", "NaN" if seen else "finite", seen))
+    rows.append(fails('rebuilt plane, parallel', 'NaN', 'NaN' if seen else 'finite', seen))
     return rows
 
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.study.battery.branch_runs import Branch, chord
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.rebuilt_plane import run_in_rebuilt_plane
 
-TITLE = "reversal and turns of the wind"
+TITLE = 'reversal and turns of the wind'
 STEPS = 300
 TURN_AT = 2.0
 # Goals: largest error over the length, at 10, 30 and 60 degrees of deflection after the turn.
@@ -45,9 +45,9 @@ def run(full: bool = False) -> list[Row]:
     branch, rows = Branch(), []
     for size, bound in CASES:
         for name, wind in (
-            ("90 degree turn", turning(size, 90)),
-            ("180 degree turn", turning(size, 180)),
-            ("reversal", reversing(size)),
+            ('90 degree turn', turning(size, 90)),
+            ('180 degree turn', turning(size, 180)),
+            ('reversal', reversing(size)),
         ):
             truth = branch.truth(wind, STEPS)
             ours = chord(branch.run(branch.means(wind, STEPS)))
@@ -56,8 +56,8 @@ def run(full: bool = False) -> list[Row]:
             peak = np.degrees(np.arccos(truth[int(60 * TURN_AT) :, 0].min()))
             rows.append(
                 holds(
-                    f"exact_foh, {name}, s = {size} (peak {peak:.0f} deg)",
-                    f"error <= {bound:g} L, no jump",
+                    f'exact_foh, {name}, s = {size} (peak {peak:.0f} deg)',
+                    f'error <= {bound:g} L, no jump',
                     f"{error:.1e} L, frame step {jump:.3f} of truth's",
                     error <= bound and jump <= 1.05,
                 )
@@ -68,9 +68,9 @@ def run(full: bool = False) -> list[Row]:
     rms = float(np.sqrt(((planar - truth) ** 2).sum(1).mean()))
     rows.append(
         fails(
-            "rebuilt plane that keeps theta, 90 degree turn at 10 degrees",
-            "errs .09 L (rms of the next second)",
-            f"{rms:.3f} L",
+            'rebuilt plane that keeps theta, 90 degree turn at 10 degrees',
+            'errs .09 L (rms of the next second)',
+            f'{rms:.3f} L',
             0.08 <= rms <= 0.10,
         )
     )

@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway_ros.study.battery.branch_runs import Branch, chord
-from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.battery.row import holds, Row
 
-TITLE = "past 90 degrees"
+TITLE = 'past 90 degrees'
 
 
 def run(full: bool = False) -> list[Row]:
@@ -29,9 +29,9 @@ def run(full: bool = False) -> list[Row]:
         theirs = np.linalg.norm(np.diff(truth, axis=0), axis=1).max()
         rows.append(
             holds(
-                f"exact_foh kernel to {peak:.0f} degrees, {kind.__name__}",
+                f'exact_foh kernel to {peak:.0f} degrees, {kind.__name__}',
                 "regular: <= 1e-2 L, frame step <= 1.05 of truth's",
-                f"{error:.1e} L, {step / theirs:.3f}",
+                f'{error:.1e} L, {step / theirs:.3f}',
                 peak > 95 and error <= 1e-2 and step <= 1.05 * theirs,
             )
         )

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods import multiplier_form
 from tree_sway_ros.study.methods.chain import uniform_chain
 from tree_sway_ros.study.methods.dense import solve
 from tree_sway_ros.study.methods.redundant import solve_regularised
 
-TITLE = "redundant constraint"
+TITLE = 'redundant constraint'
 
 
 def run(full: bool = False) -> list[Row]:
@@ -39,8 +39,10 @@ def run(full: bool = False) -> list[Row]:
         or not np.abs(rhs[:n, 0] - single).max() <= 1e-6 * np.abs(single).max()
         or bool(np.abs(rhs[n:]).max() > 1e6)
     )
-    found = f"multipliers up to {np.abs(rhs[n:]).max():.0e} N" if solved else "singular"
+    found = f'multipliers up to {np.abs(rhs[n:]).max():.0e} N' if solved else 'singular'
     return [
-        holds("regularised solve", "acceleration changes <= 1e-6", f"{change:.0e}", change <= 1e-6),
-        fails("plain LU", "fails", found, wild),
+        holds(
+            'regularised solve', 'acceleration changes <= 1e-6', f'{change:.0e}', change <= 1e-6
+        ),
+        fails('plain LU', 'fails', found, wild),
     ]

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.study.battery.branch_runs import Branch
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.chain import single_segment
 from tree_sway_ros.study.methods.registry import method_named
 
-TITLE = "late and uneven steps"
+TITLE = 'late and uneven steps'
 STALL = 0.5
 
 
@@ -24,7 +24,10 @@ def uneven_steps(frames: int) -> NDArray[np.float64]:
 
 
 def run(full: bool = False) -> list[Row]:
-    """Compare uneven steps with one step of the same total; count what a stall feeds the others."""
+    """
+    Compare uneven steps with one step of the same total; count what a stall feeds the
+    others.
+    """
     rows = []
     steps = uneven_steps(180)
     for kind, bound in ((np.float64, 1e-12), (np.float32, 1e-5)):
@@ -41,16 +44,16 @@ def run(full: bool = False) -> list[Row]:
             worst = max(worst, float(np.abs((state - whole) / scale).max()))
         rows.append(
             holds(
-                f"exact_foh kernel, 180 uneven frames, {kind.__name__}",
-                f"equals one step of the same total, {bound:.0e}",
-                f"{worst:.1e}",
+                f'exact_foh kernel, 180 uneven frames, {kind.__name__}',
+                f'equals one step of the same total, {bound:.0e}',
+                f'{worst:.1e}',
                 worst <= bound,
             )
         )
-    for name in ("verlet", "rk4"):
+    for name in ('verlet', 'rk4'):
         gain = energy_gain(name)
         rows.append(
-            fails(f"{name}, 2 Hz, three stalls", "energy x 1e8", f"x {gain:.1e}", gain >= 1e8)
+            fails(f'{name}, 2 Hz, three stalls', 'energy x 1e8', f'x {gain:.1e}', gain >= 1e8)
         )
     return rows
 

@@ -12,9 +12,9 @@ import numpy as np
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.errors import MissingDependencyError
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 
-TITLE = "coefficients and clock"
+TITLE = 'coefficients and clock'
 RATIOS = (0, 1e-8, 1e-3, 0.02, 0.05, 0.5, 0.999, 1, 1.0000001, 1.001, 1.05, 1.2, 2, 5, 50, 1000)
 DAYS, RATE = 30, 60
 
@@ -24,7 +24,7 @@ def _mpmath() -> Any:
         import mpmath  # type: ignore[import-untyped]
     except ImportError as error:
         raise MissingDependencyError(
-            "mpmath is not installed", where="battery T16", cure="pip install mpmath"
+            'mpmath is not installed', where='battery T16', cure='pip install mpmath'
         ) from error
     return mpmath
 
@@ -84,16 +84,16 @@ def run(full: bool = False) -> list[Row]:
     drift = float(abs(Fraction(summed_clock(ticks, 1 / RATE)) - exact))
     return [
         holds(
-            "coefficients, w h 1e-8 to 1e4, z 0 to 1000",
-            "<= 1e-12 relative",
-            f"{worst:.1e}",
+            'coefficients, w h 1e-8 to 1e4, z 0 to 1000',
+            '<= 1e-12 relative',
+            f'{worst:.1e}',
             worst <= 1e-12,
         ),
         holds(
-            f"ticks times h after {DAYS} days",
-            "exact to rounding",
-            f"{counted:.0e} s",
+            f'ticks times h after {DAYS} days',
+            'exact to rounding',
+            f'{counted:.0e} s',
             counted <= float(np.spacing(ticks / RATE)),
         ),
-        fails(f"t += h after {DAYS} days", "drifts", f"{drift:.0e} s", drift > 1e-6),
+        fails(f't += h after {DAYS} days', 'drifts', f'{drift:.0e} s', drift > 1e-6),
     ]

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from tree_sway_ros.core.wind.gate import SECOND, WindGate
 from tree_sway_ros.study.battery.branch_runs import Branch
-from tree_sway_ros.study.battery.row import Row, holds
+from tree_sway_ros.study.battery.row import holds, Row
 
-TITLE = "bad samples"
+TITLE = 'bad samples'
 BAD = (np.nan, np.inf, -np.inf, 1e300, 1e6)
 STEPS, AT = 240, 120
 
@@ -29,9 +29,9 @@ def run(full: bool = False) -> list[Row]:
             later = float(np.abs(spoilt[AT + 2] - clean[AT + 2])[:2].max())
             rows.append(
                 holds(
-                    f"gate and kernel, {bad:g} m/s once, {kind.__name__}",
-                    "finite; within 3e-4 rad one step later",
-                    f"{at_once:.1e} at the sample, {later:.1e} rad one step later",
+                    f'gate and kernel, {bad:g} m/s once, {kind.__name__}',
+                    'finite; within 3e-4 rad one step later',
+                    f'{at_once:.1e} at the sample, {later:.1e} rad one step later',
                     bool(np.isfinite(spoilt).all()) and max(at_once, later) <= 3e-4,
                 )
             )
@@ -46,9 +46,9 @@ def run(full: bool = False) -> list[Row]:
             peak = max(peak, float(np.hypot(states[:, 0], states[:, 1]).max()))
     rows.append(
         holds(
-            "kernel alone, the same as loads",
-            "finite, below 3 rad",
-            f"peak {peak:.2f} rad",
+            'kernel alone, the same as loads',
+            'finite, below 3 rad',
+            f'peak {peak:.2f} rad',
             finite and peak < 3.0,
         )
     )

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.kernel import kernel
 from tree_sway_ros.core.oscillators.propagator import propagator
 from tree_sway_ros.core.oscillators.two_axis import step_branch
-from tree_sway_ros.study.battery.row import Row, fails, holds
+from tree_sway_ros.study.battery.row import fails, holds, Row
 from tree_sway_ros.study.methods.branch_bank import guards, single_precision
 from tree_sway_ros.study.methods.minimal import rk4, semi_implicit_euler, verlet
 
-TITLE = "adversarial runs"
+TITLE = 'adversarial runs'
 STEPS = 200
 BLOWN_UP = 1e3  # [rad]
 Array = NDArray[Any]
@@ -39,7 +39,7 @@ def adversaries(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, 
 
 def bound(damping: Array) -> Array:
     """Largest |e| over the moment's largest |M| / k1: coth(pi z / 2 sqrt(1 - z^2))."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide='ignore'):
         return np.asarray(
             1 / np.tanh(np.pi * damping / (2 * np.sqrt(np.maximum(1 - damping**2, 0))))
         )
@@ -159,22 +159,22 @@ def run(full: bool = False) -> list[Row]:
         for planar in (True, False):
             runs = n if kind == np.float64 and not planar else n // 5
             blown, share = attack(runs, planar, kind)
-            where = "in the plane, s coth(..)" if planar else "in space, guard's moment x coth(..)"
+            where = 'in the plane, s coth(..)' if planar else "in space, guard's moment x coth(..)"
             rows.append(
                 holds(
-                    f"exact_foh kernel, {runs} runs, {kind.__name__}",
-                    f"0 blow-ups, never above the bound ({where})",
-                    f"{blown} blow-ups, peak {share:.4f} of the bound",
+                    f'exact_foh kernel, {runs} runs, {kind.__name__}',
+                    f'0 blow-ups, never above the bound ({where})',
+                    f'{blown} blow-ups, peak {share:.4f} of the bound',
                     blown == 0 and share <= 1 + slack,
                 )
             )
     for name, step in (
-        ("semi_implicit_euler", semi_implicit_euler.step),
-        ("verlet", verlet.step),
-        ("rk4", rk4.step),
+        ('semi_implicit_euler', semi_implicit_euler.step),
+        ('verlet', verlet.step),
+        ('rk4', rk4.step),
     ):
         share = classic(step, 2000 if full else 150)
         rows.append(
-            fails(f"{name} at s <= 1", "more than half blow up", f"{share:.0%}", share > 0.5)
+            fails(f'{name} at s <= 1', 'more than half blow up', f'{share:.0%}', share > 0.5)
         )
     return rows

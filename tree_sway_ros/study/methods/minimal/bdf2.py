@@ -34,11 +34,11 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class Bdf2(MinimalMethod):
     """Damps what it cannot follow, and some of what it should."""
 
-    name: ClassVar[str] = "bdf2"
+    name: ClassVar[str] = 'bdf2'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (1.0,)
     notes: ClassVar[str] = (
-        "A- and L-stable at a constant step; a changing step needs other coefficients"
+        'A- and L-stable at a constant step; a changing step needs other coefficients'
     )
-    source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, V.1"
+    source: ClassVar[str] = 'Hairer and Wanner 1996, Solving ODEs II, V.1'
     kernel = staticmethod(step)

@@ -62,7 +62,9 @@ def _remainder(
 
 @kernel
 def _advance(a: Array, state: Array, centre: Array, first: Array, last: Array, dt: float) -> Array:
-    """Exact motion about the centre under an acceleration that runs linearly from first to last."""
+    """Exact motion about the centre under an acceleration that runs linearly from first to
+    last.
+    """
     n = len(centre)
     full = a.copy()
     for i in range(n):
@@ -84,11 +86,11 @@ def _advance(a: Array, state: Array, centre: Array, first: Array, last: Array, d
 class ExactAboutEquilibrium(MinimalMethod):
     """For loads far beyond the stiffness: the frequency of the bent branch is exact too."""
 
-    name: ClassVar[str] = "exact_about_equilibrium"
+    name: ClassVar[str] = 'exact_about_equilibrium'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
-    notes: ClassVar[str] = "exact for motion about a steady bent state; curvature is explicit"
+    notes: ClassVar[str] = 'exact for motion about a steady bent state; curvature is explicit'
     source: ClassVar[str] = (
-        "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.2, about another point"
+        'Hochbruck and Ostermann 2010, Acta Numerica 19, 2.2, about another point'
     )
     kernel = staticmethod(step)

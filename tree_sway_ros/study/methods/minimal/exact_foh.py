@@ -45,11 +45,11 @@ def _add_end(options: Array, moment: Array, out: Array) -> None:
 class ExactFirstOrderHold(MinimalMethod):
     """Frequency and damping exact at any step; bounded motion under any wind."""
 
-    name: ClassVar[str] = "exact_foh"
+    name: ClassVar[str] = 'exact_foh'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
     notes: ClassVar[str] = "exact for the linear part at any w h; the load's own slope is explicit"
-    source: ClassVar[str] = "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.2 (ETD2RK form)"
+    source: ClassVar[str] = 'Hochbruck and Ostermann 2010, Acta Numerica 19, 2.2 (ETD2RK form)'
     kernel = staticmethod(step)
 
     def options(self, chain: PlanarChain, dt: float) -> Array:

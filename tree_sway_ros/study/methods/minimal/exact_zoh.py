@@ -27,12 +27,12 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class ExactZeroOrderHold(MinimalMethod):
     """The cheapest exact propagator: half a step late in what the load does."""
 
-    name: ClassVar[str] = "exact_zoh"
+    name: ClassVar[str] = 'exact_zoh'
     order: ClassVar[int] = 1
     nodes: ClassVar[tuple[float, ...]] = (0.0,)
-    notes: ClassVar[str] = "exact for the linear part at any w h; first order in the load"
+    notes: ClassVar[str] = 'exact for the linear part at any w h; first order in the load'
     source: ClassVar[str] = (
-        "Hochbruck and Ostermann 2010, Acta Numerica 19, 2.1 (exponential Euler)"
+        'Hochbruck and Ostermann 2010, Acta Numerica 19, 2.1 (exponential Euler)'
     )
     kernel = staticmethod(step)
 

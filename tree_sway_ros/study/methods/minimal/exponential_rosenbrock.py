@@ -43,9 +43,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class ExponentialRosenbrock(MinimalMethod):
     """Sees the load's own stiffness; pays a matrix exponential a step."""
 
-    name: ClassVar[str] = "exponential_rosenbrock"
+    name: ClassVar[str] = 'exponential_rosenbrock'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
-    notes: ClassVar[str] = "exact for the equation linearised at each step, stable as it is"
-    source: ClassVar[str] = "Hochbruck, Ostermann, Schweitzer 2009, SIAM J. Numer. Anal. 47, 786"
+    notes: ClassVar[str] = 'exact for the equation linearised at each step, stable as it is'
+    source: ClassVar[str] = 'Hochbruck, Ostermann, Schweitzer 2009, SIAM J. Numer. Anal. 47, 786'
     kernel = staticmethod(step)

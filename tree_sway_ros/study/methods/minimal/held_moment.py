@@ -1,6 +1,8 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What the exact methods share: the moment beside the straight chain's own, and its propagation."""
+"""What the exact methods share: the moment beside the straight chain's own, and its
+propagation.
+"""
 
 from __future__ import annotations
 

@@ -31,9 +31,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class ImplicitMidpoint(MinimalMethod):
     """No numerical damping; slow frequencies: 5 % at 8 Hz and 60 steps per second."""
 
-    name: ClassVar[str] = "implicit_midpoint"
+    name: ClassVar[str] = 'implicit_midpoint'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.5,)
     notes: ClassVar[str] = "A-stable, not L-stable: stiff modes ring at the step's own rate"
-    source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, IV.3"
+    source: ClassVar[str] = 'Hairer and Wanner 1996, Solving ODEs II, IV.3'
     kernel = staticmethod(step)

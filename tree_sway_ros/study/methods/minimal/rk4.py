@@ -34,12 +34,12 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class RungeKutta4(MinimalMethod):
     """Accurate while it lasts: gone beyond its limit."""
 
-    name: ClassVar[str] = "rk4"
+    name: ClassVar[str] = 'rk4'
     order: ClassVar[int] = 4
     nodes: ClassVar[tuple[float, ...]] = (0.0, 0.5, 1.0)
     limit: ClassVar[float] = 2.828
     notes: ClassVar[str] = (
-        "stable for w h < 2 sqrt(2) without damping, 2.785 for an overdamped mode"
+        'stable for w h < 2 sqrt(2) without damping, 2.785 for an overdamped mode'
     )
-    source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, IV.2"
+    source: ClassVar[str] = 'Hairer and Wanner 1996, Solving ODEs II, IV.2'
     kernel = staticmethod(step)

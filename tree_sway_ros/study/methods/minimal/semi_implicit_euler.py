@@ -28,12 +28,12 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class SemiImplicitEuler(MinimalMethod):
     """The usual method of games and of many engines."""
 
-    name: ClassVar[str] = "semi_implicit_euler"
+    name: ClassVar[str] = 'semi_implicit_euler'
     order: ClassVar[int] = 1
     nodes: ClassVar[tuple[float, ...]] = (0.0,)
     limit: ClassVar[float] = 2.0
     notes: ClassVar[str] = (
-        "stable for w h < 2 without damping; damping lowers it to 2 (sqrt(1+z^2) - z)"
+        'stable for w h < 2 without damping; damping lowers it to 2 (sqrt(1+z^2) - z)'
     )
-    source: ClassVar[str] = "Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2"
+    source: ClassVar[str] = 'Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2'
     kernel = staticmethod(step)

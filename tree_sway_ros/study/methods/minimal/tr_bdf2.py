@@ -40,9 +40,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class TrBdf2(MinimalMethod):
     """L-stable in one step, at the price of two implicit stages."""
 
-    name: ClassVar[str] = "tr_bdf2"
+    name: ClassVar[str] = 'tr_bdf2'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, GAMMA, 1.0)
-    notes: ClassVar[str] = "A- and L-stable; light damping of slow modes"
-    source: ClassVar[str] = "Hosea and Shampine 1996, Appl. Numer. Math. 20; Bank et al. 1985"
+    notes: ClassVar[str] = 'A- and L-stable; light damping of slow modes'
+    source: ClassVar[str] = 'Hosea and Shampine 1996, Appl. Numer. Math. 20; Bank et al. 1985'
     kernel = staticmethod(step)

@@ -34,12 +34,12 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class Verlet(MinimalMethod):
     """Second order at two evaluations, symplectic without damping."""
 
-    name: ClassVar[str] = "verlet"
+    name: ClassVar[str] = 'verlet'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
     limit: ClassVar[float] = 2.0
     notes: ClassVar[str] = (
-        "stable for w h < 2; damping lowers it, the predicted rate acts explicitly"
+        'stable for w h < 2; damping lowers it, the predicted rate acts explicitly'
     )
-    source: ClassVar[str] = "Swope, Andersen, Berens, Wilson 1982, J. Chem. Phys. 76, eq. 11"
+    source: ClassVar[str] = 'Swope, Andersen, Berens, Wilson 1982, J. Chem. Phys. 76, eq. 11'
     kernel = staticmethod(step)

@@ -44,23 +44,23 @@ class Baumgarte(MultiplierMethod):
 
     alpha: float = 0.4
     beta: float = 0.4
-    base: str = "rk4"
+    base: str = 'rk4'
 
-    name: ClassVar[str] = "baumgarte"
+    name: ClassVar[str] = 'baumgarte'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 0.5, 1.0)
     limit: ClassVar[float] = 2.828
     notes: ClassVar[str] = (
-        "with alpha = beta the gain must stay below 2.785 / h on Runge-Kutta 4, .828 / h on "
-        "semi-implicit "
-        "Euler; a gain that grows as 1 / h lowers the order from 4 to 2, seen once the error is "
-        "small"
+        'with alpha = beta the gain must stay below 2.785 / h on Runge-Kutta 4, .828 / h on '
+        'semi-implicit '
+        'Euler; a gain that grows as 1 / h lowers the order from 4 to 2, seen once the error is '
+        'small'
     )
     source: ClassVar[str] = (
-        "Baumgarte 1972, Comput. Methods Appl. Mech. Eng. 1, 1; Ascher et al. 1994"
+        'Baumgarte 1972, Comput. Methods Appl. Mech. Eng. 1, 1; Ascher et al. 1994'
     )
     kernel = staticmethod(step)
 
     def options(self, chain: PlanarChain, dt: float) -> Array:
         """Return alpha, beta in [1/s] and whether the base is Runge-Kutta."""
-        return np.array([self.alpha / dt, self.beta / dt, float(self.base == "rk4")])
+        return np.array([self.alpha / dt, self.beta / dt, float(self.base == 'rk4')])

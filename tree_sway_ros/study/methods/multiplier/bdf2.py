@@ -38,9 +38,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class MultiplierBdf2(MultiplierMethod):
     """Positions on the constraint; velocities near it."""
 
-    name: ClassVar[str] = "multiplier_bdf2"
+    name: ClassVar[str] = 'multiplier_bdf2'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (1.0,)
-    notes: ClassVar[str] = "convergent on index 3 at a constant step; damps fast motion"
-    source: ClassVar[str] = "Lotstedt and Petzold 1986, Math. Comp. 46, 491"
+    notes: ClassVar[str] = 'convergent on index 3 at a constant step; damps fast motion'
+    source: ClassVar[str] = 'Lotstedt and Petzold 1986, Math. Comp. 46, 491'
     kernel = staticmethod(step)

@@ -25,10 +25,10 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class MultiplierExplicitEuler(MultiplierMethod):
     """Here to be seen failing: it feeds energy to every oscillation."""
 
-    name: ClassVar[str] = "multiplier_explicit_euler"
+    name: ClassVar[str] = 'multiplier_explicit_euler'
     order: ClassVar[int] = 1
     nodes: ClassVar[tuple[float, ...]] = (0.0,)
     limit: ClassVar[float] = 0.0
-    notes: ClassVar[str] = "unstable at any step without damping; needs 2 z > w h"
-    source: ClassVar[str] = "Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2"
+    notes: ClassVar[str] = 'unstable at any step without damping; needs 2 z > w h'
+    source: ClassVar[str] = 'Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2'
     kernel = staticmethod(step)

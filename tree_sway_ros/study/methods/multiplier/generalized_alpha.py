@@ -66,11 +66,11 @@ class GeneralizedAlpha(MultiplierMethod):
     rho: float = 0.8
     from_old_acceleration: bool = False
 
-    name: ClassVar[str] = "generalized_alpha"
+    name: ClassVar[str] = 'generalized_alpha'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (1.0,)
-    notes: ClassVar[str] = "stable for any w h; multipliers carry rounding as eps / h^2"
-    source: ClassVar[str] = "Chung and Hulbert 1993, J. Appl. Mech. 60; Arnold and Bruls 2007"
+    notes: ClassVar[str] = 'stable for any w h; multipliers carry rounding as eps / h^2'
+    source: ClassVar[str] = 'Chung and Hulbert 1993, J. Appl. Mech. 60; Arnold and Bruls 2007'
     kernel = staticmethod(step)
 
     def weights(self) -> tuple[float, float, float, float]:

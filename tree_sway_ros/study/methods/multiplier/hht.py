@@ -24,9 +24,9 @@ class Hht(GeneralizedAlpha):
 
     alpha: float = 0.1
 
-    name: ClassVar[str] = "hht"
-    notes: ClassVar[str] = "stable for any w h and alpha in (0, 1/3]"
-    source: ClassVar[str] = "Hilber, Hughes, Taylor 1977; Negrut et al. 2007 (index 3)"
+    name: ClassVar[str] = 'hht'
+    notes: ClassVar[str] = 'stable for any w h and alpha in (0, 1/3]'
+    source: ClassVar[str] = 'Hilber, Hughes, Taylor 1977; Negrut et al. 2007 (index 3)'
 
     def weights(self) -> tuple[float, float, float, float]:
         """Return am, af, beta, gamma."""

@@ -39,9 +39,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class MultiplierImplicitMidpoint(MultiplierMethod):
     """No numerical damping; the projection keeps index 3 from ringing."""
 
-    name: ClassVar[str] = "multiplier_implicit_midpoint"
+    name: ClassVar[str] = 'multiplier_implicit_midpoint'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.5,)
     notes: ClassVar[str] = "A-stable; without the projection the velocities' constraint rings"
-    source: ClassVar[str] = "Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, VII.1.4"
+    source: ClassVar[str] = 'Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, VII.1.4'
     kernel = staticmethod(step)

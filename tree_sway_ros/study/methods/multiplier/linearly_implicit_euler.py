@@ -49,9 +49,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class LinearlyImplicitEuler(MultiplierMethod):
     """What large-step cloth and engine solvers do."""
 
-    name: ClassVar[str] = "linearly_implicit_euler"
+    name: ClassVar[str] = 'linearly_implicit_euler'
     order: ClassVar[int] = 1
     nodes: ClassVar[tuple[float, ...]] = (1.0,)
-    notes: ClassVar[str] = "unconditionally stable, damps strongly: z .02 looks like .12 at 2 Hz"
-    source: ClassVar[str] = "Baraff and Witkin 1998, SIGGRAPH, eq. 6; Lubich et al. 1992 (MEXX)"
+    notes: ClassVar[str] = 'unconditionally stable, damps strongly: z .02 looks like .12 at 2 Hz'
+    source: ClassVar[str] = 'Baraff and Witkin 1998, SIGGRAPH, eq. 6; Lubich et al. 1992 (MEXX)'
     kernel = staticmethod(step)

@@ -14,9 +14,9 @@ from tree_sway_ros.study.methods.multiplier.generalized_alpha import Generalized
 class Newmark(GeneralizedAlpha):
     """The trapezoidal rule, beta 1/4 and gamma 1/2, on index 3: no damping of the constraint."""
 
-    name: ClassVar[str] = "newmark"
-    notes: ClassVar[str] = "weakly unstable on index 3: disturbances of the constraint never decay"
-    source: ClassVar[str] = "Newmark 1959, J. Eng. Mech. 85; Cardona and Geradin 1989"
+    name: ClassVar[str] = 'newmark'
+    notes: ClassVar[str] = 'weakly unstable on index 3: disturbances of the constraint never decay'
+    source: ClassVar[str] = 'Newmark 1959, J. Eng. Mech. 85; Cardona and Geradin 1989'
 
     def weights(self) -> tuple[float, float, float, float]:
         """Return am, af, beta, gamma."""

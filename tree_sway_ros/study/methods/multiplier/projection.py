@@ -46,13 +46,13 @@ class Projection(MultiplierMethod):
     position: bool = True
     velocity: bool = True
 
-    name: ClassVar[str] = "projection"
+    name: ClassVar[str] = 'projection'
     order: ClassVar[int] = 4
     nodes: ClassVar[tuple[float, ...]] = (0.0, 0.5, 1.0)
     limit: ClassVar[float] = 2.828
-    notes: ClassVar[str] = "no drift with both; with velocity alone the gap grows linearly in time"
+    notes: ClassVar[str] = 'no drift with both; with velocity alone the gap grows linearly in time'
     source: ClassVar[str] = (
-        "Eich 1993, SIAM J. Numer. Anal. 30, 1467; Hairer and Wanner 1996, VII.2"
+        'Eich 1993, SIAM J. Numer. Anal. 30, 1467; Hairer and Wanner 1996, VII.2'
     )
     kernel = staticmethod(step)
 

@@ -66,7 +66,9 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
         for stage in range(3):
             for i in range(width):
                 at = stage * width + i
-                if not abs(rhs[at, 0]) < 1e100:  # a comparison would pass over what is not a number
+                if (
+                    not abs(rhs[at, 0]) < 1e100
+                ):  # a comparison would pass over what is not a number
                     return -1
                 x[at] = x[at] + rhs[at, 0]
                 if i < 3 * n:
@@ -143,11 +145,11 @@ def _system(
 class RadauGgl(MultiplierMethod):
     """Fifth order, L-stable, constraints of position and velocity held to rounding."""
 
-    name: ClassVar[str] = "radau_ggl"
+    name: ClassVar[str] = 'radau_ggl'
     order: ClassVar[int] = 5
     nodes: ClassVar[tuple[float, ...]] = NODES
-    notes: ClassVar[str] = "stable for any w h; multipliers to eps / h, not eps / h^2"
-    source: ClassVar[str] = "Gear, Leimkuhler, Gupta 1985; Hairer and Wanner 1996, VII.5, IV.8"
+    notes: ClassVar[str] = 'stable for any w h; multipliers to eps / h, not eps / h^2'
+    source: ClassVar[str] = 'Gear, Leimkuhler, Gupta 1985; Hairer and Wanner 1996, VII.5, IV.8'
     kernel = staticmethod(step)
 
     def options(self, chain: PlanarChain, dt: float) -> Array:

@@ -80,14 +80,14 @@ def _mass(table: Array, i: int) -> float:
 class Rattle(MultiplierMethod):
     """Symplectic on the constraint; the damping is taken trapezoidally."""
 
-    name: ClassVar[str] = "rattle"
+    name: ClassVar[str] = 'rattle'
     order: ClassVar[int] = 2
     nodes: ClassVar[tuple[float, ...]] = (0.0, 1.0)
     limit: ClassVar[float] = 2.0
     notes: ClassVar[str] = (
-        "stable for w h < 2; positions and velocities on the constraint to rounding"
+        'stable for w h < 2; positions and velocities on the constraint to rounding'
     )
     source: ClassVar[str] = (
-        "Ryckaert et al. 1977 (SHAKE); Andersen 1983, J. Comput. Phys. 52, 24 (RATTLE)"
+        'Ryckaert et al. 1977 (SHAKE); Andersen 1983, J. Comput. Phys. 52, 24 (RATTLE)'
     )
     kernel = staticmethod(step)

@@ -25,10 +25,10 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class MultiplierRungeKutta4(MultiplierMethod):
     """The paper's form with no stabilisation."""
 
-    name: ClassVar[str] = "multiplier_rk4"
+    name: ClassVar[str] = 'multiplier_rk4'
     order: ClassVar[int] = 4
     nodes: ClassVar[tuple[float, ...]] = (0.0, 0.5, 1.0)
     limit: ClassVar[float] = 2.828
-    notes: ClassVar[str] = "stable for w h < 2 sqrt(2); the constraint drifts quadratically"
-    source: ClassVar[str] = "Hairer and Wanner 1996, Solving ODEs II, VII.2 (drift-off)"
+    notes: ClassVar[str] = 'stable for w h < 2 sqrt(2); the constraint drifts quadratically'
+    source: ClassVar[str] = 'Hairer and Wanner 1996, Solving ODEs II, VII.2 (drift-off)'
     kernel = staticmethod(step)

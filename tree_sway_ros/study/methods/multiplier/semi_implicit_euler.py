@@ -25,10 +25,10 @@ def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> 
 class MultiplierSemiImplicitEuler(MultiplierMethod):
     """The paper's form as most would first write it."""
 
-    name: ClassVar[str] = "multiplier_semi_implicit_euler"
+    name: ClassVar[str] = 'multiplier_semi_implicit_euler'
     order: ClassVar[int] = 1
     nodes: ClassVar[tuple[float, ...]] = (0.0,)
     limit: ClassVar[float] = 2.0
-    notes: ClassVar[str] = "stable for w h < 2; the constraint drifts, nothing pulls it back"
-    source: ClassVar[str] = "Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2"
+    notes: ClassVar[str] = 'stable for w h < 2; the constraint drifts, nothing pulls it back'
+    source: ClassVar[str] = 'Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, I.1.2'
     kernel = staticmethod(step)

@@ -7,20 +7,22 @@ from __future__ import annotations
 from functools import partial
 
 from tree_sway_ros.study.battery.report import CASES, load_case
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 
 
 def measure(effort: Effort) -> Section:
     """Run the battery."""
-    found = dict(zip(CASES, effort.each(partial(_run, is_full=effort.is_full), CASES), strict=True))
+    found = dict(
+        zip(CASES, effort.each(partial(_run, is_full=effort.is_full), CASES), strict=True)
+    )
     failed = sum(rows - good for _, rows, good in found.values())
     rows = [
         [name, title, str(rows), str(rows - good)] for name, (title, rows, good) in found.items()
     ]
-    text = "Cases of `tree-sway battery`: what must hold does, and known failures are seen."
-    checks = [Check("rows that are not as they should be", failed, high=0.0)]
-    head = ["case", "what it is", "rows", "wrong"]
-    return Section("Stability of methods", text, checks, markdown_table(head, rows))
+    text = 'Cases of `tree-sway battery`: what must hold does, and known failures are seen.'
+    checks = [Check('rows that are not as they should be', failed, high=0.0)]
+    head = ['case', 'what it is', 'rows', 'wrong']
+    return Section('Stability of methods', text, checks, markdown_table(head, rows))
 
 
 def _run(name: str, is_full: bool) -> tuple[str, int, int]:

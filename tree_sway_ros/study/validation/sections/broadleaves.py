@@ -9,10 +9,10 @@ from functools import partial
 import numpy as np
 
 from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_ros.study.validation.sections.conifers import diameter_at_breast
 
-BROADLEAVES = ("broadleaf", "oak", "birch", "beech", "ash", "sycamore", "walnut")
+BROADLEAVES = ('broadleaf', 'oak', 'birch', 'beech', 'ash', 'sycamore', 'walnut')
 HEIGHTS = (6.0, 12.0, 24.0)
 LIMIT = 0.1
 
@@ -24,19 +24,19 @@ def measure(effort: Effort) -> Section:
     cases = [(species, height) for species in BROADLEAVES for height in HEIGHTS]
     ratios = dict(zip(cases, effort.each(partial(over_allometry), cases), strict=True))
     checks = [
-        Check(f"{species}, largest relative error", max(
+        Check(f'{species}, largest relative error', max(
             (ratios[species, height] - 1.0 for height in HEIGHTS), key=abs
         ), -LIMIT, LIMIT)
         for species in BROADLEAVES
     ]  # fmt: skip
-    rows = [[species, *(f"{ratios[species, h]:.2f}" for h in HEIGHTS)] for species in BROADLEAVES]
+    rows = [[species, *(f'{ratios[species, h]:.2f}' for h in HEIGHTS)] for species in BROADLEAVES]
     text = (
-        f"Volume of wood times a basic density of {_BASIC_DENSITY:g} g/cm^3 over the dry mass "
-        "0.0673 (rho D^2 H)^0.976 in kg, g/cm^3, cm and m (Chave et al. 2014, equation 4); the "
-        "mean of seeds 0 to 4."
+        f'Volume of wood times a basic density of {_BASIC_DENSITY:g} g/cm^3 over the dry mass '
+        '0.0673 (rho D^2 H)^0.976 in kg, g/cm^3, cm and m (Chave et al. 2014, equation 4); the '
+        'mean of seeds 0 to 4.'
     )
-    head = ["species", *(f"{height:g} m" for height in HEIGHTS)]
-    return Section("Wood of broadleaves", text, checks, markdown_table(head, rows))
+    head = ['species', *(f'{height:g} m' for height in HEIGHTS)]
+    return Section('Wood of broadleaves', text, checks, markdown_table(head, rows))
 
 
 def over_allometry(case: tuple[str, float]) -> float:

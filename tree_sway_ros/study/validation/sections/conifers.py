@@ -14,9 +14,9 @@ from tree_sway_ros.core.simulator.assembly import build_bank
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 
-CONIFERS = ("spruce", "sitka", "pine", "douglas_fir")
+CONIFERS = ('spruce', 'sitka', 'pine', 'douglas_fir')
 HEIGHTS = (10.0, 15.0, 20.0, 30.0)
 LIMIT = 0.15
 
@@ -26,25 +26,25 @@ def measure(effort: Effort) -> Section:
     cases = [(species, height) for species in CONIFERS for height in HEIGHTS]
     ratios = dict(zip(cases, effort.each(partial(over_measured), cases), strict=True))
     checks = [
-        Check(f"{species}, largest relative error", max(
+        Check(f'{species}, largest relative error', max(
             (ratios[species, height] - 1.0 for height in HEIGHTS), key=abs
         ), -LIMIT, LIMIT)
         for species in CONIFERS
     ]  # fmt: skip
-    rows = [[species, *(f"{ratios[species, h]:.2f}" for h in HEIGHTS)] for species in CONIFERS]
+    rows = [[species, *(f'{ratios[species, h]:.2f}' for h in HEIGHTS)] for species in CONIFERS]
     text = (
-        "First frequency in needles over f = 0.0766 + 3.1219 DBH / H^2 (Hz, cm, m), the line "
-        "through 602 conifers of eight species (Moore & Maguire 2004)."
+        'First frequency in needles over f = 0.0766 + 3.1219 DBH / H^2 (Hz, cm, m), the line '
+        'through 602 conifers of eight species (Moore & Maguire 2004).'
     )
-    head = ["species", *(f"{height:g} m" for height in HEIGHTS)]
-    return Section("Frequencies of conifers", text, checks, markdown_table(head, rows))
+    head = ['species', *(f'{height:g} m' for height in HEIGHTS)]
+    return Section('Frequencies of conifers', text, checks, markdown_table(head, rows))
 
 
 def over_measured(case: tuple[str, float]) -> float:
     """First frequency of a grown conifer over that of measured ones of its size."""
     species, height = case
     tree = grow(species, height, rng=np.random.default_rng(0))
-    settings = Settings(model="modes", n_modes=1, mode_choice="slowest", in_leaf=True)
+    settings = Settings(model='modes', n_modes=1, mode_choice='slowest', in_leaf=True)
     frequency = float(build_bank(tree, species_named(species), settings).frequencies[0])
     measured = 0.0766 + 3.1219 * 100.0 * diameter_at_breast(tree) / height**2
     return frequency / measured

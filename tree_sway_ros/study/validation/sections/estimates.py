@@ -12,11 +12,11 @@ import numpy as np
 from tree_sway_ros.files.wind.wind_file import read_wind
 from tree_sway_ros.study.validation.crooked_trees import crooked_tree
 from tree_sway_ros.study.validation.judge import Judge, Verdict
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_ros.study.validation.sections.models import MORE_SEEDS, SEEDS
 from tree_sway_ros.study.validation.winds import from_record, hard_cases, turbulent
 
-RECORD = "wind/sonic_20hz_1245.toa5.dat"
+RECORD = 'wind/sonic_20hz_1245.toa5.dat'
 """Of a sonic anemometer, in the folder of data."""
 
 _PIECES, _SUBSTEPS = 2, 4
@@ -32,32 +32,35 @@ def measure(effort: Effort) -> Section:
     over = [one.over_estimate for one in verdicts]
     winds = list(dict.fromkeys(one.wind for one in verdicts))
     rows = [
-        [each[0].tree, *(f"{max(v.over_estimate for v in each if v.wind == w):.2f}" for w in winds)]
+        [
+            each[0].tree,
+            *(f'{max(v.over_estimate for v in each if v.wind == w):.2f}' for w in winds),
+        ]
         for each in ([v for v in part if np.isfinite(v.over_estimate)] for part in found)
     ]
     text = (
-        "True error over estimated error of every model of the ladder, sets with branches frozen "
-        f"among them, in {seconds:g} s of each wind; truth in {_PIECES} pieces at {60 * _SUBSTEPS} "
-        "Hz. The table has the largest ratio of each tree and wind."
+        'True error over estimated error of every model of the ladder, sets with branches frozen '
+        f'among them, in {seconds:g} s of each wind; truth in {_PIECES} pieces at '
+        f'{60 * _SUBSTEPS} Hz. The table has the largest ratio of each tree and wind.'
     )
     checks = [
-        Check("largest true error over its estimate", max(over), high=1.0),
-        Check("median of true error over its estimate", float(np.median(over)), low=0.3),
+        Check('largest true error over its estimate', max(over), high=1.0),
+        Check('median of true error over its estimate', float(np.median(over)), low=0.3),
         Check(
-            "share of errors beyond their estimate", float(np.mean(np.array(over) > 1.0)), high=0.0
+            'share of errors beyond their estimate', float(np.mean(np.array(over) > 1.0)), high=0.0
         ),
     ]
-    return Section("Estimates of errors", text, checks, markdown_table(["tree", *winds], rows))
+    return Section('Estimates of errors', text, checks, markdown_table(['tree', *winds], rows))
 
 
 def _judged(seed: int, seconds: float, record: Path | None) -> list[Verdict]:
     judge = Judge(crooked_tree(seed), pieces=_PIECES, substeps=_SUBSTEPS)
-    winds = {"7 m/s": turbulent(7.0, seconds, seed)}
+    winds = {'7 m/s': turbulent(7.0, seconds, seed)}
     winds |= hard_cases(seconds, judge.first_frequency)
     if record is not None:
         blown = read_wind(record)
         winds |= {
-            f"record x{scale:g}": from_record(blown.time, blown.velocity, seconds, scale)
+            f'record x{scale:g}': from_record(blown.time, blown.velocity, seconds, scale)
             for scale in (1.0, 3.0)
         }
     return judge.verdicts(winds)

@@ -13,7 +13,7 @@ from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.study.validation.judge import SETTINGS, WOOD
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_ros.study.validation.sections.models import SEEDS, tree_called
 from tree_sway_ros.study.validation.winds import FRAME
 
@@ -29,12 +29,12 @@ _BEFORE, _AFTER = 20.0, 4.0
 
 def measure(effort: Effort) -> Section:
     """Step from calm to 10 and from 3 to 12 m/s."""
-    names = ["straight 1", *map(str, SEEDS[:3])]
+    names = ['straight 1', *map(str, SEEDS[:3])]
     cases = [(name, gust) for name in names for gust in GUSTS]
     found = effort.each(partial(_met), cases)
     checks = [
         Check(
-            f"gap of the highest tip over its greatest displacement yet, from {MET_AFTER:g} s on",
+            f'gap of the highest tip over its greatest displacement yet, from {MET_AFTER:g} s on',
             max(of.gap for of in found),
             high=0.1,
         ),
@@ -44,7 +44,7 @@ def measure(effort: Effort) -> Section:
             high=1.0,
         ),
         Check(
-            f"gap over the displacement of the moment, from {MET_AFTER:g} s on",
+            f'gap over the displacement of the moment, from {MET_AFTER:g} s on',
             max(of.gap_of_now for of in found),
             high=0.1,
         ),
@@ -56,19 +56,19 @@ def measure(effort: Effort) -> Section:
     ]
     rows = [
         [
-            tree_called(name).name, f"{before:g} to {after:g} m/s",
-            f"{of.gap:.3f}", f"{of.gap_of_now:.3f}", f"{of.jump:.2f}", f"{of.jump_of_any:.2f}",
+            tree_called(name).name, f'{before:g} to {after:g} m/s',
+            f'{of.gap:.3f}', f'{of.gap_of_now:.3f}', f'{of.jump:.2f}', f'{of.jump_of_any:.2f}',
         ]
         for (name, (before, after)), of in zip(cases, found, strict=True)
     ]  # fmt: skip
     text = (
-        f"`auto` with a tolerance of {1e3 * _TOLERANCE:g} mm against `coupled`: {_BEFORE:g} s of "
-        "one wind, then at once the other. A tip that swings back passes close to its place at "
-        "rest; the gap over the displacement of that very moment stands beside. So does the "
+        f'`auto` with a tolerance of {1e3 * _TOLERANCE:g} mm against `coupled`: {_BEFORE:g} s of '
+        'one wind, then at once the other. A tip that swings back passes close to its place at '
+        'rest; the gap over the displacement of that very moment stands beside. So does the '
         "largest move of any frame beyond the full model's, with or without another model."
     )
-    head = ["tree", "wind", "gap", "gap of the moment", "move beyond [mm]", "of any frame [mm]"]
-    return Section("A gust met at once", text, checks, markdown_table(head, rows))
+    head = ['tree', 'wind', 'gap', 'gap of the moment', 'move beyond [mm]', 'of any frame [mm]']
+    return Section('A gust met at once', text, checks, markdown_table(head, rows))
 
 
 class _Met(NamedTuple):
@@ -85,7 +85,7 @@ def _met(case: tuple[str, tuple[float, float]]) -> _Met:
     name, (before, after) = case
     tree = tree_called(name)
     shown: TreeSimulator = AdaptiveSimulator(tree, WOOD, SETTINGS, tolerance=_TOLERANCE)
-    full: TreeSimulator = SwaySimulator(tree, WOOD, SETTINGS, model="coupled")
+    full: TreeSimulator = SwaySimulator(tree, WOOD, SETTINGS, model='coupled')
     places = np.empty((2, 2, tree.n_segments, 3))
     found, farthest = _Met(0.0, 0.0, 0.0, 0.0), 0.0
     for frame in range(round((_BEFORE + _AFTER) / FRAME)):

@@ -14,7 +14,7 @@ from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.validation.response_slopes import SPECIES
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 
 HEIGHTS = (6.0, 12.0, 24.0)
 SPEEDS = np.array([2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0])
@@ -26,26 +26,28 @@ def measure(effort: Effort) -> Section:
     found = dict(zip(cases, effort.each(partial(_loaded), cases), strict=True))
     powers = [power for power, *_ in found.values()]
     broad = [
-        each for (species, _), each in found.items() if species_named(species).habit == "broadleaf"
+        each for (species, _), each in found.items() if species_named(species).habit == 'broadleaf'
     ]
     checks = [
-        Check("power of the wind speed, least", min(powers), 1.5, 1.7),
-        Check("power of the wind speed, greatest", max(powers), 1.5, 1.7),
-        Check("broadleaves, leaf over bare at 6 m/s, least", min(b[1] for b in broad), 2.0, 3.0),
-        Check("broadleaves, leaf over bare at 6 m/s, greatest", max(b[1] for b in broad), 2.0, 3.0),
-        Check("broadleaves, leaf over bare at 20 m/s, least", min(b[2] for b in broad), low=1.2),
+        Check('power of the wind speed, least', min(powers), 1.5, 1.7),
+        Check('power of the wind speed, greatest', max(powers), 1.5, 1.7),
+        Check('broadleaves, leaf over bare at 6 m/s, least', min(b[1] for b in broad), 2.0, 3.0),
+        Check(
+            'broadleaves, leaf over bare at 6 m/s, greatest', max(b[1] for b in broad), 2.0, 3.0
+        ),
+        Check('broadleaves, leaf over bare at 20 m/s, least', min(b[2] for b in broad), low=1.2),
     ]
     rows = [
-        [species, *(", ".join(f"{found[species, h][k]:.2f}" for h in HEIGHTS) for k in range(3))]
+        [species, *(', '.join(f'{found[species, h][k]:.2f}' for h in HEIGHTS) for k in range(3))]
         for species in SPECIES
     ]
     text = (
-        "Wind load of a crown in leaf over its speed from 2 to 20 m/s, grown trees of 6, 12 and 24 "
-        "m. Measured on an oak: powers of 1.60 to 1.68, and twice to three times the load of the "
-        "bare tree (Angelou, Dellwik & Mann 2019)."
+        'Wind load of a crown in leaf over its speed from 2 to 20 m/s, grown trees of 6, 12 and '
+        '24 m. Measured on an oak: powers of 1.60 to 1.68, and twice to three times the load of '
+        'the bare tree (Angelou, Dellwik & Mann 2019).'
     )
-    head = ["species", "power", "leaf over bare at 6 m/s", "at 20 m/s"]
-    return Section("Wind load of leaves", text, checks, markdown_table(head, rows))
+    head = ['species', 'power', 'leaf over bare at 6 m/s', 'at 20 m/s']
+    return Section('Wind load of leaves', text, checks, markdown_table(head, rows))
 
 
 def _loaded(case: tuple[str, float]) -> tuple[float, float, float]:

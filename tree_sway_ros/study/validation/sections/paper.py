@@ -17,7 +17,7 @@ from tree_sway_ros.study.paper.experiment import (
     run_experiment,
     wind_from_the_right,
 )
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 
 
 class _Figures(NamedTuple):
@@ -35,31 +35,31 @@ def measure(effort: Effort) -> Section:
         zip(CONSTANTS, effort.each(partial(_run, seconds=seconds), CONSTANTS), strict=True)
     )
     checks = [
-        Check("multipliers against the reduced form, largest angle [rad]",
+        Check('multipliers against the reduced form, largest angle [rad]',
               max(each.angle for each in found.values()), high=1e-5),
-        Check("the same, joint reaction over the largest",
+        Check('the same, joint reaction over the largest',
               max(each.reaction for each in found.values()), high=1e-5),
-        Check("time of all segments over that of key segments, least",
+        Check('time of all segments over that of key segments, least',
               min(each.share for each in found.values()), low=4.0),
     ]  # fmt: skip
     rows = [
-        [name, str(f.segments), f"{f.per_branch:.1f}", f"{f.share:.1f}", f"{f.angle:.1e}",
-         f"{f.reaction:.1e}"]
+        [name, str(f.segments), f'{f.per_branch:.1f}', f'{f.share:.1f}', f'{f.angle:.1e}',
+         f'{f.reaction:.1e}']
         for name, f in found.items()
     ]  # fmt: skip
     text = (
-        f"`tree-sway paper`: whole plants in {seconds:g} s of gusty wind of 3 m/s from the right, "
+        f'`tree-sway paper`: whole plants in {seconds:g} s of gusty wind of 3 m/s from the right, '
         "their key segments with multipliers (the paper's equation 1) and in the reduced form. The"
-        " paper has about six segments per branch and a sixth of the work."
+        ' paper has about six segments per branch and a sixth of the work.'
     )
-    head = ["plant", "segments", "per branch", "time ratio", "angle [rad]", "reaction"]
+    head = ['plant', 'segments', 'per branch', 'time ratio', 'angle [rad]', 'reaction']
     return Section("The paper's experiment", text, checks, markdown_table(head, rows))
 
 
 def _run(plant: str, seconds: float) -> _Figures:
     tree, speed = builtin_tree(plant), wind_from_the_right(3.0, seconds)
     run = run_experiment(tree, species_named(tree.species), speed, *CONSTANTS[plant])
-    one, other = run.solutions["multipliers"], run.solutions["reduced"]
+    one, other = run.solutions['multipliers'], run.solutions['reduced']
     counts = np.diff(tree.branch_first)
     return _Figures(
         tree.n_segments,

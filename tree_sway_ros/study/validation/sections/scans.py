@@ -12,7 +12,7 @@ from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.errors import TreeError
 from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.study.frame.frame import frame_model
-from tree_sway_ros.study.validation.section import Check, Effort, Section, markdown_table
+from tree_sway_ros.study.validation.section import Check, Effort, markdown_table, Section
 
 LIMIT = 0.03
 
@@ -41,32 +41,32 @@ class Frequencies(NamedTuple):
 
 def measure(effort: Effort) -> Section:
     """Read every tree of the folder of data."""
-    folder = effort.data / "trees" if effort.data else None
+    folder = effort.data / 'trees' if effort.data else None
     files = tree_files(folder) if folder and folder.is_dir() else []
     found = dict(zip(files, effort.each(first_frequencies, files), strict=True))
     checks = [
-        Check(f"`{file.name}`, relative error", abs(each.model / each.frame - 1.0), high=LIMIT)
+        Check(f'`{file.name}`, relative error', abs(each.model / each.frame - 1.0), high=LIMIT)
         for file, each in found.items()
         if each.has_weight
     ]
     rows = [
-        [file.name, str(each.branches), str(each.segments), "yes" if each.has_weight else "no",
-         f"{each.frame:.4f}", f"{each.model / each.frame - 1.0:+.4f}"]
+        [file.name, str(each.branches), str(each.segments), 'yes' if each.has_weight else 'no',
+         f'{each.frame:.4f}', f'{each.model / each.frame - 1.0:+.4f}']
         for file, each in found.items()
     ]  # fmt: skip
     text = (
-        "First frequency of trees that others scanned or digitised, bare, in wood of the species "
-        "table with a shear modulus of E/14, against Euler-Bernoulli elements in space with weight "
-        "and twist. A tree that buckles under its weight is compared without it, outside of the "
-        "limit."
+        'First frequency of trees that others scanned or digitised, bare, in wood of the species '
+        'table with a shear modulus of E/14, against Euler-Bernoulli elements in space with '
+        'weight and twist. A tree that buckles under its weight is compared without it, outside '
+        'of the limit.'
     )
-    head = ["file", "branches", "segments", "stands", "f1 of the frame [Hz]", "error"]
-    return Section("First frequencies of scanned trees", text, checks, markdown_table(head, rows))
+    head = ['file', 'branches', 'segments', 'stands', 'f1 of the frame [Hz]', 'error']
+    return Section('First frequencies of scanned trees', text, checks, markdown_table(head, rows))
 
 
 def tree_files(folder: Path) -> list[Path]:
     """Return the files of a folder that are trees."""
-    return sorted(file for file in folder.iterdir() if file.suffix != ".LICENSE")
+    return sorted(file for file in folder.iterdir() if file.suffix != '.LICENSE')
 
 
 def first_frequencies(file: Path) -> Frequencies:
@@ -80,7 +80,7 @@ def first_frequencies(file: Path) -> Frequencies:
         has_weight, gravity = False, 0.0
         frame = _of_frame(file, gravity)
     settings = Settings(
-        model="modes", n_modes=1, mode_choice="slowest", gravity=gravity, in_leaf=False
+        model='modes', n_modes=1, mode_choice='slowest', gravity=gravity, in_leaf=False
     )
     model = float(build_bank(tree, wood, settings).frequencies[0])
     return Frequencies(tree.n_branches, tree.n_segments, model, frame, has_weight)

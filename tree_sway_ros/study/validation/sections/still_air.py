@@ -12,7 +12,7 @@ from tree_sway_ros.core.tree.species import species_named
 from tree_sway_ros.study.example_trees import tapered_stem
 from tree_sway_ros.study.validation.section import Check, Effort, Section
 
-MODELS = ("branch", "subtree", "modes")
+MODELS = ('branch', 'subtree', 'modes')
 
 _LENGTH, _WIDTH, _ANGLE = 2.0, 0.02, 0.1
 _RATE, _CYCLES = 2000, 12
@@ -22,19 +22,19 @@ def measure(effort: Effort) -> Section:
     """Let a uniform stem swing freely."""
     growth = closed_form()
     checks = [
-        Check(f"`{model}`, relative error", each / growth - 1.0, -0.03, 0.03)
+        Check(f'`{model}`, relative error', each / growth - 1.0, -0.03, 0.03)
         for model, each in zip(MODELS, effort.each(growth_of, MODELS), strict=True)
     ]
     text = (
-        "A uniform stem without damping of its own: one over the amplitude of its tip grows in "
-        "each cycle by 8/3 of the drag of all pieces over the inertia (energy over a cycle)."
+        'A uniform stem without damping of its own: one over the amplitude of its tip grows in '
+        'each cycle by 8/3 of the drag of all pieces over the inertia (energy over a cycle).'
     )
-    return Section("Damping by still air", text, checks)
+    return Section('Damping by still air', text, checks)
 
 
 def closed_form() -> float:
     """Growth of one over the tip's amplitude per cycle in [1/m]."""
-    wood, s = species_named("broadleaf"), np.linspace(0.0, 1.0, 2001)
+    wood, s = species_named('broadleaf'), np.linspace(0.0, 1.0, 2001)
     psi = (6.0 * s**2 - 4.0 * s**3 + s**4) / 3.0
     drag = 0.5 * AIR_DENSITY * wood.bare_drag_coefficient * _WIDTH
     line_mass = wood.density * np.pi / 4.0 * _WIDTH**2
@@ -44,9 +44,9 @@ def closed_form() -> float:
 
 def growth_of(model: str) -> float:
     """Measure it on one branch that swings by 0.1 rad at first."""
-    tree, wood = tapered_stem(_LENGTH, np.full(9, _WIDTH)), species_named("broadleaf")
+    tree, wood = tapered_stem(_LENGTH, np.full(9, _WIDTH)), species_named('broadleaf')
     sim = SwaySimulator(
-        tree, wood, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich="none"
+        tree, wood, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich='none'
     )
     x, v = sim.motion()
     x[0] = _ANGLE
