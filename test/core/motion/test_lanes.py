@@ -10,14 +10,12 @@ from tree_sway_ros.core.motion.lanes import put_four, settle, take_four, write_p
 
 @fused
 def _there(lanes, row, lane, rows, which, first):
-    a, b, c, d = rows[which[0]], rows[which[1]], rows[which[2]], rows[which[3]]
-    put_four(lanes, row, lane, a, b, c, d, first)
+    put_four(lanes, row, lane, rows, which[0], which[1], which[2], which[3], first)
 
 
 @fused
 def _back(rows, which, first, lanes, row, lane):
-    a, b, c, d = rows[which[0]], rows[which[1]], rows[which[2]], rows[which[3]]
-    take_four(a, b, c, d, first, lanes, row, lane)
+    take_four(rows, which[0], which[1], which[2], which[3], first, lanes, row, lane)
 
 
 def test_four_lanes_go_to_four_rows_and_back_compiled_and_plain() -> None:
