@@ -1,6 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import os
+from pathlib import Path
 import signal
 import sys
 import time
@@ -135,21 +136,25 @@ def test_an_error_of_ours_is_one_line(rclpy, node, capsys):
 
 
 @pytest.mark.parametrize('own', [(), ('FASTRTPS_DEFAULT_PROFILES_FILE',)])
-def test_processes_announce_themselves_often_unless_a_profile_is_named(
-    rclpy, node, monkeypatch, own
+@pytest.mark.parametrize('before', ['', str(Path(spin.__file__).with_name('discovery.xml'))])
+def test_nodes_announce_themselves_often_and_hear_by_udp_unless_a_profile_is_named(
+    rclpy, node, monkeypatch, own, before
 ):
     names = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
     for name in names:
-        monkeypatch.setenv(name, 'of_my_own.xml' if name in own else '')
+        monkeypatch.setenv(name, 'of_my_own.xml' if name in own else before)
     rclpy.on_spin = lambda: setattr(node, 'is_done', True)
     assert spin.run('fake_nodes', 'Node') == 0
     if own:
-        assert [os.environ[name] for name in names] == ['of_my_own.xml', '']
+        assert [os.environ[name] for name in names] == ['of_my_own.xml', before]
         return
     (file,) = {os.environ[name] for name in names}
     space = '{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}'
-    period = ElementTree.parse(file).getroot().find(f'.//{space}leaseAnnouncement')
+    profile = ElementTree.parse(file).getroot()
+    period = profile.find(f'.//{space}leaseAnnouncement')
     assert [each.text for each in period] == ['0', '300000000']
+    (place,) = profile.iterfind(f'.//{space}defaultUnicastLocatorList/{space}locator/*')
+    assert place.tag == f'{space}udpv4'
 
 
 def test_no_ros_is_one_line(monkeypatch, capsys):

@@ -59,15 +59,23 @@ def require_rclpy() -> Any:
         ) from None
 
 
-def init(rclpy: Any, args: Sequence[str] | None = None, **options: Any) -> None:
-    """Initialise rclpy; a `TransportError` if the domain or the arguments cannot be used."""
+def init(
+    rclpy: Any, args: Sequence[str] | None = None, profile: str = 'discovery.xml', **options: Any
+) -> None:
+    """
+    Initialise rclpy with one of the profiles beside this file, where the environment names none.
+
+    A `TransportError` if the domain or the arguments cannot be used.
+    """
     # The paced threads must not wait 5 ms for an executor that holds the interpreter.
     sys.setswitchinterval(_SWITCH_INTERVAL)
     # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
     if hasattr(ctypes.pythonapi, 'mallopt'):
         ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
-    if not any(os.environ.get(name) for name in _PROFILES):
-        os.environ.update(dict.fromkeys(_PROFILES, str(Path(__file__).with_name('discovery.xml'))))
+    own = Path(__file__).with_name(profile)
+    named = [os.environ.get(name) for name in _PROFILES]
+    if all(Path(each or own).parent == own.parent for each in named):  # not by the user
+        os.environ.update(dict.fromkeys(_PROFILES, str(own)))
     domain = os.environ.get('ROS_DOMAIN_ID', '')
     if domain and not (domain.isdecimal() and int(domain) <= 232):
         raise TransportError(
@@ -109,7 +117,8 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
 
     node = None
     with Ending() as ending:
-        init(rclpy, args, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+        no_handlers = rclpy.signals.SignalHandlerOptions.NO
+        init(rclpy, args, 'node.xml', signal_handler_options=no_handlers)
         try:
             node = create(getattr(importlib.import_module(module), node_class))
             gc.freeze()

@@ -25,8 +25,8 @@ from tree_sway_ros.study.validation.section import Effort, HOLDS, MISSES, Sectio
 from tree_sway_ros.tools.progress import bar
 
 SECTIONS = (
-    'models', 'estimates', 'steady_sway', 'gust', 'engine', 'scans', 'still_air', 'leaves',
-    'slopes', 'conifers', 'broadleaves', 'battery', 'paper',
+    'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
+    'leaves', 'slopes', 'conifers', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 
