@@ -5,7 +5,7 @@ What compilers do not make vectors of by themselves.
 
 A branch's pose lies in one row, sixteen branches are computed in lanes: number by number, carrying
 them over takes longer than computing them. And the shapes of a tree of many branches are its
-largest table: each is read once, in single precision.
+largest table: each is read once, as the upper half of a double.
 """
 
 from __future__ import annotations
@@ -56,20 +56,34 @@ def settle() -> None:
     """Wait until all that was written is seen by other threads."""
 
 
+def upper_halves(values: Floats) -> Floats:
+    """Round to the 20 bits of mantissa that the upper half of a double has."""
+    bits = (values.view(np.uint64) + np.uint64(1 << 31)) >> np.uint64(32) << np.uint64(32)
+    return bits.view(np.float64)
+
+
 def shapes_together(shapes: Floats) -> Any:
-    """Lay shapes (k, n) out for `add_shapes`: (ceil(n / 64), k, 64), in single precision."""
+    """
+    Lay shapes (k, n) of `upper_halves` out for `add_shapes`, (ceil(n / 64), k, 32).
+
+    An element has the halves of two numbers that are eight apart, the later one's first.
+    """
     k, n = shapes.shape
     blocks = -(-n // TOGETHER)
-    laid = zeros_in_lines(blocks * k * TOGETHER, np.dtype('f4')).reshape(blocks, k, TOGETHER)
+    laid: Any = zeros_in_lines(blocks, np.dtype([('pairs', 'u8', (k, TOGETHER // 2))]))['pairs']
     whole = np.zeros((k, blocks * TOGETHER))
     whole[:, :n] = shapes
-    laid[:] = whole.reshape(k, blocks, TOGETHER).swapaxes(0, 1)
+    bits = whole.view(np.uint64).reshape(k, blocks, -1, 2, 8).swapaxes(0, 1)
+    laid[:] = (bits[..., 1, :] | bits[..., 0, :] >> np.uint64(32)).reshape(laid.shape)
     return laid
 
 
 def add_shapes(shapes: Any, block: int, amounts: Any, into: Any) -> None:
     """Write a block's coordinates: the sum of shapes of `shapes_together` times amounts (k,)."""
-    into[block * TOGETHER : (block + 1) * TOGETHER] = amounts @ shapes[block]
+    pairs = shapes[block].reshape(-1, TOGETHER // 16, 8)
+    halves = np.stack([pairs << np.uint64(32), pairs >> np.uint64(32) << np.uint64(32)], axis=2)
+    summed = np.tensordot(amounts, halves.view(np.float64), axes=1)
+    into[block * TOGETHER : (block + 1) * TOGETHER] = summed.ravel()
 
 
 if not WHY_PLAIN:
@@ -155,33 +169,39 @@ if not WHY_PLAIN:
 
         return types.none(into, types.intp, of, types.intp), generate
 
-    _SINGLES, _AT_ONCE = ir.VectorType(ir.FloatType(), 16), range(0, TOGETHER, 16)
+    _PAIRS = ir.VectorType(ir.IntType(64), 8)
+    _LOWER = ir.Constant(_PAIRS, [32] * 8)
+    _UPPER = ir.Constant(_PAIRS, [-(1 << 32)] * 8)
 
     @intrinsic
     def _add_shapes(typing, shapes, block, amounts, into):  # type: ignore[no-untyped-def]
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             kinds, (table, row, shares, to) = signature.args, values
-            none = ir.Constant(_SINGLES, None)
-            sums = [cgutils.alloca_once_value(builder, none) for _ in _AT_ONCE]
+            none = ir.Constant(_LINE, None)
+            sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 8)]
             count = context.make_array(kinds[2])(context, builder, shares).nitems
             with cgutils.for_range(builder, count) as loop:
                 share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
                 one = builder.insert_element(none, share, ir.IntType(32)(0))
-                every = ir.Constant(ir.VectorType(ir.IntType(32), 16), None)
+                every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
                 shared = builder.shuffle_vector(one, none, every)
                 at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
-                for first, total in zip(_AT_ONCE, sums, strict=True):
-                    where = builder.gep(at, [row.type(first)])
-                    read = builder.bitcast(where, _SINGLES.as_pointer())
-                    part = builder.fmul(builder.load(read, align=64), shared, flags=['contract'])
-                    whole = builder.fadd(builder.load(total), part, flags=['contract'])
-                    builder.store(whole, total)
-            doubles = ir.VectorType(ir.DoubleType(), 16)
+                at = builder.bitcast(at, _PAIRS.as_pointer())
+                for k in range(0, len(sums), 2):
+                    pairs = builder.load(builder.gep(at, [row.type(k // 2)]), align=64)
+                    halves = builder.shl(pairs, _LOWER), builder.and_(pairs, _UPPER)
+                    for half, total in zip(halves, sums[k:], strict=False):
+                        part = builder.fmul(
+                            builder.bitcast(half, _LINE), shared, flags=['contract']
+                        )
+                        whole = builder.fadd(builder.load(total), part, flags=['contract'])
+                        builder.store(whole, total)
             at = builder.mul(row, row.type(TOGETHER))
-            for first, total in zip(_AT_ONCE, sums, strict=True):
-                where = _element(context, builder, kinds[3], to, builder.add(at, row.type(first)))
-                written = builder.bitcast(where, doubles.as_pointer())
-                builder.store(builder.fpext(builder.load(total), doubles), written, align=8)
+            for k, total in enumerate(sums):
+                first = builder.add(at, row.type(8 * k))
+                where = _element(context, builder, kinds[3], to, first)
+                written = builder.bitcast(where, _LINE.as_pointer())
+                builder.store(builder.load(total), written, align=8)
             return context.get_dummy_value()
 
         return types.none(shapes, types.intp, amounts, into), generate

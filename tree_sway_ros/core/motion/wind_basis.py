@@ -22,7 +22,12 @@ from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import entry_of, fused, inlined
 from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
-from tree_sway_ros.core.motion.lanes import add_shapes, shapes_together, TOGETHER
+from tree_sway_ros.core.motion.lanes import (
+    add_shapes,
+    shapes_together,
+    TOGETHER,
+    upper_halves,
+)
 from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.wind_basis_force import (
@@ -52,7 +57,7 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
             ('wanted', 'f8', (m,)),
             ('scratch', 'f8', (3, m)),
             ('values', 'f8', (n_harmonics,)),
-            ('amounts', 'f4', (m + N_REST,)),  # of the modes and of the rest
+            ('amounts', 'f8', (m + N_REST,)),  # of the modes and of the rest
         ]
     )
 
@@ -82,9 +87,11 @@ class WindBasisBank:
         self.record, self.pace = table.record, np.zeros(1, dtype=pace_layout(m))
         layout = instance_layout(m, COUNT[int(table.record['degree'][0])])
         self.instance = np.zeros(1, dtype=layout)
-        self.all_shapes = np.vstack([modal.shapes.T, table.rest_shapes])
+        # Rounded where they are read most, and so everywhere.
+        self.all_shapes = upper_halves(np.vstack([modal.shapes.T, table.rest_shapes]))
         filled = np.zeros((len(table.record['stiffness'][0]) - m, n))
-        self.laid_shapes = shapes_together(np.vstack([modal.shapes.T, filled, table.rest_shapes]))
+        laid = [self.all_shapes[:m], filled, self.all_shapes[m:]]
+        self.laid_shapes = shapes_together(np.vstack(laid))
         self._filled_x = self.room_for_rotations()
         self._x = self._filled_x[:n]
         self.n_outside = 0
