@@ -42,10 +42,7 @@ _FARTHEST_CAMERA = 1e6
 
 
 class SolverNode(TreeSwayNode):
-    """
-    Subscribes `wind/filtered`; publishes `segment_poses`, `markers`, `tree_state`,
-    `tree_description`.
-    """
+    """Subscribes `wind/filtered`; publishes poses, markers and state, and their description."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__('solver', **options)

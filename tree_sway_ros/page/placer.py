@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.motion.fill_records import head_records, lanes
 from tree_sway_ros.core.motion.placing import place_standing_at
-from tree_sway_ros.core.motion.records import BRANCH, SEGMENT, WORK
+from tree_sway_ros.core.motion.records import BRANCH, SEGMENT
 from tree_sway_ros.core.state.full_scale import FULL_SCALE
 from tree_sway_ros.errors import FormatError
 from tree_sway_ros.page.protocol import Array, Description, Frame
@@ -52,7 +52,7 @@ class Placer:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments."""
+        """Return the number of segments."""
         return int(self._n)
 
     def rotations(self, frame: Frame) -> Floats:
@@ -100,9 +100,9 @@ class Placer:
             # The last two are what rigid branches turn by.
             own = np.append(rotations[key : key + keys], (0.0, 0.0))
             c, s, end = math.cos(0.5 * yaw), math.sin(0.5 * yaw), row + kind.n_segments
-            branches, segments, heads, work = kind.records
+            branches, segments, heads, bases = kind.records
             place_standing_at(
-                branches, segments, heads, work, own, x, y, z, c, s, scale, poses[row:end]
+                branches, segments, heads, bases, own, x, y, z, c, s, scale, poses[row:end]
             )
             row, key = end, key + keys
         return poses
@@ -122,7 +122,7 @@ class _Kind(NamedTuple):
 
     matrix: Floats
     n_segments: int
-    records: tuple[_Records, _Records, _Records, _Records]
+    records: tuple[_Records, _Records, _Records, Floats]
     """Its branches and segments, heads of these, and scratch."""
 
 
@@ -168,8 +168,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
         record['steepest'][:k] = np.square(drawn).sum(axis=2).max(axis=0)
         record['steepest'][0] = max(record['steepest'][0], np.square(tips[here]).max())
     heads = head_records(branches, segments)
-    work = np.zeros(len(branches), dtype=WORK)
-    return _Kind(matrix, int(first[-1]), (branches, segments, heads, work))
+    return _Kind(matrix, int(first[-1]), (branches, segments, heads, np.zeros((len(branches), 8))))
 
 
 def _subtree_ends(parent: Ints) -> Ints:

@@ -3,21 +3,28 @@
 """Test that lanes come to their rows and back."""
 
 import numpy as np
+import pytest
 
 from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.lanes import put_four, settle, take_four, write_past_caches
+from tree_sway_ros.core.motion.lanes import (
+    add_shapes,
+    put_four,
+    settle,
+    shapes_together,
+    take_four,
+    upper_halves,
+    write_past_caches,
+)
 
 
 @fused
 def _there(lanes, row, lane, rows, which, first):
-    a, b, c, d = rows[which[0]], rows[which[1]], rows[which[2]], rows[which[3]]
-    put_four(lanes, row, lane, a, b, c, d, first)
+    put_four(lanes, row, lane, rows, which[0], which[1], which[2], which[3], first)
 
 
 @fused
 def _back(rows, which, first, lanes, row, lane):
-    a, b, c, d = rows[which[0]], rows[which[1]], rows[which[2]], rows[which[3]]
-    take_four(a, b, c, d, first, lanes, row, lane)
+    take_four(rows, which[0], which[1], which[2], which[3], first, lanes, row, lane)
 
 
 def test_four_lanes_go_to_four_rows_and_back_compiled_and_plain() -> None:
@@ -31,6 +38,26 @@ def test_four_lanes_go_to_four_rows_and_back_compiled_and_plain() -> None:
         back(rows, which, 1, found, 3, 4)
         assert (found[3:7, 4:8] == lanes[2:6, 9:13]).all()
         assert (found == -1.0).sum() == found.size - 16
+
+
+@fused
+def _sum(shapes, amounts, into):
+    for block in range(len(shapes)):
+        add_shapes(shapes, block, amounts, into)
+
+
+@pytest.mark.parametrize('n', [1, 64, 150])
+def test_shapes_are_summed_as_by_numpy_compiled_and_plain(n: int) -> None:
+    rng = np.random.default_rng(n)
+    exact, amounts = rng.normal(0.0, 1.0, (36, n)), rng.normal(0.0, 1.0, 36)
+    shapes = upper_halves(exact)
+    assert 0.0 < np.abs(shapes / exact - 1.0).max() < 2.0**-21
+    laid = shapes_together(shapes)
+    for function in (_sum, _sum.py_func):
+        found = np.full(len(laid) * 64, np.nan)
+        function(laid, amounts, found)
+        np.testing.assert_allclose(found[:n], amounts @ shapes, atol=1e-13)
+        assert (found[n:] == 0.0).all()
 
 
 @fused

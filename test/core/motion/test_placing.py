@@ -42,7 +42,7 @@ class Puppet:
             bank.branches,
             bank.segments,
             bank.heads,
-            bank.oscillators.work,
+            bank.bases,
             np.array(x, float),
             origin,
             out,

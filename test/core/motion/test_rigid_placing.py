@@ -31,12 +31,10 @@ def test_as_branches_whose_keys_are_zero(model):
     x = np.zeros(whole.layer(model).reduction.n_coordinates)
     x[keep] = np.random.default_rng(3).normal(0.0, 0.1, len(keep))
     expected, found = np.zeros((2, tree.n_segments, 7))
-    place(
-        full.branches, full.segments, full.heads, full.oscillators.work, x, tree.start[0], expected
-    )
-    work = part.oscillators.work
-    place(part.branches, part.segments, part.heads, work, x[keep], tree.start[0], found)
-    part.frozen.place(part.branches, work, x[keep], found)
+    place(full.branches, full.segments, full.heads, full.bases, x, tree.start[0], expected)
+    bases = part.bases
+    place(part.branches, part.segments, part.heads, bases, x[keep], tree.start[0], found)
+    part.frozen.place(part.branches, bases, x[keep], found)
     sign = np.sign((expected[:, 3:] * found[:, 3:]).sum(axis=1))[:, None]
     np.testing.assert_allclose(found[:, :3], expected[:, :3], atol=1e-12)
     np.testing.assert_allclose(sign * found[:, 3:], expected[:, 3:], atol=1e-12)

@@ -22,7 +22,6 @@ from tree_sway_ros.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway_ros.core.motion.placing import place
-from tree_sway_ros.core.motion.records import WORK
 from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.study.example_trees import forked_tree
 
@@ -48,8 +47,8 @@ class Reduced:
 
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
-        work = np.zeros(self.tree.n_branches, dtype=WORK)
-        place(self.branches, self.segments, self.heads, work, x, self.tree.start[0], out)
+        bases = np.zeros((self.tree.n_branches, 8))
+        place(self.branches, self.segments, self.heads, bases, x, self.tree.start[0], out)
         return out
 
     def points(self, x):

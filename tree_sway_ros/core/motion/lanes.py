@@ -1,33 +1,45 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Four numbers of each of four rows to four lanes and back, as vectors.
+What compilers do not make vectors of by themselves.
 
 A branch's pose lies in one row, sixteen branches are computed in lanes: number by number, carrying
-them over takes longer than computing them.
+them over takes longer than computing them. And the shapes of a tree of many branches are its
+largest table: each is read once, as the upper half of a double.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.kernel import WHY_PLAIN
+from tree_sway_ros.core.motion.records import zeros_in_lines
+
+TOGETHER = 64
+"""Coordinates whose shapes lie together and are summed at once."""
 
 
-def put_four(lanes: Any, row: int, lane: int, a: Any, b: Any, c: Any, d: Any, first: int) -> None:
+def put_four(
+    lanes: Any, row: int, lane: int, array: Any, a: int, b: int, c: int, d: int, first: int
+) -> None:
     """
-    Write four rows of four lanes, from a row and lane on, to a, b, c and d from an element on.
+    Write four rows of four lanes, from a row and lane on, to rows a to d from an element on.
 
     All lie in one piece.
     """
     for to, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
-        to[first : first + 4] = lanes[row : row + 4, j]
+        array[to, first : first + 4] = lanes[row : row + 4, j]
 
 
-def take_four(a: Any, b: Any, c: Any, d: Any, first: int, lanes: Any, row: int, lane: int) -> None:
+def take_four(
+    array: Any, a: int, b: int, c: int, d: int, first: int, lanes: Any, row: int, lane: int
+) -> None:
     """Read what `put_four` writes."""
     for of, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
-        lanes[row : row + 4, j] = of[first : first + 4]
+        lanes[row : row + 4, j] = array[of, first : first + 4]
 
 
 def write_past_caches(of: Any, into: Any) -> None:
@@ -42,6 +54,36 @@ def write_past_caches(of: Any, into: Any) -> None:
 
 def settle() -> None:
     """Wait until all that was written is seen by other threads."""
+
+
+def upper_halves(values: Floats) -> Floats:
+    """Round to the 20 bits of mantissa that the upper half of a double has."""
+    bits = (values.view(np.uint64) + np.uint64(1 << 31)) >> np.uint64(32) << np.uint64(32)
+    return bits.view(np.float64)
+
+
+def shapes_together(shapes: Floats) -> Any:
+    """
+    Lay shapes (k, n) of `upper_halves` out for `add_shapes`, (ceil(n / 64), k, 32).
+
+    An element has the halves of two numbers that are eight apart, the later one's first.
+    """
+    k, n = shapes.shape
+    blocks = -(-n // TOGETHER)
+    laid: Any = zeros_in_lines(blocks, np.dtype([('pairs', 'u8', (k, TOGETHER // 2))]))['pairs']
+    whole = np.zeros((k, blocks * TOGETHER))
+    whole[:, :n] = shapes
+    bits = whole.view(np.uint64).reshape(k, blocks, -1, 2, 8).swapaxes(0, 1)
+    laid[:] = (bits[..., 1, :] | bits[..., 0, :] >> np.uint64(32)).reshape(laid.shape)
+    return laid
+
+
+def add_shapes(shapes: Any, block: int, amounts: Any, into: Any) -> None:
+    """Write a block's coordinates: the sum of shapes of `shapes_together` times amounts (k,)."""
+    pairs = shapes[block].reshape(-1, TOGETHER // 16, 8)
+    halves = np.stack([pairs << np.uint64(32), pairs >> np.uint64(32) << np.uint64(32)], axis=2)
+    summed = np.tensordot(amounts, halves.view(np.float64), axes=1)
+    into[block * TOGETHER : (block + 1) * TOGETHER] = summed.ravel()
 
 
 if not WHY_PLAIN:
@@ -74,10 +116,10 @@ if not WHY_PLAIN:
         return mixed(ab, cd, low), mixed(ba, dc, low), mixed(ab, cd, high), mixed(ba, dc, high)
 
     def _carried(is_put: bool) -> Any:
-        def carry(typing, lanes, row, lane, a, b, c, d, first):  # type: ignore[no-untyped-def]
+        def carry(typing, lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
             def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
                 kinds = signature.args
-                lanes, row, lane, *rows, first = values
+                lanes, row, lane, array, *rows, first = values
                 of = [
                     _place(
                         context, builder, kinds[0], lanes,
@@ -85,32 +127,31 @@ if not WHY_PLAIN:
                     )
                     for k in range(4)
                 ]  # fmt: skip
-                to = [
-                    _place(context, builder, kind, each, first)
-                    for kind, each in zip(kinds[3:7], rows, strict=True)
-                ]
+                to = [_place(context, builder, kinds[3], array, each, first) for each in rows]
                 of, to = (of, to) if is_put else (to, of)
                 read = [builder.load(where, align=8) for where in of]
                 for value, where in zip(_turned(builder, read), to, strict=True):
                     builder.store(value, where, align=8)
                 return context.get_dummy_value()
 
-            return types.none(lanes, types.intp, types.intp, a, b, c, d, types.intp), generate
+            whole = types.intp
+            given = (lanes, whole, whole, array, whole, whole, whole, whole, whole)
+            return types.none(*given), generate
 
         return intrinsic(carry)
 
     _put, _take = _carried(True), _carried(False)
 
     @overload(put_four, inline='always')
-    def _put_four(lanes, row, lane, a, b, c, d, first):  # type: ignore[no-untyped-def]
-        return lambda lanes, row, lane, a, b, c, d, first: _put(
-            lanes, row, lane, a, b, c, d, first
+    def _put_four(lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
+        return lambda lanes, row, lane, array, a, b, c, d, first: _put(
+            lanes, row, lane, array, a, b, c, d, first
         )
 
     @overload(take_four, inline='always')
-    def _take_four(a, b, c, d, first, lanes, row, lane):  # type: ignore[no-untyped-def]
-        return lambda a, b, c, d, first, lanes, row, lane: _take(
-            lanes, row, lane, a, b, c, d, first
+    def _take_four(array, a, b, c, d, first, lanes, row, lane):  # type: ignore[no-untyped-def]
+        return lambda array, a, b, c, d, first, lanes, row, lane: _take(
+            lanes, row, lane, array, a, b, c, d, first
         )
 
     _LINE = ir.VectorType(ir.DoubleType(), 8)
@@ -127,6 +168,47 @@ if not WHY_PLAIN:
             return context.get_dummy_value()
 
         return types.none(into, types.intp, of, types.intp), generate
+
+    _PAIRS = ir.VectorType(ir.IntType(64), 8)
+    _LOWER = ir.Constant(_PAIRS, [32] * 8)
+    _UPPER = ir.Constant(_PAIRS, [-(1 << 32)] * 8)
+
+    @intrinsic
+    def _add_shapes(typing, shapes, block, amounts, into):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            kinds, (table, row, shares, to) = signature.args, values
+            none = ir.Constant(_LINE, None)
+            sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 8)]
+            count = context.make_array(kinds[2])(context, builder, shares).nitems
+            with cgutils.for_range(builder, count) as loop:
+                share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
+                one = builder.insert_element(none, share, ir.IntType(32)(0))
+                every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
+                shared = builder.shuffle_vector(one, none, every)
+                at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
+                at = builder.bitcast(at, _PAIRS.as_pointer())
+                for k in range(0, len(sums), 2):
+                    pairs = builder.load(builder.gep(at, [row.type(k // 2)]), align=64)
+                    halves = builder.shl(pairs, _LOWER), builder.and_(pairs, _UPPER)
+                    for half, total in zip(halves, sums[k:], strict=False):
+                        part = builder.fmul(
+                            builder.bitcast(half, _LINE), shared, flags=['contract']
+                        )
+                        whole = builder.fadd(builder.load(total), part, flags=['contract'])
+                        builder.store(whole, total)
+            at = builder.mul(row, row.type(TOGETHER))
+            for k, total in enumerate(sums):
+                first = builder.add(at, row.type(8 * k))
+                where = _element(context, builder, kinds[3], to, first)
+                written = builder.bitcast(where, _LINE.as_pointer())
+                builder.store(builder.load(total), written, align=8)
+            return context.get_dummy_value()
+
+        return types.none(shapes, types.intp, amounts, into), generate
+
+    @overload(add_shapes, inline='always')
+    def _sum_of_shapes(shapes, block, amounts, into):  # type: ignore[no-untyped-def]
+        return lambda shapes, block, amounts, into: _add_shapes(shapes, block, amounts, into)
 
     @intrinsic
     def _fence(typing):  # type: ignore[no-untyped-def]

@@ -43,7 +43,7 @@ _STRETCH_TO = np.deg2rad(90.0) ** 2
 
 @fused
 def place(
-    branches: Records, segments: Records, heads: Records, work: Records,
+    branches: Records, segments: Records, heads: Records, bases: Floats,
     x: Floats, origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -51,9 +51,11 @@ def place(
 
     Parameters
     ----------
-    branches, segments, heads, work
-        Records of `BRANCH` (b,), `SEGMENT`, `head_layout` and `WORK` (b,); bases of the last are
-        written.
+    branches, segments, heads
+        Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
+    bases
+        Written: orientation of each base from rest, w x y z, then half the key rotation,
+        stretched, for who sits on a plain branch, (b, 8).
     x
         Key rotations, (N,), in the order of the coordinates.
     origin
@@ -63,13 +65,13 @@ def place(
 
     """
     place_standing_at(
-        branches, segments, heads, work, x, origin[0], origin[1], origin[2], 1.0, 0.0, 1.0, out
+        branches, segments, heads, bases, x, origin[0], origin[1], origin[2], 1.0, 0.0, 1.0, out
     )
 
 
 @fused
 def place_standing_at(
-    branches: Records, segments: Records, heads: Records, work: Records, x: Floats,
+    branches: Records, segments: Records, heads: Records, bases: Floats, x: Floats,
     east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -82,10 +84,10 @@ def place_standing_at(
     scratch = heads[last]
     for block in range(last):
         head = heads[block]
-        _read_parents(branches, head, scratch, work, x, east, north, up, cosine, sine, out)
+        _read_parents(branches, head, scratch, bases, x, east, north, up, cosine, sine, out)
         _turn_on_parents(head, scratch)
         _turn_bases(head, scratch, scale)
-        farthest = _write_bases(head, scratch, work)
+        farthest = _write_bases(head, scratch, bases)
         if head.n_rows > 2:
             farthest = max(farthest, _set_further_keys(branches, head, scratch, x))
         for rank in range(head.n_records):
@@ -127,7 +129,7 @@ def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, flo
 
 @fused
 def _read_parents(
-    branches: Records, head: Record, scratch: Record, work: Records, x: Floats,
+    branches: Records, head: Record, scratch: Record, bases: Floats, x: Floats,
     east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
@@ -144,14 +146,12 @@ def _read_parents(
         return
     parents, on = head.parent, head.base_segment
     for j in range(0, head.n_lanes, 4):  # what is read of lanes that are empty is of no account
-        a, b = out[np.uintp(on[j])], out[np.uintp(on[j + 1])]
-        c, d = out[np.uintp(on[j + 2])], out[np.uintp(on[j + 3])]
-        take_four(a, b, c, d, 0, carrier, 0, j)
-        take_four(a, b, c, d, 3, carrier, 3, j)
-        a, b = work[np.uintp(parents[j])].base, work[np.uintp(parents[j + 1])].base
-        c, d = work[np.uintp(parents[j + 2])].base, work[np.uintp(parents[j + 3])].base
-        take_four(a, b, c, d, 0, base, 0, j)
-        take_four(a, b, c, d, 4, base, 4, j)
+        a, b, c, d = on[j], on[j + 1], on[j + 2], on[j + 3]
+        take_four(out, a, b, c, d, 0, carrier, 0, j)
+        take_four(out, a, b, c, d, 3, carrier, 3, j)
+        a, b, c, d = parents[j], parents[j + 1], parents[j + 2], parents[j + 3]
+        take_four(bases, a, b, c, d, 0, base, 0, j)
+        take_four(bases, a, b, c, d, 4, base, 4, j)
     for j in range(head.n_lanes):
         i = np.uintp(head.coordinate[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
@@ -248,18 +248,16 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
 
 
 @fused
-def _write_bases(head: Record, scratch: Record, work: Records) -> float:
+def _write_bases(head: Record, scratch: Record, bases: Floats) -> float:
     """Leave their turned bases to the children; bound the square of half of any segment's turn."""
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
     for j in range(0, whole, 4):
-        a, b = work[np.uintp(branch[j])].base, work[np.uintp(branch[j + 1])].base
-        c, d = work[np.uintp(branch[j + 2])].base, work[np.uintp(branch[j + 3])].base
-        put_four(base, 0, j, a, b, c, d, 0)
-        put_four(base, 4, j, a, b, c, d, 4)
+        a, b, c, d = branch[j], branch[j + 1], branch[j + 2], branch[j + 3]
+        put_four(base, 0, j, bases, a, b, c, d, 0)
+        put_four(base, 4, j, bases, a, b, c, d, 4)
     for j in range(whole, head.n_bearing):
-        here = work[np.uintp(branch[j])].base
         for row in range(6):
-            here[row] = base[row, j]
+            bases[branch[j], row] = base[row, j]
     together = 0.0
     for j in range(head.n_lanes):
         together += scratch.half_angle[j]
@@ -298,14 +296,12 @@ def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Fl
     pose, first = scratch.pose, head.first
     whole = n_lanes - n_lanes % 4
     for j in range(0, whole, 4):
-        a, b = out[np.uintp(first[j] + rank)], out[np.uintp(first[j + 1] + rank)]
-        c, d = out[np.uintp(first[j + 2] + rank)], out[np.uintp(first[j + 3] + rank)]
-        put_four(pose, 0, j, a, b, c, d, 0)
-        put_four(pose, 3, j, a, b, c, d, 3)
+        a, b, c, d = first[j] + rank, first[j + 1] + rank, first[j + 2] + rank, first[j + 3] + rank
+        put_four(pose, 0, j, out, a, b, c, d, 0)
+        put_four(pose, 3, j, out, a, b, c, d, 3)
     for j in range(whole, n_lanes):
-        to = out[np.uintp(first[j] + rank)]
         for row in range(7):
-            to[row] = pose[row, j]
+            out[first[j] + rank, row] = pose[row, j]
 
 
 @inlined

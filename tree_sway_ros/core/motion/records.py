@@ -172,14 +172,14 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
                 'f8',
                 (n_coordinates, LANES),
             ),  # half of each of its parent's, stretched
-            ('parent_base', 'f8', (8, LANES)),  # `base` of `WORK`
+            ('parent_base', 'f8', (8, LANES)),  # bases of `place`
             ('carrier', 'f8', (7, LANES)),  # pose of the base segment
             (
                 'carrier_turn',
                 'f8',
                 (3, LANES),
             ),  # half the rotation vector at the base, from the parent's base
-            ('base', 'f8', (8, LANES)),  # `base` of `WORK`
+            ('base', 'f8', (8, LANES)),  # the same of its own
             ('blend', 'f8', (LANES,)),  # how far it has gone over to the tip's slope
             ('half_turn', 'f8', (3, LANES)),  # half the rotation vector per unit of slope
             ('half_key', 'f8', (n_coordinates, LANES)),  # half of each coordinate, stretched
@@ -207,9 +207,6 @@ WORK = np.dtype(
         ('turn', 'f8', (3,)),  # rotation of the base, from its parent's base
         ('shift', 'f8', (3,)),  # displacement of the base in its parent's base's frame
         ('wrench', 'f8', (6,)),  # force and moment of itself and all it carries (`tree_passes`)
-        # Orientation of the base when placed, from rest, w x y z; half the key rotation,
-        # stretched, for who sits on a plain branch; two that fill the vector:
-        ('base', 'f8', (8,)),
     ]
 )
 """What a step computes in between, kept from one step to the next."""

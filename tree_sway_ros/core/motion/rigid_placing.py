@@ -65,25 +65,25 @@ class RigidParts:
             tree.rest_frame,
         )
 
-    def place(self, branches: Records, work: Records, x: Floats, out: Floats) -> None:
+    def place(self, branches: Records, bases: Floats, x: Floats, out: Floats) -> None:
         """
         Place the frozen segments in the whole pose block (n, 7), once the moving ones are.
 
-        Records (m,) and key rotations (M,) are those of the moving branches.
+        Records (m,), bases (m, 8) and key rotations (M,) are those of the moving branches.
         """
         _place(
             self.parent, self.rows, self.base_turn, self.offset, self.arm, self.rest,
-            branches, work, x, out,
+            branches, bases, x, out,
         )  # fmt: skip
 
 
 @fused
 def _place(
     parents: Ints, rows: Ints, base_turn: Floats, offset: Floats, arm: Floats, rest: Floats,
-    branches: Records, work: Records, x: Floats, out: Floats,
+    branches: Records, bases: Floats, x: Floats, out: Floats,
 ) -> None:  # fmt: skip
     for t in range(len(parents)):
-        on, below = rows[t, 0], work[parents[t]].base
+        on, below = rows[t, 0], bases[parents[t]]
         w, i, j, k = turn_at(branches[parents[t]], base_turn[t], x)
         w, i, j, k = product(below[0], below[1], below[2], below[3], w, i, j, k)
         px, py, pz = rotated(

@@ -119,7 +119,7 @@ def find_rests(tables: Records, standing: Records, instances: Records, which: In
 @fused
 def place_standing(
     tables: Records, standing: Records, instances: Records, which: Ints, shapes: Floats,
-    branches: Records, segments: Records, heads: Records, work: Records, x: Floats, poses: Floats,
+    branches: Records, segments: Records, heads: Records, bases: Floats, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -136,7 +136,7 @@ def place_standing(
         Trees and their first rows in the pose block, (w, 2).
     shapes
         Of the kind, as of `wind_basis.expand`.
-    branches, segments, heads, work
+    branches, segments, heads, bases
         Of the kind, as of `placing.place`.
     x, poses
         To work in, (N,) and (m, 7).
@@ -150,7 +150,7 @@ def place_standing(
         here = standing[t]
         expand(tables[here.kind], instances[t], shapes, x)
         place_standing_at(
-            branches, segments, heads, work, x, here.at[0], here.at[1], here.at[2],
+            branches, segments, heads, bases, x, here.at[0], here.at[1], here.at[2],
             here.cosine, here.sine, here.scale, poses,
         )  # fmt: skip
         into = whole[7 * first : 7 * first + len(block)]

@@ -22,6 +22,12 @@ from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import entry_of, fused, inlined
 from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
+from tree_sway_ros.core.motion.lanes import (
+    add_shapes,
+    shapes_together,
+    TOGETHER,
+    upper_halves,
+)
 from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.wind_basis_force import (
@@ -51,6 +57,7 @@ def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
             ('wanted', 'f8', (m,)),
             ('scratch', 'f8', (3, m)),
             ('values', 'f8', (n_harmonics,)),
+            ('amounts', 'f8', (m + N_REST,)),  # of the modes and of the rest
         ]
     )
 
@@ -80,10 +87,19 @@ class WindBasisBank:
         self.record, self.pace = table.record, np.zeros(1, dtype=pace_layout(m))
         layout = instance_layout(m, COUNT[int(table.record['degree'][0])])
         self.instance = np.zeros(1, dtype=layout)
-        self.all_shapes = np.vstack([modal.shapes.T, table.rest_shapes])
-        self._x = np.zeros(n)
+        # Rounded where they are read most, and so everywhere.
+        self.all_shapes = upper_halves(np.vstack([modal.shapes.T, table.rest_shapes]))
+        filled = np.zeros((len(table.record['stiffness'][0]) - m, n))
+        laid = [self.all_shapes[:m], filled, self.all_shapes[m:]]
+        self.laid_shapes = shapes_together(np.vstack(laid))
+        self._filled_x = self.room_for_rotations()
+        self._x = self._filled_x[:n]
         self.n_outside = 0
         """Steps whose wind or lean was outside of the table."""
+
+    def room_for_rotations(self) -> Floats:
+        """Zeros for `expand` to write key rotations to, (N,) and some more."""
+        return np.zeros(len(self.laid_shapes) * TOGETHER)
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
@@ -111,17 +127,19 @@ class WindBasisBank:
         arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
 
-    def placing(self, segments: Records, heads: Records) -> Callable[[Floats, Floats], None]:
+    def placing(
+        self, segments: Records, heads: Records, bases: Floats
+    ) -> Callable[[Floats, Floats], None]:
         """Return the placing of the state, a compiled call of a root node and a pose block."""
         arrays = (
-            self.record, self.instance, self.all_shapes, self._x,
-            self.branches, segments, heads, self.work,
+            self.record, self.instance, self.laid_shapes, self._filled_x,
+            self.branches, segments, heads, bases,
         )  # fmt: skip
         return partial(entry_of(place_one, *arrays, np.zeros(3), np.zeros((1, 7))), *arrays)
 
     @cached_property
     def _expand(self) -> Callable[[], None]:
-        arrays = self.record, self.instance, self.all_shapes, self._x
+        arrays = self.record, self.instance, self.laid_shapes, self._filled_x
         return partial(entry_of(expand_one, *arrays), *arrays)
 
     def response(self, moments: Floats, circular: Floats) -> NDArray[np.complex128]:
@@ -216,41 +234,27 @@ def expand(table: Record, instance: Record, shapes: Floats, x: Floats) -> None:
     """
     Key rotations (N,) of an instance: by its modes and by its static rest, which is written too.
 
-    Shapes are those of the modes, then of the rest, (m + r, N).
+    Shapes are those of the modes, then of the rest, as of `shapes_together`.
     """
     find_rest(table, instance)
-    eta, rest, n = instance.eta, instance.rest, len(shapes) - N_REST
-    x[:] = 0.0
-    few = n - n % 4
-    for k in range(few, n):
-        for i in range(len(x)):
-            x[i] += shapes[k, i] * eta[k]
-    for k in range(0, few, 4):
-        _add_four(shapes, k, eta, k, x)
-    for k in range(0, N_REST, 4):
-        _add_four(shapes, n + k, rest, k, x)
-
-
-@inlined
-def _add_four(shapes: Floats, row: int, amounts: Floats, k: int, x: Floats) -> None:
-    """Add four shapes in one pass."""
-    a, b, c, d = amounts[k], amounts[k + 1], amounts[k + 2], amounts[k + 3]
-    for i in range(len(x)):
-        x[i] += (
-            shapes[row, i] * a + shapes[row + 1, i] * b + shapes[row + 2, i] * c
-            + shapes[row + 3, i] * d
-        )  # fmt: skip
+    eta, rest, amounts = instance.eta, instance.rest, instance.amounts
+    for k in range(len(eta)):
+        amounts[k] = eta[k]
+    for k in range(N_REST):
+        amounts[len(eta) + k] = rest[k]
+    for block in range(len(shapes)):
+        add_shapes(shapes, block, amounts, x)
 
 
 @fused
 def place_one(
     tables: Records, instances: Records, shapes: Floats, x: Floats,
-    branches: Records, segments: Records, heads: Records, work: Records,
+    branches: Records, segments: Records, heads: Records, bases: Floats,
     origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """Do what `expand` does for the first record of each array, then what `place` does."""
     expand(tables[0], instances[0], shapes, x)
-    place(branches, segments, heads, work, x, origin, out)
+    place(branches, segments, heads, bases, x, origin, out)
 
 
 @fused

@@ -337,10 +337,10 @@ class Stand(KeepsState):
         for kind, share in enumerate(shares):
             if len(share[thread]):
                 bank, records = self._banks[kind], self._models[kind].bank
-                heads, work, x, block = self._scratch[thread][kind]
+                heads, bases, x, block = self._scratch[thread][kind]
                 place_standing(
-                    self._tables, self._standing, self._instances, share[thread], bank.all_shapes,
-                    records.branches, records.segments, heads, work, x, block, poses,
+                    self._tables, self._standing, self._instances, share[thread], bank.laid_shapes,
+                    records.branches, records.segments, heads, bases, x, block, poses,
                 )  # fmt: skip
 
     def _allocate(self) -> list[tuple[Any, Any, Floats, Floats]]:
@@ -350,7 +350,8 @@ class Stand(KeepsState):
             heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
             heads[:] = model.bank.heads
             block = np.zeros((model.tree.n_segments, 7))
-            scratch.append((heads, bank.work.copy(), np.zeros(len(bank.shapes)), block))
+            bases = np.zeros_like(model.bank.bases)
+            scratch.append((heads, bases, bank.room_for_rotations(), block))
         return scratch
 
     @property
@@ -401,9 +402,9 @@ class Stand(KeepsState):
         if number in self.own:
             return self.own[number].rotations()
         bank, here = self._banks[self._standing['kind'][number]], slice(number, number + 1)
-        found = np.zeros(len(bank.shapes))
-        expand_one(bank.record, self._instances[here], bank.all_shapes, found)
-        return found
+        found = bank.room_for_rotations()
+        expand_one(bank.record, self._instances[here], bank.laid_shapes, found)
+        return found[: len(bank.shapes)]
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
@@ -419,10 +420,10 @@ class Stand(KeepsState):
             if own:
                 own.place_rotations(x, rows)
                 continue
-            heads, work = self._scratch[0][kind][:2]
+            heads, bases = self._scratch[0][kind][:2]
             east, north, up = here['at'].tolist()
             place_standing_at(
-                records.branches, records.segments, heads, work, x, east, north, up,
+                records.branches, records.segments, heads, bases, x, east, north, up,
                 float(here['cosine']), float(here['sine']), float(here['scale']), rows,
             )  # fmt: skip
         return poses

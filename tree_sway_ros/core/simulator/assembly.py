@@ -198,6 +198,11 @@ class Bank:
     plain: bool = bool(WHY_PLAIN)
 
     @cached_property
+    def bases(self) -> Floats:
+        """What `place` writes of bases, (b, 8)."""
+        return np.zeros((len(self.branches), 8))
+
+    @cached_property
     def _plain_placing(self) -> NumpyPlacing:
         from tree_sway_ros.core.motion.numpy_placing import NumpyPlacing
 
@@ -205,7 +210,7 @@ class Bank:
 
     @cached_property
     def _compiled_placing(self) -> Callable[[Floats, Floats, Floats], None]:
-        arrays = (self.branches, self.segments, self.heads, self.oscillators.work)
+        arrays = (self.branches, self.segments, self.heads, self.bases)
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
         return partial(entry_of(place, *arrays, *given), *arrays)
 
@@ -214,7 +219,7 @@ class Bank:
         """Place every segment as the oscillators stand, from a root node (3,) on, as `place`."""
         if self.frozen is None and self.oscillators.is_tabled:
             tabled = cast('WindBasisBank', self.oscillators)
-            return tabled.placing(self.segments, self.heads)
+            return tabled.placing(self.segments, self.heads, self.bases)
         return lambda origin, out: self.place(self.oscillators.rotations(), origin, out)
 
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
@@ -228,7 +233,7 @@ class Bank:
             return
         self._compiled_placing(rotations, origin, out)
         if self.frozen is not None:
-            self.frozen.place(self.branches, self.oscillators.work, rotations, out)
+            self.frozen.place(self.branches, self.bases, rotations, out)
 
 
 def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:

@@ -35,7 +35,7 @@ class TreeFile:
         otherwise in place of the table's values.
     source
         Where it came from: a path, or the name of a built-in tree.
-    notes
+    notes : tuple of str
         What the importer changed or left out, one sentence each; empty if nothing.
     origin
         Where the tree's zero is in the frame of the file in [m].
@@ -50,7 +50,7 @@ class TreeFile:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about the tree, one sentence each, as of `doubts`."""
+        """Tell what is odd about the tree, one sentence each, as of `doubts`."""
         return doubts(self.tree, self.species)
 
     def of_species(self, species: Species) -> TreeFile:
@@ -58,9 +58,7 @@ class TreeFile:
         return replace(self, tree=replace(self.tree, species=species.key), species=species)
 
     def checked(self) -> TreeFile:
-        """
-        Return the same tree if its numbers can be those of one, else raise as `refuse_nonsense`.
-        """
+        """Return the same tree if it can be one, else raise as `refuse_nonsense`."""
         try:
             refuse_nonsense(self.tree, self.species)
         except TreeSwayError as error:
