@@ -101,8 +101,12 @@ def place_standing_at(
             else:
                 if not farthest <= SERIES_LIMIT:
                     _bend_far(segment, scratch, head.n_rows)
+                elif head.n_rows > 2 and not is_near:
+                    _bend(segment, scratch, LANES, False)
+                elif head.n_rows > 2 and 2 * segment.n_lanes <= LANES:
+                    _bend(segment, scratch, LANES // 2, True)
                 elif head.n_rows > 2:
-                    _bend(segment, scratch)
+                    _bend(segment, scratch, LANES, True)
                 else:
                     _bend_in_plane(segment, scratch)
                 if head.is_joined:
@@ -331,11 +335,15 @@ def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Fl
 
 
 @inlined
-def _half_vector(segment: Record, scratch: Record, j: int) -> tuple[float, float, float]:
+def _half_vector(
+    segment: Record, scratch: Record, j: int, is_near: bool
+) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
-    far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
-    hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
+    hx, hy, hz = 0.0, 0.0, 0.0
+    if not is_near:
+        far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
+        hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
     # All rows that there is room for: a count known when compiled lets the lanes be a vector.
     for c in range(turn.shape[0]):
         key = half_key[c, j]
@@ -425,12 +433,15 @@ def _bend_in_plane(segment: Record, scratch: Record) -> None:
 
 
 @fused
-def _bend(segment: Record, scratch: Record) -> None:
-    """Turn sixteen segments of branches with further coordinates."""
+def _bend(segment: Record, scratch: Record, n_lanes: int, is_near: bool) -> None:
+    """Turn segments of branches with further coordinates, in the first lanes."""
     base = scratch.base
-    for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, scratch, j)
-        c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
+    for j in range(n_lanes):
+        hx, hy, hz = _half_vector(segment, scratch, j, is_near)
+        if is_near:
+            c, s = half_angle_near(hx * hx + hy * hy + hz * hz)
+        else:
+            c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
         _turn(segment, scratch, j, qw, qx, qy, qz)
@@ -442,7 +453,7 @@ def _bend_far(segment: Record, scratch: Record, n_rows: int) -> None:
     base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):
         if n_rows > 2:
-            hx, hy, hz = _half_vector(segment, scratch, j)
+            hx, hy, hz = _half_vector(segment, scratch, j, False)
         else:
             slope = segment.slope[j]
             slope += scratch.blend[j] * (segment.tip_slope[j] - slope)
