@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How files of this package name their licence, for `ament_copyright`, which knows long headers
-alone.
+How files of this package name their licence, for `ament_copyright`, which knows long headers.
 
 It finds this by the entry point ``ament_copyright.license`` of setup.py, and nobody else needs it.
 """

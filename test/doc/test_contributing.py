@@ -42,12 +42,12 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
     [
         (
             'A new species', 'tree_sway_ros/core/tree/species.py',
-            [r'^ +_species\("ash"'], 'test/core/tree/test_species.py', 'poplar',
+            [r"^ +_species\('ash'"], 'test/core/tree/test_species.py', 'poplar',
             "from tree_sway_ros import species_named; print(species_named('poplar').title)",
         ),
         (
             'A new model of the wind', 'tree_sway_ros/core/wind/simulated/spectra.py',
-            [r'^SPECTRA = ', r'^ +"kaimal": '], 'test/core/wind/simulated/test_spectra.py',
+            [r'^SPECTRA = ', r"^ +'kaimal': "], 'test/core/wind/simulated/test_spectra.py',
             'between',
             "from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS as n;"
             "print(*next(p for p in n['anemometer'] if p.name == 'turbulence').choices)",

@@ -58,10 +58,7 @@ class TextTable:
         return f'{self.source}:{self.header_line if row is None else self.numbers[row]}'
 
     def index_of(self, name: str) -> int:
-        """
-        Position of a column, whatever the case of its name; a `FormatError` if there is
-        none.
-        """
+        """Position of a column, whatever the case of its name; a `FormatError` if it lacks."""
         for index, column in enumerate(self.columns):
             if column.lower() == name.lower():
                 return index
@@ -147,10 +144,7 @@ class TextTable:
         return 'not a row of numbers'
 
     def whole(self, values: Floats, name: str) -> Ints:
-        """
-        Return a column of whole numbers; a `FormatError` for a fraction, or out of any table's
-        reach.
-        """
+        """Return a column of whole numbers; a `FormatError` for fractions or out of reach."""
         for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
             raise FormatError(
                 f'{name} is {values[row]:g}, not a whole number', where=self.where(row)
@@ -174,8 +168,7 @@ class TextTable:
         self, number: str, parent: str, none: Sequence[int], what: str
     ) -> tuple[list[str], Ints]:
         """
-        Return what an error calls each row (``what`` and number), and the row of its parent, -1
-        for none.
+        Return what an error calls each row (``what`` and number), and its parent's row, or -1.
 
         ``none`` are the parent numbers that mean there is none. A number that stands twice is a
         `FormatError`, a parent that is not there a `TreeError`.

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Write a file whole or not at all: what stood there before stays until the new one is
-complete.
-"""
+"""Write a file whole or not at all: what stood there stays until the new one is complete."""
 
 from __future__ import annotations
 
@@ -19,8 +17,7 @@ from tree_sway_ros.files.text_file import path_of
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
     """
-    Give a path to write to, which takes the place of the file when the block ends without an
-    error.
+    Give a path to write to, which takes the place of the file when the block ends well.
 
     It is a new, empty file of the same suffix in the same folder. A link is followed; a device or
     a pipe is written to directly. A `FormatError` tells that the file cannot be written, or that

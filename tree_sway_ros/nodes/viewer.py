@@ -144,7 +144,7 @@ def _reason(answer: Any) -> str:
 
 
 def _controls() -> tuple[Control, ...]:
-    """What viewers may change, with the ranges of the nodes' parameters."""
+    """Make what viewers may change, with the ranges of the nodes' parameters."""
     controls = []
     for name, (node, label) in _LIVE.items():
         parameter = next(p for p in NODE_PARAMETERS[node] if p.name == name)

@@ -82,7 +82,7 @@ def refusal(
 
 
 def _name_of(host: str) -> str:
-    """A Host header without its port."""
+    """Return a Host header without its port."""
     if host.startswith('['):
         return host.partition(']')[0].lstrip('[')
     return host.rpartition(':')[0] or host

@@ -149,7 +149,7 @@ class StreamClient:
 
     @property
     def description(self) -> Description | None:
-        """What the server described; None before that."""
+        """Return what the server described; None before that."""
         placer = self._placer
         return None if placer is None else placer.description
 

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer may change: each control with its range, and how a change is applied or
-refused.
-"""
+"""What a viewer may change: each control with its range, and how a change is applied."""
 
 from __future__ import annotations
 

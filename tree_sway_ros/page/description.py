@@ -1,8 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a receiver needs to rebuild every pose from a frame: of each kind of tree the rest geometry,
-how its branches bend, and the basis of its state; of each tree its kind, and where it stands.
+What a receiver needs to rebuild every pose from a frame.
+
+Of each kind of tree it is the rest geometry, how its branches bend, and the basis of its state; of
+each tree its kind, and where it stands.
 
 A branch that moves with its parent as one body has no coordinate, and slopes of 0. A kind stands
 with its root node at the origin.

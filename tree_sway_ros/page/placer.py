@@ -52,7 +52,7 @@ class Placer:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments."""
+        """Return the number of segments."""
         return int(self._n)
 
     def rotations(self, frame: Frame) -> Floats:

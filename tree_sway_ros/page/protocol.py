@@ -62,10 +62,7 @@ class ToldPlace(TypedDict):
 
 
 class ToldHeader(TypedDict):
-    """
-    Names and numbers of a tree or a scene, as JSON has them; ``doc/streaming.md`` tells
-    each.
-    """
+    """Names and numbers of a tree or a scene in JSON; ``doc/streaming.md`` tells each."""
 
     format: str
     name: str
@@ -131,7 +128,7 @@ class Description:
 
     @property
     def short_identity(self) -> int:
-        """What frames carry of the identity."""
+        """Return what frames carry of the identity."""
         return int(self.identity[:8], 16)
 
     @property
@@ -150,7 +147,7 @@ class Description:
 
     @cached_property
     def scale(self) -> Floats:
-        """What full scale of each coordinate of all trees stands for, (m,)."""
+        """Return what full scale of each coordinate of all trees stands for, (m,)."""
         scales = [self.arrays[f'{tree["kind"]}/basis_scale'] for tree in self.header['trees']]
         return np.concatenate(scales).astype(np.float64)
 

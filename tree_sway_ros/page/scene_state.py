@@ -87,7 +87,7 @@ class SceneState:
         self._sequence = 0
 
     def _lay_out(self, name: str) -> None:
-        """Number the coordinates of all trees, one tree after another."""
+        """Give the coordinates of all trees numbers, one tree after another."""
         sizes = np.zeros(len(self.names), dtype=np.int64)
         for kind in self.kinds:
             sizes[kind.numbers] = len(kind.basis.scale)
@@ -113,7 +113,7 @@ class SceneState:
 
     @property
     def coordinate_names(self) -> list[str]:
-        """A name per coordinate: ``tree/c0``, or ``c0`` of a tree alone."""
+        """Return a name per coordinate: ``tree/c0``, or ``c0`` of a tree alone."""
         is_alone = len(self.names) == 1
         return [
             f'c{i}' if is_alone else f'{name}/c{i}'

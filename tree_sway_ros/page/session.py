@@ -156,7 +156,7 @@ class Session:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
 
     def status(self) -> dict[str, object]:
-        """What the page shows beside the tree."""
+        """Return what the page shows beside the tree."""
         simulator = self._scene.simulator
         return {
             'model': simulator.model,

@@ -113,15 +113,14 @@ def _coordinates(ways: list[tuple[Floats, TreeSimulator]]) -> Floats:
 
 
 def _shape(simulator: TreeSimulator) -> bytes:
-    """What is the same of trees that are turned about the vertical, to a micrometre."""
+    """Return what is the same of trees turned about the vertical, to a micrometre."""
     tree, chord = simulator.tree, simulator.joints['frame'][:, 0, 2]
     return np.round([*chord, *tree.length, *tree.base_diameter, *tree.tip_diameter], 6).tobytes()
 
 
 def _turned(kind: ToldKind, simulator: TreeSimulator) -> tuple[float, Floats] | None:
     """
-    How far a tree is turned from the first of a kind, and the way from its key rotations to the
-    coordinates; None if it is not the same tree.
+    Turn of a tree from the first of its kind, and key rotations to coordinates; None if unlike.
 
     Each branch has axes e1, e2 and further key rotations of its own choice: what the solver says
     is turned into those of the first tree.
@@ -178,10 +177,7 @@ def _further_turns(joint: np.void, segments: NDArray[np.void]) -> Floats:
 
 
 def _runner(simulator: TreeSimulator, is_running: bool) -> SwaySimulator:
-    """
-    Simulator to find the basis on: itself, unless it runs or another has the same key rotations at
-    less cost.
-    """
+    """Choose the simulator to find the basis on: this one if it is at rest and no dearer."""
     is_cheap = isinstance(simulator, SwaySimulator) and simulator.model != 'coupled'
     if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:
         return simulator

@@ -31,8 +31,7 @@ _SECOND = 1_000_000_000
 
 class Site:
     """
-    Steps a tree along samples of wind, at a whole rate [Hz] that every site has; any thread may
-    call it.
+    Steps a tree along samples of wind, at a whole rate [Hz] that all sites have, from any thread.
 
     ``stepped`` is called after each step with its end [ns] and its mean wind [m/s].
     """
@@ -52,7 +51,7 @@ class Site:
         """Snapshots that were set."""
 
     def identity(self) -> str:
-        """What sites must agree in, as JSON."""
+        """Return what sites must agree in, as JSON."""
         simulator = self.simulator
         told = {'tree': simulator.tree.name, 'digest': simulator.digest(), 'rate': self.rate}
         return json.dumps({**told, 'model': simulator.model})
@@ -91,10 +90,7 @@ class Site:
             return json.dumps({'step': self._index, 'wind': wind, 'state': state})
 
     def join(self, snapshot: str) -> None:
-        """
-        Go on from where another site is; a `StateError` for a snapshot of another tree, or none at
-        all.
-        """
+        """Go on from where another site is; a `StateError` for none, or another tree's."""
         try:
             told = json.loads(snapshot)
             state = TreeState.from_bytes(base64.b64decode(told['state']))

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A sample of wind as the CDR bytes of ``geometry_msgs/Vector3Stamped``, written and read without
-ROS.
+A sample of wind as CDR bytes of ``geometry_msgs/Vector3Stamped``, read and written without ROS.
 
 The bytes are those that a Zenoh bridge of ROS 2 carries, so that it may stand at either end.
 """
@@ -28,9 +27,7 @@ def encode_wind(stamp: int, vector: tuple[float, float, float], frame_id: str = 
 
 
 def decode_wind(data: bytes) -> tuple[int, tuple[float, float, float]]:
-    """
-    Read a sample, its time [ns] and the vector [m/s]; a `FormatError` for bytes that hold none.
-    """
+    """Read a sample: its time [ns] and vector [m/s]; a `FormatError` if the bytes hold none."""
     try:
         second, nanosecond, length = _STAMP.unpack_from(data, len(_HEAD))
         begin = _STAMP.size + length

@@ -109,11 +109,7 @@ def tapered_stem(
 
 
 class _Order(NamedTuple):
-    """
-    Branches of one order: length, diameters at base and tip, and where along them their children
-    sit.
-
-    """
+    """Branches of one order: length, diameters at base and tip, and where their children sit."""
 
     length: float
     base: float
@@ -122,10 +118,7 @@ class _Order(NamedTuple):
 
 
 def _grown(orders: list[_Order], segments: int, angle: float, name: str) -> Tree:
-    """
-    Grow straight branches, each a golden angle round from the one before and so many degrees off.
-
-    """
+    """Grow straight branches, each a golden angle round from the last and so far off in [deg]."""
     place = np.linspace(0.0, 1.0, segments + 1)
     shoots = [(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0, -1)]
     turns = 0

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments that commands share: TREE and its wood, its leaves, the wind, the model, the
-output.
-"""
+"""Arguments that commands share: TREE, its wood and leaves, the wind, the model, the output."""
 
 from __future__ import annotations
 
@@ -38,10 +36,7 @@ _DRAWN = 1500
 def add_tree_arguments(
     parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
 ) -> None:
-    """
-    Add TREE, which may be a forest, and what can be said of its wood; the default may not be left
-    out.
-    """
+    """Add TREE, maybe a forest, and what tells its wood; a default may not be left out."""
     add = parser.add_argument
     kind = f'{_TREE}{" of a tree or a forest" * forests}'
     if default is None:
@@ -168,9 +163,7 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
 
 
 def opened_wind(arguments: argparse.Namespace) -> WindSource:
-    """
-    Open the record that the arguments name, over and over, or the simulated wind of their speed.
-    """
+    """Open the record that arguments name, over and over, or simulated wind of their speed."""
     if arguments.wind is not None:
         record = opened_record(arguments)
         return RecordedWind(record.time, record.velocity)

@@ -104,7 +104,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _measured(arguments: argparse.Namespace) -> SwayEstimate:
-    """What the record says, also printed."""
+    """Tell what the record says, also in print."""
     record = read_csv_sway(path_of(arguments.record))
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     try:
@@ -123,7 +123,7 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
 
 
 def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
-    """What changed, for people; `error` is the relative standard error of the frequency."""
+    """Say what changed, for people; `error` is the frequency's relative standard error."""
     after, table = fitted.species, species_named(before.key)
     moduli = [species_named(key).modulus / 1e9 for key in species_keys()]
     was = (

@@ -171,9 +171,7 @@ def _show_warning(message: Warning | str, *_where: Any) -> None:
 
 
 def _write_any_name() -> None:
-    """Let names that a terminal has no letters for be printed with escapes, not end the
-    program.
-    """
+    """Have names that a terminal has no letters for printed with escapes, instead of a crash."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors='backslashreplace')
@@ -202,9 +200,7 @@ def _module(command: str) -> Any:
 
 
 def _parser(chosen: str) -> _OneLineParser:
-    """
-    Parser of all commands; only the chosen one's arguments, as the others' modules may be slow.
-    """
+    """Parse all commands, but only the chosen one's arguments, as importing others takes long."""
     parser = _OneLineParser(prog='tree-sway', description='Trees that sway in measured wind.')
     version = importlib.import_module('tree_sway_ros').__version__
     parser.add_argument('--version', action='version', version=version)

@@ -97,14 +97,14 @@ def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
 
 
 def size_of(tree: Tree) -> str:
-    """Number of branches and segments, of trees if there are more, and height, for people."""
+    """Tell branches and segments, trees if there are more, and height, for people."""
     n_trees = int((tree.branch_parent < 0).sum())
     trees = f'{n_trees} trees, ' if n_trees > 1 else ''
     return f'{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
 
 
 def _tree_of(scene: TreeFile | ForestFile, arguments: argparse.Namespace, folder: Path) -> str:
-    """What the solver opens: TREE, or a file of it with the wood and the options given here."""
+    """Return what the solver opens: TREE, or a file of it with the wood and the options given."""
     told = (arguments.seed, arguments.option, arguments.modulus, arguments.density)
     if not any(told) or not isinstance(scene, TreeFile):
         return str(arguments.tree)

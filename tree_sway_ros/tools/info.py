@@ -86,7 +86,7 @@ def _facts(
 
 
 def _tree_facts(tree_file: TreeFile, settings: Settings, count: int) -> dict[str, Any]:
-    """What there is to say about a tree, in SI units, fit for JSON."""
+    """Gather what there is to say about a tree, in SI units, fit for JSON."""
     tree, species = tree_file.tree, tree_file.species
     settings = in_season(tree, species, settings)
     notes = list(tree_file.notes)

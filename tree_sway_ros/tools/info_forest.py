@@ -17,10 +17,7 @@ _SUMS = ('branches', 'segments', 'volume', 'mass')
 def forest_facts(
     forest: ForestFile, facts_of: Callable[[TreeFile, bool], dict[str, Any]], told: bool | None
 ) -> dict[str, Any]:
-    """
-    Gather what there is to say about a forest, in SI units, fit for JSON; ``facts_of`` says it of
-    a tree.
-    """
+    """Gather what a forest is, in SI units, fit for JSON; ``facts_of`` says it of a tree."""
     trees = []
     for each in forest.trees:
         species = each.species if each.species is not None else species_named(each.tree.species)

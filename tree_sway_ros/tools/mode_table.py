@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Natural modes for people: frequency, damping, the direction a mode sways in, and the branch that
-bends most.
-"""
+"""Natural modes for people: frequency, damping, direction, and the branch that bends most."""
 
 from __future__ import annotations
 
@@ -37,7 +34,7 @@ class ModeRow:
 
     @property
     def direction(self) -> str:
-        """The axis for people: degrees from east to north, and upwards where it is not level."""
+        """Tell the axis for people: degrees from east to north, and upwards if not level."""
         x, y, z = self.axis if self.axis[np.argmax(np.abs(self.axis))] > 0.0 else -self.axis
         level = float(np.hypot(x, y))
         up = float(np.degrees(np.arctan2(z, level)))

@@ -36,9 +36,7 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def page_settings(arguments: argparse.Namespace) -> PageSettings:
-    """
-    Settings of the page's server from the arguments; a `ParameterError` for a port that is none.
-    """
+    """Make settings of the page's server from the arguments; a `ParameterError` for a bad port."""
     port = arguments.port
     if port is None:
         port = _PORT if _is_free(arguments.address, _PORT) else 0

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-``tree-sway plot``: the wind and the motion of the tip over time, or with ``--portrait`` the tree
-itself.
-"""
+"""``tree-sway plot``: wind and motion of the tip over time, or by ``--portrait`` the tree."""
 
 from __future__ import annotations
 
@@ -103,7 +100,7 @@ def _portrait(scene: TreeFile | ForestFile, arguments: argparse.Namespace, outpu
 
 
 def _simulator(scene: TreeFile | ForestFile, arguments: argparse.Namespace) -> Simulator:
-    """Simulator of what is drawn; of a scan too noisy to stand, without its weight."""
+    """Simulate what is drawn; a scan too noisy to stand has no weight."""
     model: dict[str, Any] = {'model': arguments.model, 'in_leaf': told_leaves(arguments)}
     try:
         with waiting('setting up the tree'):

@@ -144,7 +144,7 @@ class _Relay:
                 return
 
     def _winds(self) -> Iterator[tuple[int, Any]]:
-        """Samples when they are due: of ROS, a record or the simulation."""
+        """Give samples when they are due: of ROS, a record or the simulation."""
         if self._ros is not None:
             while True:
                 yield from map(decode_wind, self._ros.taken(_LOOK))
@@ -234,7 +234,7 @@ class _RosWind(Listener):
             self.publish = self.node.create_publisher(kind, name, quality).publish
 
     def taken(self, seconds: float) -> list[bytes]:
-        """What has come, after waiting so long for more [s]."""
+        """Take what has come, after waiting so long for more [s]."""
         self.spin_once(seconds)
         taken = self._heard.copy()
         self._heard.clear()

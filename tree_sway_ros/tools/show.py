@@ -131,7 +131,7 @@ def stand(scene: TreeFile, count: int, fidelity: str) -> StandFile:
 
 
 def _controls(choices: Choices, wind: WindSource) -> tuple[Control, ...]:
-    """What viewers may change, with the ranges of the nodes' parameters."""
+    """Make what viewers may change, with the ranges of the nodes' parameters."""
     controls = []
     if isinstance(wind, SimulatedWind):
         for name in ('mean_speed', 'intensity', 'bearing_to'):

@@ -61,8 +61,7 @@ def _spray_of(species: str) -> _Spray:
 
 def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floats]:
     """
-    Blades of clusters at poses (m, 7) of diameters [m], (m,); those of conifers are narrow and
-    more.
+    Blades of clusters at poses (m, 7) of diameters [m], (m,); conifers' are narrow and more.
 
     Returns
     -------
@@ -85,8 +84,7 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
 
 def leaf_colors(species: str, normal: Floats, depth: Floats, camera: Camera) -> Floats:
     """
-    Colour of each blade, (k, 3), by the unit vector across it, (k, 3), and how far back it stands,
-    0 to 1.
+    Colour of each blade by the unit vector across it and how far back it is, 0 to 1, (k, 3).
 
     The light comes from above and over the viewer's left shoulder.
     """

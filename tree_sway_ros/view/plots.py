@@ -75,7 +75,7 @@ def plot_wind_and_tip(
 
 
 def _readable(moved: Floats) -> tuple[str, float]:
-    """Unit in which the displacement reads well, and its factor from metres."""
+    """Choose the unit in which the displacement reads well, and its factor from metres."""
     largest = float(np.abs(moved).max())
     return ('m', 1.0) if largest >= 1.0 else ('cm', 100.0) if largest >= 0.01 else ('mm', 1000.0)
 

@@ -16,10 +16,7 @@ if TYPE_CHECKING:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """
-    Make an empty figure of a size in [inch]; a `MissingDependencyError` if matplotlib is not
-    there.
-    """
+    """Make an empty figure of a size [inch]; a `MissingDependencyError` without matplotlib."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure

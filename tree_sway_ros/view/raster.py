@@ -21,10 +21,7 @@ _SHADOW = '#e2e2e0'
 
 
 class Raster:
-    """
-    Paints a tree, frame by frame, ``pixels`` high; a `MissingDependencyError` if pillow is not
-    there.
-    """
+    """Paints a tree, frame by frame, ``pixels`` high; a `MissingDependencyError` if it cannot."""
 
     def __init__(self, tree: Tree, camera: Camera, frame: Frame, pixels: int) -> None:
         try:

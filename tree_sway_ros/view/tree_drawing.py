@@ -50,8 +50,7 @@ def frame_around(
     points: Floats, camera: Camera, margin: float = 0.06, headroom: float = 0.0
 ) -> Frame:
     """
-    Frame all points [m], (..., 3), that must be in it, with a margin round them and headroom
-    above.
+    Frame all points [m], (..., 3), with a margin round them and headroom above.
 
     Both are over its height, or over what is much wider than high.
     """
@@ -149,9 +148,7 @@ def painted_shapes(
 
 
 def draw_ghost(axes: Axes, tree: Tree, camera: Camera) -> None:
-    """
-    Draw the tree at rest as a pale shape behind whatever else is drawn, to see how far it moved.
-    """
+    """Draw the tree at rest as a pale shape behind what is drawn, to see how far it moved."""
     from matplotlib.collections import PolyCollection
 
     base, tip = camera.project(tree.start), camera.project(tree.end)
@@ -229,7 +226,7 @@ def ground_shapes(
     tree: Tree, camera: Camera
 ) -> tuple[list[tuple[Floats, str]], tuple[tuple[float, float], float, float]]:
     """
-    What a tree stands in or on, on the picture plane in [m].
+    Shape what a tree stands in or on, on the picture plane in [m].
 
     Corners and colour of each part of the pot of a pot plant; the ellipse of the shadow of any
     other: its middle, width and height.

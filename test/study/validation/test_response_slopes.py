@@ -9,6 +9,7 @@ import pytest
 
 from tree_sway_ros.core.wind.crown_wind import USUAL_COHERENCE
 from tree_sway_ros.study.validation.response_slopes import response_slopes, slope_above
+from tree_sway_ros.study.validation.sections.slopes import FLATTEST, SEEDS, STEEPEST
 
 RATE = 30.0
 
@@ -43,6 +44,10 @@ def test_the_tip_of_a_broadleaf_falls_more_steeply_than_the_strain_of_its_stem()
 @pytest.mark.parametrize('in_leaf', [False, True])
 @pytest.mark.parametrize('species', ['spruce', 'pine', 'birch', 'walnut'])
 def test_the_strain_falls_as_on_real_trees_with_gusts_limb_by_limb(species, in_leaf):
-    slopes = response_slopes(species, coherence=USUAL_COHERENCE, in_leaf=in_leaf)
-    assert len(slopes.strain)
-    assert all(-6.2 <= each <= -2.0 for each in slopes.strain)
+    trees = [
+        response_slopes(species, coherence=USUAL_COHERENCE, in_leaf=in_leaf, seed=seed)
+        for seed in SEEDS
+    ]
+    mean = np.mean([tree.strain for tree in trees], axis=0)
+    assert mean.shape == (2,)
+    assert ((mean >= STEEPEST) & (mean <= FLATTEST)).all()

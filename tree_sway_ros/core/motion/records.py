@@ -107,6 +107,13 @@ def zeros_in_lines(count: int, layout: np.dtype[np.void]) -> Records:
     return memory[first : first + count * layout.itemsize].view(layout)
 
 
+def in_lines(records: Records) -> Records:
+    """Copy records to where a cache line begins."""
+    copy = zeros_in_lines(len(records), records.dtype)
+    copy[:] = records
+    return copy
+
+
 @cache
 def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
     """

@@ -15,11 +15,11 @@ from functools import partial
 import numpy as np
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.kernel import entry_of, WHY_PLAIN
+from tree_sway_ros.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway_ros.core.motion.numpy_passes import into_lanes
 from tree_sway_ros.core.motion.tree_passes import set_gusts
 from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind
+from tree_sway_ros.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, push_wind
 
 
 def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
@@ -40,15 +40,13 @@ class CrownGusts:
     def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
         """Start without wind."""
         self.wind, self._delays = CrownWind(delays.spread, coherence), delays
-        self._hand_out: Callable[[Floats], None] | None = None
+        self._loads = loads
+        self._compiled: Callable[[float, float, float, float], None] | None = None
         if loads is not None:
             into_lanes(delays.of_branch, loads['delay'])
-            self._hand_out = self._plainly(loads)
             if not WHY_PLAIN:
-                self._hand_out = partial(entry_of(set_gusts, loads, np.zeros((1, 3))), loads)
-
-    def _plainly(self, loads: Records) -> Callable[[Floats], None]:
-        return lambda apart: into_lanes(apart[self._delays.of_branch], loads['gust'])
+                parts = loads, self.wind.record
+                self._compiled = partial(entry_of(_hand_out, *parts, 0.0, 0.0, 0.0, 0.0), *parts)
 
     def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -56,9 +54,19 @@ class CrownGusts:
 
         That is what was given, or the mean of the limbs' where the model knows even winds alone.
         """
+        if self._compiled is not None:
+            self._compiled(x, y, z, dt)
+            return x, y, z
         apart = self.wind.push(x, y, z, dt)
-        if self._hand_out is not None:
-            self._hand_out(apart)
+        if self._loads is not None:
+            into_lanes(apart[self._delays.of_branch], self._loads['gust'])
             return x, y, z
         ax, ay, az = (self._delays.share @ apart).tolist()
         return x + ax, y + ay, z + az
+
+
+@kernel
+def _hand_out(loads: Records, crowns: Records, x: float, y: float, z: float, dt: float) -> None:
+    """Push the wind and give every branch that of its delay."""
+    push_wind(crowns, x, y, z, dt)
+    set_gusts(loads, crowns[0].apart)

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway_ros.core.arrays import Floats, Ints
+from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.kernel import entry_of, kernel
 from tree_sway_ros.core.wind.gust_travel import (
@@ -58,6 +58,20 @@ _SLOWEST = 2.0
 _AVERAGING = 30.0
 _CAPACITY = 256
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+
+_LAYOUT = np.dtype(
+    [
+        ('run', 'f8', (_CAPACITY, 4)),  # time and run of the wind, as `remember` has them
+        ('at', 'i8', (2,)),
+        ('mean', 'f8', (3,)),
+        ('delay', 'f8'),  # the longest [s]
+        ('behind', 'f8', (N_DELAYS, 3)),  # run of each delay behind the wind's [m]
+        ('apart', 'f8', (N_DELAYS, 3)),  # wind of each delay less the wind [m/s]
+        ('spread', 'f8'),
+        ('coherence', 'f8'),
+    ]
+)
+_CARRIED = 'run', 'at', 'mean', 'delay', 'behind'
 
 
 class CrownDelays(NamedTuple):
@@ -133,12 +147,9 @@ class CrownWind:
 
     def __init__(self, spread: float, coherence: float) -> None:
         """Start without wind."""
-        self._spread = spread
-        self._coherence = within('crown_coherence', coherence, 0.0, 1.0)
-        self._run = np.zeros((_CAPACITY, 4))
-        self._at = np.zeros(2, dtype=np.int64)
-        self._mean, self._delay = np.zeros(3), np.zeros(1)
-        self._apart = np.zeros((N_DELAYS, 3))
+        self.record = np.zeros(1, dtype=_LAYOUT)
+        self.record['spread'] = spread
+        self.record['coherence'] = within('crown_coherence', coherence, 0.0, 1.0)
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
@@ -147,19 +158,15 @@ class CrownWind:
         It is the same array each time.
         """
         self._compiled(x, y, z, dt)
-        return self._apart
+        return np.asarray(self.record['apart'][0])
 
     @cached_property
     def _compiled(self) -> Callable[[float, float, float, float], None]:
-        arrays = (
-            self._run, self._at, self._mean, self._delay, self._apart, self._spread,
-            self._coherence,
-        )  # fmt: skip
-        return partial(entry_of(_push, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+        return partial(entry_of(push_wind, self.record, 0.0, 0.0, 0.0, 0.0), self.record)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
         """Return views of what is carried from one step to the next."""
-        return self._run, self._at, self._mean, self._delay
+        return tuple(self.record[name] for name in _CARRIED)
 
     def follow(self, other: CrownWind) -> None:
         """Go on with the wind that another has felt."""
@@ -170,35 +177,37 @@ class CrownWind:
         """Forget the wind."""
         for array in self.memory():
             array[...] = 0
-        self._apart[:] = 0.0
+        self.record['apart'] = 0.0
 
 
 @kernel
-def _push(
-    run: Floats, at: Ints, mean: Floats, delay: Floats, apart: Floats,
-    spread: float, coherence: float, x: float, y: float, z: float, dt: float,
-) -> None:  # fmt: skip
-    """Remember a step, let the longest delay follow the mean wind, and read all delays."""
+def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
+    """Do what `CrownWind.push` does, for the first record of an array."""
+    here = crowns[0]
+    run, at, mean, behind, apart = here.run, here.at, here.mean, here.behind, here.apart
     is_first = at[1] == 0
     remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
     follow_mean(mean, x, y, dt, _AVERAGING)
     speed = max(math.hypot(mean[0], mean[1]), _SLOWEST)
-    goal, most, before = min(spread / speed, LONGEST_DELAY), LARGEST_STRETCH * dt, delay[0]
-    delay[0] = goal if is_first else min(max(goal, before - most), before + most)
-    before = goal if is_first else before
-    now, rest = run[at[0], 0], 1.0 - coherence
-    begin_cell = end_cell = at[0] - 1
+    goal, most = min(here.spread / speed, LONGEST_DELAY), LARGEST_STRETCH * dt
+    before = goal if is_first else here.delay
+    delay = min(max(goal, before - most), before + most)
+    here.delay = delay
+    head, cell, rest = run[at[0]], at[0] - 1, 1.0 - here.coherence
     for j in range(1, len(apart)):
         share = j / (len(apart) - 1)
-        begin, end = now - dt - share * before, now - share * delay[0]
-        begin_cell = _cell_before(run, at, begin_cell, begin)
-        end_cell = _cell_before(run, at, end_cell, end)
-        ax, ay, az = _run_in(run, begin_cell, begin)
-        bx, by, bz = _run_in(run, end_cell, end)
-        per_span = rest / (end - begin)
-        apart[j, 0] = per_span * (bx - ax) - rest * x
-        apart[j, 1] = per_span * (by - ay) - rest * y
-        apart[j, 2] = per_span * (bz - az) - rest * z
+        if is_first:
+            lag = share * before
+            behind[j, 0], behind[j, 1], behind[j, 2] = lag * x, lag * y, lag * z
+        late = share * delay
+        cell = _cell_before(run, at, cell, head[0] - late)
+        bx, by, bz = _run_in(run, cell, head[0] - late)
+        per_span = rest / (dt + share * (before - delay))
+        bx, by, bz = head[1] - bx, head[2] - by, head[3] - bz
+        apart[j, 0] = per_span * (x * dt + behind[j, 0] - bx) - rest * x
+        apart[j, 1] = per_span * (y * dt + behind[j, 1] - by) - rest * y
+        apart[j, 2] = per_span * (z * dt + behind[j, 2] - bz) - rest * z
+        behind[j, 0], behind[j, 1], behind[j, 2] = bx, by, bz
 
 
 @kernel

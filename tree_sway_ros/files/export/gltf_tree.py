@@ -98,8 +98,7 @@ def morphing_tree(
     simulator: Swaying, leaves: LeafClusters | None = None
 ) -> tuple[GltfDocument, LinearForm]:
     """
-    Return a tree, as a simulator on any model has it, as a mesh with a morph target per
-    coordinate.
+    Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
     the basis; 1 is as far as it goes in a storm. An animation plays a breeze.
@@ -185,7 +184,7 @@ def _swung(simulator: Swaying, basis: StateBasis, k: int, size: float) -> tuple[
 
 
 def _change(mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
-    """What a coordinate's unit does to the vertices: half from one side to the other, (v, 3)."""
+    """Return what a coordinate's unit does to vertices, half from each side to the other."""
     return 0.5 * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 

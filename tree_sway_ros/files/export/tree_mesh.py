@@ -32,17 +32,16 @@ class TreeMesh:
     triangles: Ints
 
     def placed(self, poses: Floats) -> Floats:
-        """
-        Vertices in the frame of a pose block (n, 7) (x y z, quaternion x y z w) in [m], (v, 3).
-        """
+        """Vertices [m], (v, 3), in the frame of poses (n, 7): x y z, and quaternion x y z w."""
         rotation = Rotation.from_quat(poses[self.segment, 3:])
         return poses[self.segment, :3] + rotation.apply(self.points)
 
 
 def wood_mesh(tree: Tree) -> TreeMesh:
     """
-    Return a closed cone per segment, round in its normals, with flat ends, as 4 `SIDES` vertices:
-    two rings for its side and one for each end.
+    Return a closed cone per segment, round in its normals, with flat ends.
+
+    It has 4 `SIDES` vertices: two rings for its side and one for each end.
     """
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES

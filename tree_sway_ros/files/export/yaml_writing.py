@@ -84,7 +84,7 @@ def _branch(tree: Tree, branch: int) -> list[str]:
 
 
 def _quoted(text: str) -> str:
-    """A YAML double-quoted text."""
+    """Return a YAML double-quoted text."""
     return '"' + ''.join(map(_escaped, text)) + '"'
 
 

@@ -59,10 +59,7 @@ class BagWriter:
         latched: bool = False,
         depth: int = 1,
     ) -> None:
-        """
-        Add a topic of a type ``package/msg/Name``, to be played with the quality of service of
-        `Topic`.
-        """
+        """Add a topic of a type ``package/msg/Name``, played with the service of `Topic`."""
         from rosbags.interfaces import (
             Qos,
             QosDurability,

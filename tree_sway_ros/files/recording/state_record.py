@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The recorded state of a tree: its description and `tree_state` as the messages that were
-sent.
-"""
+"""The recorded state of a tree: its description and `tree_state`, in the messages sent."""
 
 from __future__ import annotations
 
@@ -87,7 +85,7 @@ def read_state_record(path: Path, name: str = 'tree_state') -> StateRecord:
 
 
 def restamped(data: bytes, stamp: int) -> bytes:
-    """A message that begins with a header, as CDR bytes, with another stamp [ns]."""
+    """Return a message that begins with a header, as CDR bytes, with another stamp [ns]."""
     head = _STAMP.pack(*divmod(stamp, 1_000_000_000))
     return data[:_AFTER_HEAD] + head + data[_AFTER_HEAD + len(head) :]
 

@@ -15,8 +15,7 @@ from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
 
 def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
     """
-    Return the trees of one shard, from 0 on: a run of those of the file, about as many segments
-    each.
+    Return the trees of one shard, from 0 on: a run of the file's, of about as many segments.
 
     Names and order are kept, so that the pose blocks of all shards, one after another, are that of
     the whole. All time gusts from one place: the anemometer, or the first tree of the file.

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A stand from a table: columns ``x``, ``y``, ``species``, ``height``, in metres, as inventories
-have.
+A stand from an inventory, a table with columns ``x``, ``y``, ``species``, ``height`` in metres.
 
 Trees of one species are scaled from few that are grown: heights of a species within a factor of
 three share one kind. Further columns may be ``name``, ``z``, ``yaw`` [rad] and ``fidelity``; a

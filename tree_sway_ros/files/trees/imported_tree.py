@@ -11,6 +11,7 @@ import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.assembly import Kept
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
@@ -34,7 +35,7 @@ class TreeFile:
         otherwise in place of the table's values.
     source
         Where it came from: a path, or the name of a built-in tree.
-    notes
+    notes : tuple of str
         What the importer changed or left out, one sentence each; empty if nothing.
     origin
         Where the tree's zero is in the frame of the file in [m].
@@ -49,7 +50,7 @@ class TreeFile:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about the tree, one sentence each, as of `doubts`."""
+        """Tell what is odd about the tree, one sentence each, as of `doubts`."""
         return doubts(self.tree, self.species)
 
     def of_species(self, species: Species) -> TreeFile:
@@ -57,9 +58,7 @@ class TreeFile:
         return replace(self, tree=replace(self.tree, species=species.key), species=species)
 
     def checked(self) -> TreeFile:
-        """
-        Return the same tree if its numbers can be those of one, else raise as `refuse_nonsense`.
-        """
+        """Return the same tree if it can be one, else raise as `refuse_nonsense`."""
         try:
             refuse_nonsense(self.tree, self.species)
         except TreeSwayError as error:
@@ -67,11 +66,16 @@ class TreeFile:
         return self
 
     def simulator(
-        self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
+        self,
+        settings: Settings | None = None,
+        *,
+        tolerance: float = 0.005,
+        kept: Kept | None = None,
+        **changes: Any,
     ) -> TreeSimulator:
         """Make a simulator of the tree; arguments and errors are those of `make_simulator`."""
         model = settings_with(settings, changes)
-        return make_simulator(self.tree, self.species, model, tolerance=tolerance)
+        return make_simulator(self.tree, self.species, model, tolerance=tolerance, kept=kept)
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """

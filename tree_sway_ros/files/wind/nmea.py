@@ -85,8 +85,7 @@ def read_nmea_wind(
     declination: float = 0.0,
 ) -> WindRecord:
     """
-    Read the wind of an NMEA 0183 log, whose sentences are taken as evenly spaced, ``rate`` in
-    [Hz].
+    Read the wind of an NMEA 0183 log, whose sentences count as evenly spaced, ``rate`` in [Hz].
 
     The sentence is one of `SENTENCES`, or ``auto``: the first of these with a good one; others are
     passed over. ``heading`` and ``declination`` are those of `parse_nmea`.

@@ -43,7 +43,7 @@ class WindRecord:
     epoch
         Time of the first sample in seconds after 1970-01-01, in the clock of the file, which need
         not be UTC; None if the file has no dates.
-    notes
+    notes : tuple of str
         What was assumed or chosen, one sentence each.
 
     """

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A line that an anemometer says: the wind in it, or why it is refused; checksums and log
-files.
-"""
+"""A line that an anemometer says: its wind, or why it is refused; checksums and log files."""
 
 from __future__ import annotations
 
@@ -24,8 +22,7 @@ MAX_LINE = 1024
 @dataclass(frozen=True, slots=True)
 class SensorLine:
     """
-    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why it is
-    refused.
+    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why refused.
 
     ``kind`` is the sentence or format that it is of.
     """
@@ -54,8 +51,9 @@ def line_of(
     need_checksum: bool,
 ) -> SensorLine:
     """
-    Return what `read` finds in a line of so many characters, unless its length or checksum refuses
-    it; `told` is the checksum that stands in it, of one of these bodies, None without one.
+    Return what `read` finds in a line of so many characters, if its length and checksum fit.
+
+    `told` is the checksum that stands in it, of one of these bodies, None without one.
     """
     if length > MAX_LINE:
         found: Velocity | str = f'a line of {length} characters'

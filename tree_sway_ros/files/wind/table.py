@@ -51,8 +51,7 @@ def read_csv_wind(
     path: Path, direction_convention: str | None = None, yaw: float = 0.0
 ) -> WindRecord:
     """
-    Read the wind of a table, of components (``to``) or a direction (``from``) if no convention is
-    told.
+    Read the wind of a table; its columns tell components (``to``) from a direction (``from``).
 
     ``yaw`` is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from
     north to the sensor's zero, likewise. A `FormatError` tells of a column that is missing, a unit
@@ -69,8 +68,7 @@ def read_toa5_wind(
     direction_convention: str | None = None,
 ) -> WindRecord:
     """
-    Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant of them if no columns are
-    named.
+    Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant if no columns are named.
 
     ``yaw`` and the convention are as of `read_csv_wind`. A `FormatError` tells of what is not
     TOA5, of no such columns, or no good row.

@@ -17,8 +17,7 @@ _BAUD = 4800  # of NMEA 0183
 @dataclass(frozen=True)
 class Address:
     """
-    One end of a link: ``tcp``, ``udp`` or ``serial``; a host to call or to listen on, or a serial
-    port.
+    One end of a link, ``tcp``, ``udp`` or ``serial``: a host to call or listen on, or a port.
 
     For udp an empty place is all; the number is the port, or the baud rate of the serial port.
     """

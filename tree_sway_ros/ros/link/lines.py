@@ -19,10 +19,7 @@ class Lines:
         self._is_too_long = False
 
     def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[str]:
-        """
-        Take bytes, which end a line where they are a whole datagram; return the lines they
-        complete.
-        """
+        """Take bytes, whose end ends a line if they are a datagram; return the lines complete."""
         *whole, begun = (self._begun + data).replace(b'\r', b'\n').split(b'\n')
         if is_whole:
             whole, begun = [*whole, begun], b''

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A table of parameters on a node: declared with descriptors, checked by our own rules, changed while
-it runs.
+A table of parameters on a node: declared, checked by our own rules, changed while it runs.
 
 ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently
 ignores a misspelt name. Parameters are therefore declared with dynamic typing; kinds, ranges and

@@ -44,7 +44,7 @@ _FLAGS = (*_PARAMETER, *_REMAP, '--params-file')
 
 
 def _ros_arguments(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Flags that take a value, with it, between ``--ros-args`` and ``--``."""
+    """Return the flags that take a value, with it, between ``--ros-args`` and ``--``."""
     is_ros, rest = False, iter(arguments)
     for argument in rest:
         if argument in ('--ros-args', '--'):

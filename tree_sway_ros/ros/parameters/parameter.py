@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a node can be told: each parameter is defined once, here in form and in `node_parameters` in
-fact.
+What a node can be told: a parameter is defined once, in form here, in `node_parameters` in fact.
 
 The ROS declaration, the check of values and of YAML files, and the table in the README come from
 the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
@@ -87,7 +86,7 @@ class Parameter:
 
     @property
     def range_text(self) -> str:
-        """The accepted values, for people: ``0 .. 40``, ``to | from``; empty if anything goes."""
+        """Tell the accepted values: ``0 .. 40``, ``to | from``; nothing if anything goes."""
         if self.choices:
             return ' | '.join(choice or '""' for choice in self.choices)
         if self.minimum is None and self.maximum is None:
@@ -124,7 +123,7 @@ class Parameter:
 
 
 def _of_kind(kind: type, value: Value) -> Value:
-    """A value as the kind that is meant, where it can mean but one: 40 for 40.0, 1 for true."""
+    """Return a value as the kind that is meant, if there is but one: 40 for 40.0, 1 for true."""
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if kind is int and isinstance(value, float) and value.is_integer():
@@ -148,7 +147,7 @@ def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
 
 
 def unknown_parameter(table: Table, name: str, *, where: str = '') -> ParameterError:
-    """The error for a name that a table does not have, with the nearest that it has."""
+    """Make the error for a name that a table does not have, with the nearest that it has."""
     names = [parameter.name for parameter in table]
     cure = nearest(name, names) or f'known are: {", ".join(names)}'
     return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)

@@ -31,8 +31,7 @@ NODE_CLASSES = {
 
 class Composition:
     """
-    Nodes that share a process and an executor, in the order and with the values of their
-    parameters.
+    Nodes that share a process and an executor, in the order and with the values given.
 
     The ROS domain is the environment's if None.
 
@@ -91,12 +90,12 @@ class Composition:
         return node
 
     def __getitem__(self, name: str) -> Any:
-        """A node by its name, with its namespace if it has one: ``solver``, ``oak/solver``."""
+        """Return a node by its name, and namespace if it has one: ``solver``, ``oak/solver``."""
         return self._nodes[name]
 
     @property
     def nodes(self) -> tuple[Any, ...]:
-        """The nodes, in the order of their start."""
+        """Return the nodes, in the order of their start."""
         return tuple(self._nodes.values())
 
     def check(self) -> None:

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one guard around every callback of a node: what is raised in it is counted and told, not passed
-on.
+The one guard around every callback of a node: what is raised is counted and told, not passed on.
 
 An exception that leaves a callback ends the executor, and with it every node that shares it; one
 that leaves the callback of a service leaves its caller without an answer.
@@ -17,9 +16,7 @@ from typing import Any
 
 
 class CallbackGuard:
-    """
-    Wraps callbacks; each place that raises is logged once, with its trace, and counted ever after.
-    """
+    """Wraps callbacks; a place that raises is logged once, with its trace, and always counted."""
 
     def __init__(self, log: Callable[[str], None]) -> None:
         self.count = 0

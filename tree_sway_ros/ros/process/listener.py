@@ -16,8 +16,7 @@ _Own = TypeVar('_Own', bound='Listener')
 
 class Listener:
     """
-    A node with an executor of its own, in a context of its own, which ends with it, if none is
-    given.
+    A node with an executor of its own; without a context it has its own, which ends with it.
 
     Raises
     ------

@@ -152,7 +152,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def publisher(self, topic: Topic, kind: Any = None, *, alone: bool = False) -> Any:
         """
-        Publisher of a topic of the table, of a kind of messages where a parameter chooses it.
+        Make a publisher of a topic of the table, of a kind where a parameter chooses it.
 
         ``alone``: a second publisher on the topic is a fault, to be told of.
         """
@@ -176,8 +176,9 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         alone: bool = False,
     ) -> Any:
         """
-        Subscription to a topic of the table; `kind` where a parameter chooses the type, `raw` for
-        bytes, `alone` where a second publisher is a fault.
+        Subscribe to a topic of the table, of a kind where a parameter chooses it.
+
+        ``raw`` gives bytes; ``alone``: a second publisher on the topic is a fault.
         """
         made = self.create_subscription(
             kind or message_class(topic),
@@ -219,10 +220,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     @property
     def clock_lead(self) -> int:
-        """
-        How far stamps may be ahead of the clock in [ns]: simulated time stands between
-        ticks.
-        """
+        """How far stamps may be ahead of the clock in [ns]: simulated time stops between ticks."""
         return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:

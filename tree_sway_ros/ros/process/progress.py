@@ -14,8 +14,7 @@ AGAIN = 5.0
 
 class Progress:
     """
-    A context for a start that may take long: a stage that goes on is said again after ``again``
-    [s].
+    A context for a start that may take long: a stage is said again after ``again`` [s].
 
     It is logged from another thread as well.
     """

@@ -23,10 +23,7 @@ From one report to the next [s], of wall time: reports go on while simulated tim
 
 @dataclass(frozen=True)
 class Status:
-    """
-    One line of a report of something, for example ``wind``: its level, a sentence, and figures by
-    name.
-    """
+    """One line of a report of something, as ``wind``: level, a sentence, and figures by name."""
 
     name: str
     level: int

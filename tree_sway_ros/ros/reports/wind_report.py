@@ -21,10 +21,7 @@ STALE_AFTER = 5.0
 
 
 class WindReport:
-    """
-    Counts samples by arrival, in wall time: whether a sensor is alive has nothing to do with
-    stamps.
-    """
+    """Counts samples by arrival, in wall time: stamps do not tell whether a sensor is alive."""
 
     def __init__(self) -> None:
         self._arrivals: deque[float] = deque(maxlen=1000)
@@ -47,7 +44,7 @@ class WindReport:
 
     @property
     def rate(self) -> float:
-        """Samples per second over the last five seconds in [Hz]."""
+        """Return the samples per second over the last five seconds in [Hz]."""
         now = time.monotonic()
         recent = [arrival for arrival in list(self._arrivals) if now - arrival <= _WINDOW]
         if len(recent) < 2 or now - recent[-1] > 1.0 + 2.0 * (recent[-1] - recent[-2]):
@@ -62,8 +59,7 @@ class WindReport:
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
-        Report, by what the gate refused or found odd, and the types on the topic that are not
-        read.
+        Report by what the gate refused or found odd, and types on the topic that are not read.
 
         The wind counts as lost when its last good sample is older than a timeout [s]; three
         periods of a sensor that is slower.

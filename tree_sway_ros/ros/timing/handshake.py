@@ -81,8 +81,7 @@ class Audience:
 
 class Answers:
     """
-    Holds the clock until those who follow it have come as far, but for a slack [ns] and the last
-    step.
+    Holds the clock until those who follow have come as far, but for a slack [ns] and a last step.
 
     After the ``patience`` [s] time goes on, until something is heard again.
     """

@@ -45,8 +45,7 @@ class Tick(NamedTuple):
 
 class Pace(NamedTuple):
     """
-    How well the pace was kept lately: rate [Hz], lateness [s], work [s], and counts since the
-    start.
+    How well the pace was kept: rate [Hz], lateness [s], work [s], and counts since the start.
 
     `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
     the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
@@ -169,7 +168,7 @@ class Pacer:
             self._on_slip(error)
 
     def _due(self, now: int) -> Tick | None:
-        """The tick that is due, if one is."""
+        """Return the tick that is due, if one is."""
         if now <= 0:  # simulated time that has not begun
             return None
         index = now // self.period

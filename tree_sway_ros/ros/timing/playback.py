@@ -30,8 +30,7 @@ _MARGIN = 86_400.0
 
 class Event(NamedTuple):
     """
-    Something to publish: its time since the playback began and when it is due, in the record's
-    time [s].
+    Something to publish: its time since the playback began, and when it is due, in [s].
 
     The row is -1 for a tick of /clock; what goes ahead is due before its time.
     """
@@ -42,10 +41,7 @@ class Event(NamedTuple):
 
 
 def is_ros_time(epoch: float | None, time: NDArray[np.float64]) -> bool:
-    """
-    Whether a record can be played with its own dates: the times [s] after an epoch, or without
-    one.
-    """
+    """Whether the times [s] of a record, after an epoch if any, can be played as its dates."""
     if epoch is None or not len(time):
         return True
     return bool(epoch + time[0] >= 1.0 and epoch + time[-1] < _LAST_TIME - _MARGIN)
@@ -110,17 +106,13 @@ class Playback:
 
     @property
     def epoch(self) -> int:
-        """
-        Time of the first event in [ns], for /clock: the record's own, or 1 s if it has no date.
-        """
+        """Time of the first event in [ns], for /clock: the record's, or 1 s without a date."""
         if self._epoch is None:
             return 1_000_000_000
         return round((self._epoch + float(self._time[0])) * 1e9)
 
     def events(self) -> Iterator[Event]:
-        """
-        Events in the order of their times; a tick of /clock comes after the sample of its time.
-        """
+        """Events in order of time; a tick of /clock comes after the sample of its time."""
         if not self.has_clock:
             return self._samples()
         return heapq.merge(self._samples(), self._ticks(), key=lambda event: event.due)

@@ -61,10 +61,7 @@ class Stepper:
         """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
 
     def warm_up(self) -> float:
-        """
-        Have the kernels compiled or loaded before the first frame is due; return what a frame
-        takes in [us].
-        """
+        """Have kernels compiled or loaded ahead; return what a frame takes in [us]."""
         wind = self._make_wind()
         wind.add(0.0, (1.0, 0.0, 0.0))
         period = self._period * 1e-9

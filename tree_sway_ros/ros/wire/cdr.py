@@ -110,7 +110,7 @@ def stamp_of(data: bytes) -> int:
 
 
 def block_mark(number: int = 0) -> float:
-    """The value to put into the first field of the float64 block of that number."""
+    """Return the value to put into the first field of the float64 block of that number."""
     return float(_NUMBER + number)
 
 

@@ -62,8 +62,7 @@ class Frames:
 
     def rotation(self, frame: str, base: str, stamp: int) -> Floats | None:
         """
-        Rotation (3, 3) that turns vectors of a frame into those of another; None where no way
-        leads there.
+        Rotation (3, 3) of vectors of a frame into another; None where no way leads there.
 
         The stamp is in [ns]: between two transforms by interpolation; the nearest beyond them, and
         the latest at 0.

@@ -20,10 +20,7 @@ _TWIG = (0.30, 0.45, 0.20, 1.0)
 
 
 class TreeMarkers:
-    """
-    The markers of one tree, with so many line widths; classes without a segment are left
-    out.
-    """
+    """The markers of one tree, with so many line widths; classes without segments are left out."""
 
     def __init__(self, tree: Tree, frame_id: str, n_classes: int) -> None:
         from geometry_msgs.msg import Point
@@ -49,9 +46,7 @@ class TreeMarkers:
         self._template = CdrTemplate(message, len(shapes), shapes)
 
     def to_bytes(self, poses: NDArray[np.float64], stamp: int) -> bytes:
-        """
-        Draw a pose block (n_segments, 7) at a stamp [ns] as a ``visualization_msgs/MarkerArray``.
-        """
+        """Draw poses (n_segments, 7) at a stamp [ns] as a ``visualization_msgs/MarkerArray``."""
         tips = poses[:, :3] + self._length[:, None] * x_axes(poses[:, 3:])
         for block, members in zip(self._template.blocks, self._members, strict=True):
             block[:, 0] = poses[members, :3]
@@ -70,7 +65,7 @@ def radius_classes(radius: NDArray[np.float64], n_classes: int) -> list[NDArray[
 
 
 def x_axes(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The x axis of each orientation, (n, 3), from quaternions x y z w, (n, 4)."""
+    """Return the x axis of each orientation, (n, 3), from quaternions x y z w, (n, 4)."""
     x, y, z, w = xyzw.T
     return np.stack(
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1

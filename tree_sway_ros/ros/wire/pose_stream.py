@@ -60,10 +60,7 @@ class PoseStream:
         self._description_publisher.publish(self._description)
 
     def publish(self, simulator: Any, index: int, stamp: int, every: int) -> None:
-        """
-        Publish what is due at a tick, every so many; the simulator is asked if somebody wants the
-        poses.
-        """
+        """Publish what is due at a tick; the simulator is asked if somebody wants poses."""
         poses_due = self._pose_divider.is_due(index, every)
         markers_due = self._marker_every > 0 and self._marker_divider.is_due(
             index, self._marker_every
@@ -83,9 +80,7 @@ class PoseStream:
 
 
 class _Transforms:
-    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100 of
-    them.
-    """
+    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100."""
 
     def __init__(self, node: Any, tree: Tree, frame_id: str) -> None:
         try:

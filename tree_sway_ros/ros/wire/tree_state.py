@@ -24,9 +24,7 @@ WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')
 
 
 def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
-    """
-    Make the bytes of a state, whose one block holds the wind [m/s] and the coordinates, (3 + m,).
-    """
+    """Make the bytes of a state, whose one block holds wind [m/s] and coordinates, (3 + m,)."""
     message = JointState()
     message.header.frame_id = frame_id
     mark_stamp(message.header.stamp)
@@ -37,10 +35,7 @@ def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
 
 
 def read_state(message: Any) -> tuple[Floats, Floats]:
-    """
-    Wind (3,) in [m/s] and coordinates (m,) of a state; a `FormatError` for names that are not its
-    own.
-    """
+    """Wind (3,) [m/s] and coordinates (m,) of a state; a `FormatError` for names not its own."""
     if tuple(message.name[:3]) != WIND_NAMES or len(message.name) != len(message.position):
         raise FormatError(
             f'{len(message.position)} positions of {len(message.name)} names',
@@ -54,7 +49,7 @@ def read_state(message: Any) -> tuple[Floats, Floats]:
 
 
 def state_entry(description: bytes) -> dict[str, str]:
-    """What `tree_description` says of the state: the binary description of doc/streaming.md."""
+    """Return what `tree_description` says of the state: the description of doc/streaming.md."""
     return {'format': 'doc/streaming.md', 'base64': base64.b64encode(description).decode('ascii')}
 
 

@@ -59,10 +59,7 @@ _VECTORS: dict[Any, Callable[[Any], Any]] = {
 
 
 def wind_class(type_name: str) -> Any:
-    """
-    Class of a wind message by its name, as ``geometry_msgs/Vector3Stamped``; else a
-    `ParameterError`.
-    """
+    """Class of a wind message, as ``geometry_msgs/Vector3Stamped``; else a `ParameterError`."""
     try:
         return _CLASSES[type_name]
     except KeyError:
@@ -99,10 +96,7 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
 
 
 class WindWriter:
-    """
-    Writes wind the way a driver would: one of the four types, vectors that point ``to`` or
-    ``from``.
-    """
+    """Writes wind as a driver would: one of the four types, vectors ``to`` or ``from``."""
 
     def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:
         self.message_class = wind_class(output_type)

@@ -32,11 +32,7 @@ class Branch:
         self.guard = guards(np.ones(1), np.array([self.stiffness]), dt)[0]
 
     def run(self, loads: Array, state: Array | None = None, dtype: Any = np.float64) -> Array:
-        """
-        States after each frame, (steps + 1, 4), from s-loads W / k1, (steps, 3), means over
-        frames.
-
-        """
+        """States after each frame, (steps + 1, 4), from frame means of W / k1, (steps, 3)."""
         start = np.zeros(4) if state is None else np.asarray(state)
         row = self.row if dtype == np.float64 else single_precision(self.row)
         return run_branch(
@@ -49,10 +45,7 @@ class Branch:
     def truth(
         self, wind: Any, steps: int, state: Array | None = None, substeps: int = 32
     ) -> Array:
-        """
-        Chord after each frame, (steps + 1, 3), from s-load as a function of time (k,) -> (k, 3).
-
-        """
+        """Chord after each frame, (steps + 1, 3), from s-loads of time (k,) -> (k, 3)."""
         start = np.zeros(4) if state is None else np.asarray(state, float)
         fraction = np.arange(2 * substeps + 1) / (2 * substeps)
         times = self.dt * (np.arange(steps)[:, None] + fraction)
@@ -73,7 +66,7 @@ class Branch:
 
 
 def chord(states: Array) -> Array:
-    """Unit vector of the branch from its rotation vector, (k, 3)."""
+    """Return the unit vector of the branch from its rotation vector, (k, 3)."""
     theta = np.hypot(states[:, 0], states[:, 1]).astype(float)
     sinc = np.sinc(theta / np.pi)
     return np.stack([np.cos(theta), sinc * states[:, 0], sinc * states[:, 1]], 1)

@@ -1,14 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-SUNDIALS IDA on the paper's multiplier form: the method of a solver library beside ours, where it
-is installed.
+SUNDIALS IDA on the paper's multiplier form: a solver library beside ours, if installed.
 
 Its unknowns are those of `radau_ggl` (Gear, Leimkuhler & Gupta, 1985), q, v, lam and mu. It
 chooses its own steps and order (BDF 1 to 5, Hindmarsh et al., 2005) and is asked for an answer
 once a frame. The multipliers are left out of its error test, for in a form of index 2 they are an
 order less smooth.
-
 """
 
 from __future__ import annotations
@@ -130,11 +128,7 @@ def run_ida(chain: PlanarChain, loads: Array, dt: float, first: Array) -> IdaRun
 
 
 def _operations(table: Array, y: Array, rate: Array, load: Array) -> tuple[int, int]:
-    """
-    Operations of an iteration, residual and back-substitution; and of a matrix, by differences,
-    and its factors.
-
-    """
+    """Operations of an iteration with its back-substitution, and of a matrix with its factors."""
     n = len(y)
     matrix = np.random.default_rng(0).normal(size=(n, n))
     of_residual, of_product, of_factors = Counter[str](), Counter[str](), Counter[str]()

@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Error against cost of every method, in smooth, gusty and turning wind, one segment and a chain of
-six.
-
-"""
+"""Error against cost of every method, in three winds, for one segment and a chain of six."""
 
 from __future__ import annotations
 
@@ -67,7 +63,7 @@ class Point:
 
 
 def winds(n: int) -> dict[str, Wind]:
-    """Loads on n segments in [N], time (k,) -> (k, n, 2), that bend a stem by about 20 degrees."""
+    """Make loads on n segments in [N], time (k,) -> (k, n, 2), that bend a stem by 20 degrees."""
     rng = np.random.default_rng(7)
     knots = rng.normal(0.0, 1.0, (int(SECONDS * GUSTS) + 2, 2))
 
@@ -89,7 +85,7 @@ def winds(n: int) -> dict[str, Wind]:
 
 
 def loads_for(method: Method, wind: Wind, name: str, rate: int) -> Array:
-    """Samples at the method's nodes; in gusts the mean over each step, as the solver is fed."""
+    """Sample at the method's nodes; in gusts take means over steps, as the solver is fed."""
     return _loads_at(method.nodes, wind, name, rate)
 
 
@@ -195,10 +191,7 @@ def _points_of_ida(
     chain: PlanarChain, system: str, blowing: dict[str, Wind], truth: dict[str, Array],
     rates: tuple[int, ...], unit: float,
 ) -> list[Point]:  # fmt: skip
-    """
-    SUNDIALS IDA, which takes steps of its own between frames: cost and time are those of a frame.
-
-    """
+    """SUNDIALS IDA, which steps on its own between frames: cost and time are those of a frame."""
     points = []
     for rate in rates:
         for name, wind in blowing.items():

@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Solving timed by how finely branches are cut: key segments alone are solved, so it should not
-matter.
-
-"""
+"""Solving timed by how finely branches are cut, which should not matter to key segments."""
 
 from __future__ import annotations
 

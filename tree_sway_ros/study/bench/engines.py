@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Ours against engines of rigid bodies: same tree, same wind, same rate; error against a converged
-truth.
-
-"""
+"""Ours against engines of rigid bodies: same tree, wind and rate; error against the truth."""
 
 from __future__ import annotations
 

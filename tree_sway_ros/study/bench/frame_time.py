@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-CPU time of a frame, for several models of a tree in turn, so that all meet the same load of the
-machine.
-
-"""
+"""CPU time of a frame, for models in turn, so that all meet the same load of the machine."""
 
 from __future__ import annotations
 

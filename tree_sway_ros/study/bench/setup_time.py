@@ -50,11 +50,7 @@ def time_setups(tree: Tree, models: Sequence[str]) -> dict[str, float]:
 
 
 def setup_table() -> str:
-    """
-    Time all models on the tree of the other benchmarks and on a big one, and lay out what is
-    found.
-
-    """
+    """Time all models on the tree of the other benchmarks and on a big one, as a table."""
     models = MODELS[1:]
     lines = ['set-up [s]' + ' ' * 26 + ''.join(f'{model:>9}' for model in models)]
     for tree in (bench_tree(), bench_tree(children=_CHILDREN)):

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Shards of a stand on two hosts, as two network namespaces joined by a cable: the cable is cut and
-joined again, and a shard is killed. Needs Linux, root and ``ip`` of iproute2.
+Shards of a stand on two hosts, as two network namespaces joined by a cable.
 
+The cable is cut and joined again, and a shard is killed. Needs Linux, root and ``ip`` of iproute2.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The model `wind_basis` timed by the size of the tree: the step alone, as the kernel runs it, and
-step and placing as a program calls them; and how far it is from `modes`.
+The model `wind_basis` timed by the size of the tree, and how far it is from `modes`.
 
+The step is timed alone, as the kernel runs it, and with placing, as a program calls them.
 """
 
 from __future__ import annotations

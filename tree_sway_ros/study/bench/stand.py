@@ -95,9 +95,7 @@ def time_stand(
 
 
 def _by_threads(one: Stand, other: Stand, poses: Floats) -> tuple[float, float]:
-    """Time by the clock that two stands take to be placed, in turn, in [s]: the quietest of
-    all.
-    """
+    """Time by the clock to place two stands in turn in [s]: the quietest of all."""
     spent = np.empty((2, _ROUNDS))
     for number in range(_ROUNDS):
         for row, stand in zip(spent, (one, other), strict=True):

@@ -30,11 +30,7 @@ _PROFILES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 
 
 def isolated(seed: int) -> dict[str, str]:
-    """
-    Environment of a domain of its own on this machine, with room for large frames in shared
-    memory.
-
-    """
+    """Environment of a domain of its own here, with room in shared memory for large frames."""
     places = Path(__file__).parents[3], Path(sys.prefix, 'share', 'tree_sway_ros')
     found = [place / 'config' / 'fastdds.xml' for place in places]
     room = {name: str(path) for path in found if path.is_file() for name in _PROFILES}

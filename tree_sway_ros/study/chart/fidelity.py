@@ -214,7 +214,7 @@ def _draw(points: list[Model], path: Path) -> None:
 
 
 def _told(tree: str) -> str:
-    """What the name of a forked tree says."""
+    """Return what the name of a forked tree says."""
     kind, *ratios = tree.split()
     if kind != 'forked' or len(ratios) != 2:
         return tree

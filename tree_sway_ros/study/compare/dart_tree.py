@@ -66,10 +66,7 @@ class DartTree:
             self._order[own : own + 2] = theirs, theirs + 1
 
     def race(self, wind: Floats) -> tuple[Floats, float]:
-        """
-        Tips at each frame in [m], (t, b, 3), and CPU time of a step in [s], one in ten
-        below.
-        """
+        """Tips at each frame in [m], (t, b, 3), and the lowest tenth of a step's CPU times [s]."""
         tips = np.empty((len(wind), self.twin.tree.n_branches, 3))
         spent = np.empty(len(wind))
         self.twin.reset()

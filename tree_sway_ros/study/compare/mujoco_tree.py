@@ -58,7 +58,7 @@ def mujoco_module() -> Any:
 
 
 def take_warnings() -> list[str]:
-    """What MuJoCo has warned of since this was last asked, each warning once."""
+    """Return what MuJoCo has warned of since this was last asked, each warning once."""
     taken = list(dict.fromkeys(_WARNINGS))
     _WARNINGS.clear()
     return taken
@@ -190,10 +190,7 @@ class MujocoTree:
         return tips
 
     def agreement(self) -> tuple[float, float]:
-        """
-        First frequency, and static sway of the stem's tip in a steady wind, over the beam model's.
-
-        """
+        """First frequency, and static sway of the stem's tip in wind, over the beam model's."""
         lowest = float(self._beam.frequencies(1)[0])
         return float(self.frequencies[0]) / lowest, self._sway() / self._expected
 
@@ -211,10 +208,7 @@ class MujocoTree:
         return float(moved[self._beam.end_node[self._stem_tip], 0])
 
     def _sway(self) -> float:
-        """
-        Sway of the stem's tip by the engine's own Jacobians, for a unit of wind pressure along x.
-
-        """
+        """Sway of the stem's tip by the engine's own Jacobians, per unit of pressure along x."""
         tiny = 1e-3
         self.reset()
         self.blow(np.array([1.0, 0.0, 0.0]))
@@ -237,11 +231,7 @@ class MujocoTree:
         return out
 
     def _motion(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """
-        Joint, rotation, velocity of the joint and angular velocity of each body, the ground's
-        first.
-
-        """
+        """Joint, rotation, joint velocity, angular velocity of each body, the ground's first."""
         data = self.data
         centre = data.subtree_com[self.model.body_rootid]
         spin = data.cvel[:, :3]
@@ -271,11 +261,7 @@ class MujocoTree:
     def _set_damping(
         self, ratio: float, count: int, weight: Floats | float
     ) -> tuple[Floats, Floats]:
-        """
-        Dampers by which the last of these modes has the ratio; the rest for those below as modal
-        forces.
-
-        """
+        """Set dampers to the ratio of the last mode; modal forces give those below the rest."""
         root = np.sqrt(self._stiffness)
         n = len(root)
         if np.ndim(weight) > 0 or n <= 2 * count:

@@ -81,7 +81,7 @@ class Comparison:
 
     @property
     def speed_up(self) -> float:
-        """MuJoCo's CPU time over ours."""
+        """CPU time of MuJoCo over ours."""
         return self.mujoco_cost / self.cost
 
     def __str__(self) -> str:
@@ -184,9 +184,9 @@ def mujoco_tips(model: MujocoTree, wind: Floats, steps: int) -> Floats:
 
 def _race(model: MujocoTree, ours: Swaying, wind: Floats) -> tuple[Floats, float, float]:
     """
-    MuJoCo's tips at one step per frame, and CPU time per simulated second of both, in turn by
-    blocks of frames.
+    Tips of MuJoCo at one step per frame, and CPU time of both per simulated second.
 
+    They take turns by blocks of frames.
     """
     tips = np.empty((len(wind), model.tree.n_branches, 3))
     poses = np.empty((model.tree.n_segments, 7))

@@ -252,11 +252,7 @@ def _nodes(tree: Tree, sub: int) -> tuple[Floats, Ints, Floats]:
 
 
 def _element_axes(axis: Floats) -> Floats:
-    """
-    Local axes as rows, x along the element, (m, 3, 3); the sections are round, so any roll will
-    do.
-
-    """
+    """Local axes as rows, x along the element, (m, 3, 3); round sections let any roll do."""
     aside = np.where(np.abs(axis[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
     y = np.cross(aside, axis)
     y /= np.linalg.norm(y, axis=1)[:, None]

@@ -58,7 +58,7 @@ class PlanarChain:
 
     @property
     def n_segments(self) -> int:
-        """Number of segments."""
+        """Return the number of segments."""
         return len(self.table)
 
     @property
@@ -88,12 +88,10 @@ class PlanarChain:
 
     def first_order_hold(self, dt: float) -> NDArray[np.float64]:
         """
-        Exact propagator of the straight chain, (2n, 4n): next angles and rates from angles, rates,
-        M0, M1.
+        Exact propagator of the straight chain: next angles, rates from those, M0, M1, (2n, 4n).
 
         One segment takes the closed form of `oscillators.propagator`; more take the exponential of
         the augmented matrix (Van Loan 1978).
-
         """
         n = self.n_segments
         inertia = self.mass_matrix

@@ -86,10 +86,7 @@ def multiply(a: Array, b: Array) -> Array:
 
 @kernel
 def exponential(a: Array) -> Array:
-    """
-    Exponential of a matrix (m, m) by scaling, Taylor series and squaring (Higham 2008,
-    10.3).
-    """
+    """Exponential of a matrix by scaling, Taylor series and squaring (Higham 2008, 10.3)."""
     m = len(a)
     norm = 0.0 * abs(a[0, 0])
     for i in range(m):

@@ -79,11 +79,7 @@ class Method(ABC):
         """Angular velocities in [rad/s], (n,), a view of the state."""
 
     def propagator(self, inertia: Array, damping: Array, stiffness: Array, dt: float) -> Array:
-        """
-        Return the coefficients of one step as the solver runs it, (n, 8):
-        `step_rules.rule_propagator`.
-
-        """
+        """Return coefficients of a step as the solver runs it, (n, 8), by `rule_propagator`."""
         return rule_propagator(self.name, inertia, damping, stiffness, dt)
 
     def reactions(self, chain: PlanarChain, state: Array, load: Array) -> Array:
@@ -116,10 +112,7 @@ class MinimalMethod(Method):
 
 @dataclass(frozen=True)
 class MultiplierMethod(Method):
-    """
-    State: rows q, v, accelerations, multipliers (2n used), and one step ago q and v, (6,
-    3n).
-    """
+    """Keeps rows q, v, accelerations, multipliers (2n used), and q, v a step ago, (6, 3n)."""
 
     form: ClassVar[str] = 'multiplier'
 

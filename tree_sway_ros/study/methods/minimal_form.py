@@ -43,7 +43,7 @@ def moments(table: Array, theta: Array, load: Array) -> Array:
 
 @kernel
 def _moment_slope(table: Array, theta: Array, load: Array) -> Array:
-    """Derivative of each moment by its angle in [N m / rad], (n,)."""
+    """Return the derivative of each moment by its angle in [N m / rad], (n,)."""
     return moments(table, theta + 0.5 * np.pi, load)
 
 

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The chain as the paper writes it: coordinates X, Y, theta of each centre of mass, held by
-multipliers.
+The chain as the paper writes it: X, Y, theta of each centre of mass, held by multipliers.
 
 ::
 
@@ -11,7 +10,6 @@ multipliers.
 phi_i = X_i - c_i u_i - X_(i-1) - (l - c)_(i-1) u_(i-1), u = (cos theta, sin theta): the root-side
 node of a segment is the tip-side node of the one before. q, v and forces have 3n entries, X, Y,
 theta a segment; phi and lam have 2n.
-
 """
 
 from __future__ import annotations
@@ -132,10 +130,7 @@ def add_masses(table: Array, factor: float, out: Array) -> None:
 
 @kernel
 def add_joints(table: Array, column: int, factor: float, out: Array) -> None:
-    """
-    Add factor times the stiffness (column 4) or damping (5) matrix to the corner of a
-    matrix.
-    """
+    """Add factor times stiffness (column 4) or damping (5) to the corner of a matrix."""
     for i in range(len(table)):
         at, k = 3 * i + 2, factor * table[i, column]
         out[at, at] = out[at, at] + k

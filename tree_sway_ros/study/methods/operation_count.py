@@ -1,13 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A number type that counts what is done with it, and the uncompiled form of a kernel that it can
-run.
+A number type that counts what is done with it, and the form of a kernel that it can run.
 
 Additions, subtractions and multiplications count 1; divisions and square roots 4, as in the
 Livermore loops (McMahon 1986); sines, cosines and exponentials 20, a polynomial and its range
 reduction in double precision. Comparisons, signs and absolute values are free.
-
 """
 
 from __future__ import annotations
@@ -108,10 +106,7 @@ def flops(tally: Counter[str]) -> int:
 
 
 def plain(function: Callable[..., Any], _done: dict[Any, Any] | None = None) -> Callable[..., Any]:
-    """
-    Return a kernel, and every kernel it calls, as uncompiled Python that takes any number type.
-
-    """
+    """Return a kernel and all that it calls as plain Python that takes any number type."""
     done = {} if _done is None else _done
     source = getattr(function, 'py_func', function)
     if source in done:

@@ -44,7 +44,7 @@ class Trajectory:
 def sample(
     wind: Callable[[NDArray[np.float64]], Array], nodes: tuple[float, ...], dt: float, steps: int
 ) -> Array:
-    """Loads at a method's nodes: wind(time (k,)) -> (k, n, 2) gives (steps, nodes, n, 2)."""
+    """Sample loads at a method's nodes: wind(time (k,)) -> (k, n, 2) as (steps, nodes, n, 2)."""
     times = dt * (np.arange(steps)[:, None] + np.asarray(nodes)[None, :])
     values = wind(times.ravel())
     return np.ascontiguousarray(values.reshape(steps, len(nodes), *values.shape[1:]))

@@ -1,12 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway docs``: the tables of topics, parameters and species, taken from the code and put into
-the pages; the drawing of the rooms, and the examples as notebooks.
+``tree-sway docs``: what the code knows is put into the pages.
+
+These are the tables of topics, parameters and species, the drawing of the rooms, and the examples
+as notebooks.
 
 A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
 them is replaced.
-
 """
 
 from __future__ import annotations
@@ -118,11 +119,7 @@ def with_tables(text: str, where: str = 'text') -> str:
 
 
 def markdown_tables() -> dict[str, str]:
-    """
-    Every table by its name: commands, topics, species, formats of trees, and the parameters of
-    each node by the node's name.
-
-    """
+    """Every table by its name, as ``topics``; of the parameters of a node by the node's name."""
     tables = {
         'commands': commands_table(),
         'topics': topics_table(),
@@ -138,7 +135,7 @@ def markdown_tables() -> dict[str, str]:
 
 
 def commands_table() -> str:
-    """What each command does, with its example."""
+    """Tell what each command does, with its example."""
     lines = ['| command | what it does | example |', '|---|---|---|']
     lines += [
         f'| `{name}` | {c.summary} | `tree-sway {c.example}` |' for name, c in cli.COMMANDS.items()
@@ -179,7 +176,7 @@ def _text(value: Value) -> str:
 
 
 def formats_table() -> str:
-    """Formats of tree files, with the options that each takes."""
+    """Lay out the formats of tree files, with the options that each takes."""
     lines = ['| format | files | options |', '|---|---|---|']
     for each in TREE_FORMATS:
         options = ', '.join(f'`{option}`' for option in options_of(each))

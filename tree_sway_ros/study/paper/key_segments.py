@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key segments of a whole plant as the paper sets them: one pinned, sprung rod per branch, in a
-plane.
+Key segments of a plant as the paper sets them: one pinned, sprung rod per branch, in a plane.
 
 The segment turns about its root-side node in the plane of its own direction and the wind's
 (2.2.1). Its bending stiffness and its damping come from the volumes of its branch and of the
@@ -10,7 +9,6 @@ branch that bears it (3.2); the paper gives no formula, so the geometric mean of
 taken, times one constant each, which are tuned per plant as the authors did.
 
 Symbols: b branches, n segments.
-
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A section of the validation: checks with figure and limit, a table, and what was measured
-how.
-"""
+"""A section of the validation: checks with figure and limit, a table, how it was measured."""
 
 from __future__ import annotations
 

@@ -41,10 +41,7 @@ def from_record(time: Floats, velocity: Floats, seconds: float, scale: float = 1
 
 
 def hard_cases(seconds: float, first_frequency: float) -> dict[str, Floats]:
-    """
-    Make a gust, a step, a swing at the first frequency of a tree in [Hz] and a turn of the wind.
-
-    """
+    """Make a gust, a step, a swing at a tree's first frequency [Hz], and a turn of the wind."""
     t = FRAME * (0.5 + np.arange(round(seconds / FRAME)))
     still, along = np.zeros_like(t), np.ones_like(t)
     rise = np.clip((t - 0.2 * seconds) / (0.4 * seconds), 0.0, 1.0)

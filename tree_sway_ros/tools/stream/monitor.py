@@ -85,9 +85,7 @@ def rate_of(times: Sequence[float]) -> float:
 
 
 class StreamMonitor(Listener):
-    """
-    A node that receives poses and wind; without a tree, poses are counted and no tip is followed.
-    """
+    """A node that receives poses and wind; without a tree it counts poses and follows no tip."""
 
     def __init__(self, context: Any, tree: Tree | None, namespace: str = '') -> None:
         super().__init__('monitor', namespace, context)
@@ -103,10 +101,7 @@ class StreamMonitor(Listener):
             self.node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
 
     def expect_silence(self) -> None:
-        """
-        Raise a `TransportError` if somebody publishes already: a second wind or tree would mix
-        with ours.
-        """
+        """Raise a `TransportError` if somebody publishes: a second wind or tree would mix in."""
         self.spin(_LOOK_AROUND)
         for topic in (WIND, SEGMENT_POSES):
             if self.node.count_publishers(topic.name):

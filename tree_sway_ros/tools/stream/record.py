@@ -68,9 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class Recorder(Listener):
-    """
-    Writes what the nodes of a tree send on some topics into a bag, message by message as bytes.
-    """
+    """Writes what a tree's nodes send on some topics into a bag, message by message as bytes."""
 
     def __init__(
         self, context: Any, bag: BagWriter, topics: tuple[Topic, ...], namespace: str = ''

@@ -121,10 +121,7 @@ def health(since: float, process: int | str = 'self') -> Health:
 
 
 def growth(seen: list[Health]) -> tuple[float, float]:
-    """
-    Slope of the memory after the warm-up, and its standard error, in [MB/h]; NaN from fewer than
-    ten looks.
-    """
+    """Slope of the memory after warm-up and its standard error [MB/h]; NaN below ten looks."""
     table = np.array([(each.time, each.memory) for each in seen])
     if len(table):
         table = table[table[:, 0] >= _WARM * table[-1, 0]]
@@ -180,7 +177,7 @@ class _Reports:
 
 
 def _commands(arguments: argparse.Namespace, rate: float, port: int) -> dict[str, list[str]]:
-    """What to run, by the name of the process."""
+    """Return what to run, by the name of the process."""
     if arguments.demo:
         command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'demo', arguments.tree]
         return {'demo': [*command, '--rate', f'{rate}', '--port', f'{port}']}

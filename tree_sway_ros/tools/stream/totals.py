@@ -100,10 +100,7 @@ class StreamTotals:
         self.tip, self.wind = Means(), Means()
 
     def add_poses(self, arrival: float, stamp: float, tip: Floats | None = None) -> None:
-        """
-        Count a pose array: its arrival, the time it shows [s], and the highest tip's displacement
-        [m].
-        """
+        """Count a pose array: its arrival, time shown [s], and the highest tip's motion [m]."""
         self.arrivals.add(arrival)
         self.stamps.add(stamp)
         self.latency.add(arrival - stamp)
@@ -116,10 +113,7 @@ class StreamTotals:
         self.wind.add(vector)
 
     def missing(self, rate: float) -> int:
-        """
-        Frames of the grid of a rate in [Hz], between the first and the last, that never
-        came.
-        """
+        """Frames of a rate's grid [Hz], between the first and the last, that never came."""
         if self.stamps.count < 2:
             return 0
         return round((self.stamps.last - self.stamps.first) * rate) + 1 - self.stamps.count

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Watching a stream: until its time is over or somebody ends it, with a line that follows what comes.
-"""
+"""Watching a stream until its time is over or it is ended, in a line that follows what comes."""
 
 from __future__ import annotations
 

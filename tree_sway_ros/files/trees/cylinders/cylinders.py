@@ -34,6 +34,6 @@ class Cylinders:
 
 
 def cylinder_axes(table: TextTable, radius: str) -> tuple[Floats, Floats, Floats]:
-    """Starts, ends (n, 3) and diameters (n, 2) of a table with both ends and a radius."""
+    """Return starts, ends (n, 3) and diameters (n, 2) of a table with both ends and a radius."""
     values = table.strict(['startX', 'startY', 'startZ', 'endX', 'endY', 'endZ', radius, radius])
     return values[:, :3], values[:, 3:6], 2.0 * values[:, 6:]

@@ -19,10 +19,7 @@ _MAX_LOOSE_VOLUME = 0.2
 
 
 class JoinedBranches(NamedTuple):
-    """
-    Parents after loose branches were joined, how many, and how far from the axis at most
-    [m].
-    """
+    """Parents after loose branches were joined, how many, and how far off the axis at most [m]."""
 
     parent: Ints
     loose: int

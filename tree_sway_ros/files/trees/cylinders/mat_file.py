@@ -45,8 +45,7 @@ def looks_like_mat(head: str) -> bool:
 
 def read_mat(path: Path) -> Variables:
     """
-    Read the variables of a MATLAB file: numbers as arrays, structs as dictionaries, several as
-    lists.
+    Read the variables of a MATLAB file: arrays of numbers, dictionaries of structs, and lists.
 
     Raises
     ------

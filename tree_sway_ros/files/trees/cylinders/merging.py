@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Merge cylinders that are too short to have a direction into their neighbours of the same branch.
-"""
+"""Merge cylinders too short to have a direction into their neighbours of the same branch."""
 
 from __future__ import annotations
 
@@ -27,8 +25,7 @@ class MergedCylinders(NamedTuple):
 
 def merge_tiny(cylinders: Cylinders, order: list[int], below: float) -> MergedCylinders:
     """
-    Merge cylinders of one tree, numbered parents first in ``order``, that are below a length in
-    [m].
+    Merge cylinders of one tree, parents first in ``order``, that are below a length in [m].
 
     A tiny one goes to the cylinder before it in its branch, which is drawn out to its end; the
     first of a branch to the one after it. The volume is kept. What grew on it grows on the other.

@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes with a radius and a parent, as skeleton formats have them, to the segments between
-them.
-"""
+"""Nodes with a radius and a parent, as skeleton formats have them, made into segments."""
 
 from __future__ import annotations
 
@@ -17,10 +15,7 @@ from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
 
 @dataclass(frozen=True)
 class Skeleton:
-    """
-    Nodes of a tree: positions (n, 3) and diameters (n,) in [m], parents (n,), -1 at the
-    root.
-    """
+    """Nodes of a tree: positions (n, 3) and diameters (n,) in [m], parents (n,), the root's -1."""
 
     point: Floats
     diameter: Floats

@@ -34,10 +34,7 @@ _CODE = re.compile(r'([/<+])([A-Za-z]\w*)(?=[/<+]|$)', re.ASCII)
 
 @dataclass(slots=True)
 class _Vertex:
-    """
-    A vertex on its scale, tied by ``edge`` to the one before it: what it is a part of, and sits
-    on.
-    """
+    """A vertex on its scale, tied by ``edge`` to the one before: what it is of, and sits on."""
 
     label: str
     scale: int

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-RayCloudTools' tree file (Lowe & Stepanas 2021): a tree in each line, its nodes one after the
-other.
+RayCloudTools' tree file (Lowe & Stepanas 2021): a tree in each line, node after node.
 
 After comments a header, such as ``height,crown_radius, x,y,z,radius,parent_id,section_id``:
 attributes of the tree, if any, then the fields of a node. The first node of a line is the root,

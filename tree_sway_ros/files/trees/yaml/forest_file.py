@@ -47,15 +47,12 @@ class ForestFile:
 
     @cached_property
     def tree(self) -> Tree:
-        """
-        All trees as one record where they stand, names as ``tree/branch``; to be described, drawn,
-        written.
-        """
+        """All trees as one record where they stand, named ``tree/branch``, to draw or write."""
         return joined([each.placed() for each in self.trees], self.name)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about each tree, as `TreeFile.warnings`."""
+        """Tell what is odd about each tree, as `TreeFile.warnings`."""
         return tuple(
             f'{each.name}: {doubt}'
             for each in self.trees
@@ -84,10 +81,7 @@ class ForestFile:
     def simulator(
         self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
     ) -> Forest:
-        """
-        Make a simulator of all trees; arguments and errors, which name the tree, as of
-        `make_simulator`.
-        """
+        """Make a simulator of all trees, as `make_simulator`; its errors name the tree."""
         return Forest(
             self.trees,
             settings,
@@ -123,10 +117,7 @@ class ForestFile:
 
 
 def forest_of_files(files: Sequence[TreeFile], name: str) -> ForestFile:
-    """
-    Return the trees of one file as a forest: where they stand in it, the first at the
-    origin.
-    """
+    """Return the trees of one file as a forest: where they stand there, the first at 0."""
     first = np.array(files[0].origin)
     trees = []
     for each in files:

@@ -36,10 +36,7 @@ def planar_error(wind_name: str) -> float:
 
 
 def spatial_error(size: float) -> tuple[float, float]:
-    """
-    Error over the length, rms, and the largest deflection in degrees, of swaying in two
-    axes.
-    """
+    """Rms error over the length, and the largest deflection [deg], of swaying in two axes."""
 
     def wind(t: NDArray[np.float64]) -> NDArray[np.float64]:
         e1 = 0.75 * np.sin(2 * np.pi * 0.23 * t) + 0.3 * np.sin(2 * np.pi * 0.7 * t)

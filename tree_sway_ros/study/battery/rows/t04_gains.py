@@ -15,11 +15,7 @@ DT = 1 / 60
 
 
 def largest_gap(base: str, gain: float, gusts_of: float = 10.0, steps: int = 1200) -> float:
-    """
-    Largest gap in [m] in gusts of a size in [N] at a gain alpha h = beta h, infinite if it blows
-    up.
-
-    """
+    """Largest gap [m] in gusts of a size [N] at a gain alpha h = beta h; infinite if unstable."""
     chain, method = single_segment(2.0, 0.05), Baumgarte(gain, gain, base)
     gusts = np.repeat(np.random.default_rng(0).normal(0.0, gusts_of, steps // 12), 12)
     loads = np.empty((steps, 3, 1, 2))

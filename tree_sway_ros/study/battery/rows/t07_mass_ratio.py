@@ -17,10 +17,7 @@ RATIOS = tuple(10.0**k for k in range(-6, 7, 2))
 
 
 def pair(ratio: float) -> PlanarChain:
-    """
-    Two rods of half a metre, joints as stiff as what they carry is heavy, first mode at 2
-    Hz.
-    """
+    """Two rods of half a metre, first mode at 2 Hz, joints as stiff as their load is heavy."""
     mass = np.array([1.0, ratio])
     table = np.array([[m, m * 0.25 / 12, 0.25, 0.5, 0.0, 0.0] for m in mass])
     w = 2 * np.pi * 2.0

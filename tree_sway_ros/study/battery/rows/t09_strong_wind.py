@@ -16,10 +16,7 @@ SIZES = (0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4)
 
 
 def run(full: bool = False) -> list[Row]:
-    """
-    Blow at a branch of 2 Hz for a minute at each size; check the angle, the bound and the count.
-
-    """
+    """Blow at a branch of 2 Hz for a minute at each size; check angle, bound and count."""
     branch, rows = Branch(), []
     limit = branch.guard[1]
     for kind in (np.float64, np.float32):

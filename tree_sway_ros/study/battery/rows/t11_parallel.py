@@ -30,10 +30,7 @@ def _wind(along: float, off: float, turbulence: float) -> Any:
 
 
 def run(full: bool = False) -> list[Row]:
-    """
-    Compare the largest frame step with the ball joint's, from tip and from root, then the plane.
-
-    """
+    """Compare the largest step with the ball joint's, from tip and root, then the plane."""
     branch, rows = Branch(), []
     for kind in (np.float64, np.float32):
         for name, off, turbulence in (

@@ -17,17 +17,14 @@ STALL = 0.5
 
 
 def uneven_steps(frames: int) -> NDArray[np.float64]:
-    """Steps in [s] that jitter by half, with a stall every 60."""
+    """Return steps in [s] that jitter by half, with a stall every 60."""
     dt = (1 + 0.5 * np.sin(1.7 * np.arange(1, frames + 1))) / 60
     dt[59::60] = STALL
     return np.asarray(dt)
 
 
 def run(full: bool = False) -> list[Row]:
-    """
-    Compare uneven steps with one step of the same total; count what a stall feeds the
-    others.
-    """
+    """Compare uneven steps with one step of the same total; count what stalls cost the others."""
     rows = []
     steps = uneven_steps(180)
     for kind, bound in ((np.float64, 1e-12), (np.float32, 1e-5)):

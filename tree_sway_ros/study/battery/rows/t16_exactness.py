@@ -47,10 +47,7 @@ def textbook(inertia: float, damping: float, stiffness: float, dt: float) -> tup
 
 
 def worst_coefficient(exponents: range) -> float:
-    """
-    Largest relative error of any coefficient; c5, which crosses zero, relative to its two terms.
-
-    """
+    """Largest relative error of any coefficient; that of c5, which crosses 0, by its terms."""
     worst = 0.0
     for exponent in exponents:
         for ratio in RATIOS:

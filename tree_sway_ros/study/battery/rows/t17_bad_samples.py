@@ -17,10 +17,7 @@ STEPS, AT = 240, 120
 
 
 def run(full: bool = False) -> list[Row]:
-    """
-    Pass a smooth wind with one bad sample through the gate and the kernel; then the kernel alone.
-
-    """
+    """Pass a smooth wind with one bad sample through gate and kernel; then the kernel alone."""
     rows = []
     for kind in (np.float64, np.float32):
         for bad in BAD:

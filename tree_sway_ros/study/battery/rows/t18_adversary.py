@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-T18: adversarial runs: loads that switch with the motion, at random frequency, damping and angle.
-
-"""
+"""T18: adversarial runs: loads switch with the motion, at random frequency, damping and angle."""
 
 from __future__ import annotations
 
@@ -26,10 +23,7 @@ Array = NDArray[Any]
 
 
 def adversaries(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
-    """
-    w h from 0.1 to 100, z from 0.001 to 1, a share of the largest load, any angle in space, (n,).
-
-    """
+    """Draw w h in 0.1 to 100, z in 0.001 to 1, a share of the load, any angle in space, (n,)."""
     ratio = 10 ** rng.uniform(-1, 2, n)
     damping = 10 ** rng.uniform(-3, 0, n)
     direction = rng.normal(size=(n, 3))
@@ -56,10 +50,7 @@ def _attack(
     steps: int,
     peak: Array,
 ) -> None:
-    """
-    Largest |e| of each run, the load against the motion: it pushes along the velocity, or turns.
-
-    """
+    """Largest |e| of each run under a load along the velocity, or turning against the motion."""
     for n in range(len(rows)):
         c, g, d = rows[n], guard[n], direction[n]
         x = y = vx = vy = c[0] * 0

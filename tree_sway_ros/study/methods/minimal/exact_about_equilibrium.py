@@ -62,9 +62,7 @@ def _remainder(
 
 @kernel
 def _advance(a: Array, state: Array, centre: Array, first: Array, last: Array, dt: float) -> Array:
-    """Exact motion about the centre under an acceleration that runs linearly from first to
-    last.
-    """
+    """Exact motion about the centre under an acceleration that is linear from first to last."""
     n = len(centre)
     full = a.copy()
     for i in range(n):

@@ -18,7 +18,7 @@ Array = NDArray[Any]
 
 @kernel
 def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> int:
-    """The moment of the start, held over the step."""
+    """Hold the moment of the start over the step."""
     moment = rest_moment(table, state[0], state[1], load[0])
     state[:2] = apply(options, 1, state[:2], moment)
     return 0

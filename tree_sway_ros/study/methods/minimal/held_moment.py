@@ -1,8 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What the exact methods share: the moment beside the straight chain's own, and its
-propagation.
-"""
+"""What exact methods share: the moment beside the straight chain's, and its propagation."""
 
 from __future__ import annotations
 
@@ -21,11 +19,9 @@ Array = NDArray[Any]
 @kernel
 def rest_moment(table: Array, theta: Array, omega: Array, load: Array) -> Array:
     """
-    Moment N in ``M0 theta'' + C theta' + K theta = N``, M0 the straight chain's inertia, (n,) [N
-    m].
+    Moment N in ``M0 theta'' + C theta' + K theta = N``, M0 the straight chain's, (n,) [N m].
 
     For one segment it is the load's moment; a chain adds what its bend changes in the inertia.
-
     """
     n = len(table)
     out = moments(table, theta, load)
@@ -54,10 +50,7 @@ def rest_moment(table: Array, theta: Array, omega: Array, load: Array) -> Array:
 
 @kernel
 def apply(options: Array, hold: int, rows: Array, moment: Array) -> Array:
-    """
-    Propagate angles and rates under the moment of the start alone; with hold, for all of the step.
-
-    """
+    """Propagate angles and rates under the moment of the start; with hold, over all the step."""
     n = len(moment)
     out = np.empty((2, n), rows.dtype)
     for part in range(2):

@@ -17,7 +17,7 @@ Array = NDArray[Any]
 
 @kernel
 def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> int:
-    """New rates from the old angles, new angles from the new rates."""
+    """Find new rates from the old angles, new angles from the new rates."""
     accel = acceleration(table, state[0], state[1], load[0])
     for i in range(len(accel)):
         state[1, i] = state[1, i] + dt * accel[i]

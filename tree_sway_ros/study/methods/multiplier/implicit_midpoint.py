@@ -18,7 +18,7 @@ Array = NDArray[Any]
 
 @kernel
 def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> int:
-    """Forces and reaction at the midpoint, the constraint at the end."""
+    """Take forces and reaction at the midpoint, the constraint at the end."""
     n = len(table)
     q, v = state[0].copy(), state[1].copy()
     accel, lam = state[2].copy(), state[3, : 2 * n].copy()

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Back to the constraint: positions by Newton's method, velocities in one solve, in the mass metric.
-
-"""
+"""Back to the constraint: positions by Newton's method, velocities by one solve, both by mass."""
 
 from __future__ import annotations
 

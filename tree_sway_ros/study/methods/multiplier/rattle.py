@@ -25,10 +25,7 @@ Array = NDArray[Any]
 
 @kernel
 def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> int:
-    """
-    Half a kick that lands the positions on the constraint, half a kick that does the velocities.
-
-    """
+    """Half a kick that lands positions on the constraint, half a kick that lands velocities."""
     n = len(table)
     q, half, g0 = state[0].copy(), state[1].copy(), jacobian(table, state[0])
     force = forces(table, q, half, load[0])

@@ -17,7 +17,7 @@ Array = NDArray[Any]
 
 @kernel
 def step(table: Array, state: Array, load: Array, dt: float, options: Array) -> int:
-    """New velocities move the positions."""
+    """Move the positions by the new velocities."""
     euler(table, state, load[0], dt, 0.0, 0.0, 1)
     return 0
 
