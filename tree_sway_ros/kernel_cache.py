@@ -121,10 +121,12 @@ class KernelCache:
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return compiled code for a signature, or None if there is none that can be used."""
-        target_context.refresh()
         path = self._path(sig, target_context.codegen())
         if path is None or not path.is_file():
             return None
+        # What numba knows to compile from takes long to load; code that is compiled asks for none
+        # of it, and whatever compiles loads it then.
+        import_module('numba.core.runtime').rtsys.initialize(target_context)
         try:
             payload = pickle.loads(path.read_bytes())
             return self._codec.rebuild(None, target_context, payload)

@@ -19,6 +19,7 @@ from tree_sway_ros.core.wind.gate import LARGEST_LEAD
 from tree_sway_ros.core.wind.height_profile import WindProfile
 from tree_sway_ros.core.wind.intake import WindIntake
 from tree_sway_ros.errors import ParameterError
+from tree_sway_ros.files.kept_set_ups import KeptSetUps
 from tree_sway_ros.files.stands.shard import dealt
 from tree_sway_ros.files.trees.placement import placed_scene
 from tree_sway_ros.files.trees.source import open_scene
@@ -100,7 +101,9 @@ class SolverNode(TreeSwayNode):
                 ground=0.0 if isinstance(source, ForestFile) else self.values['z'],
             ),
         )
-        self.simulator: Simulator = source.simulator(settings, **self.values('tolerance'))
+        self.simulator: Simulator = source.simulator(
+            settings, kept=KeptSetUps(), **self.values('tolerance')
+        )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None

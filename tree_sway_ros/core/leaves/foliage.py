@@ -21,6 +21,7 @@ from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.tree.leaf_traits import LeafTraits
 from tree_sway_ros.core.tree.species import leaf_traits
 from tree_sway_ros.core.tree.tree import Tree
+from tree_sway_ros.core.wind.convention import quaternion_of_axes
 from tree_sway_ros.errors import ParameterError
 
 MAX_LEAF_AREA_INDEX = 6.0
@@ -162,15 +163,11 @@ def no_clusters() -> LeafClusters:
 
 def _facing_up(away: Floats, rest: Floats) -> Floats:
     """Orientations w x y z whose x runs away from the twig and whose z looks up most."""
-    from scipy.spatial.transform import (
-        Rotation,  # it takes long to load, and only drawing needs it
-    )
-
-    up = Rotation.from_quat(rest[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0])
+    w, x, y, z = rest.T
+    up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], 1)
     z = up - np.einsum('ij,ij->i', up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)
     # A leaf that points straight up may look any way across.
     z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])
     z /= np.linalg.norm(z, axis=1)[:, None]
-    axes = np.stack([away, np.cross(z, away), z], axis=2)
-    return np.asarray(Rotation.from_matrix(axes).as_quat()[:, [3, 0, 1, 2]])
+    return np.array([quaternion_of_axes(*axes) for axes in zip(away, z, strict=True)])

@@ -14,7 +14,7 @@ on the key rotations, w circular frequencies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property, partial
 
 import numpy as np
@@ -38,7 +38,7 @@ class ModalBank:
     """
     Oscillators of natural modes of a tree, its slowest or all, of one damping ratio.
 
-    The integrator is one of `REAL_TIME`.
+    ``made_of`` are the arrays of `modal_arrays`; the integrator is one of `REAL_TIME`.
     """
 
     carries = True
@@ -48,26 +48,22 @@ class ModalBank:
     def __init__(
         self,
         branches: Records,
-        reduction: Reduction,
-        modes: Modes,
+        made_of: Mapping[str, Floats],
         damping_ratio: float,
         integrator: str = DEFAULT,
     ) -> None:
         """Make room for the coefficients and the state."""
-        n, m = modes.shapes.shape
-        self.branches = branches
-        # One mode after another, so that a loop over coordinates is one of vectors.
-        self._shapes = np.ascontiguousarray(modes.shapes.T)
-        self.shapes, self.integrator = self._shapes.T, integrator
-        self.stiffness = modes.circular**2
-        self.damping = 2.0 * damping_ratio * modes.circular
-        diagonal = np.asarray(reduction.stiffness.diagonal())
-        self.flexibility = reduction.flexibility if m < n else np.zeros(n)
-        held = reduction.stiffness @ modes.shapes * self.flexibility[:, None] / self.stiffness
-        self.held = np.ascontiguousarray(held.T)
-        self.limit = LOAD_MAX * diagonal
-        self._momentum = (reduction.mass @ modes.shapes).T
-        self._participation = _participation(branches, modes.shapes)
+        self._shapes, self.integrator = made_of['shapes'], integrator
+        m, n = self._shapes.shape
+        self.branches, self.shapes = branches, self._shapes.T
+        self.stiffness = made_of['circular'] ** 2
+        self.damping = 2.0 * damping_ratio * made_of['circular']
+        self.flexibility, self.held = made_of['flexibility'].copy(), made_of['held'].copy()
+        self.limit = LOAD_MAX * made_of['diagonal']
+        self.weight = made_of['weight']
+        """Stiffness by gravity of each mode in [1/s^2], (m,); below 0 where weight softens it."""
+        self._momentum = made_of['momentum'].T
+        self._participation = made_of['participation']
         self.work = np.zeros(len(branches), dtype=WORK)
         self._loads = load_records(branches)
         self.modal = np.zeros((6, m))
@@ -161,6 +157,25 @@ class ModalBank:
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
         self._loads['slip'] = 0.0
+
+
+def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
+    """Find what a `ModalBank` is made of, all of it arrays that can be kept."""
+    n, m = modes.shapes.shape
+    # One mode after another, so that a loop over coordinates is one of vectors.
+    shapes = np.ascontiguousarray(modes.shapes.T)
+    flexibility = reduction.flexibility if m < n else np.zeros(n)
+    held = reduction.stiffness @ modes.shapes * flexibility[:, None] / modes.circular**2
+    return {
+        'circular': modes.circular,
+        'shapes': shapes,
+        'flexibility': flexibility,
+        'held': np.ascontiguousarray(held.T),
+        'diagonal': np.asarray(reduction.stiffness.diagonal()),
+        'weight': np.einsum('im,im->m', shapes.T, reduction.gravity @ shapes.T),
+        'momentum': reduction.mass @ modes.shapes,
+        'participation': _participation(branches, modes.shapes),
+    }
 
 
 def _participation(branches: Records, shapes: Floats) -> Floats:

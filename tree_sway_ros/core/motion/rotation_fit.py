@@ -13,7 +13,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy import sparse
 
 from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.kernel import fused
@@ -99,4 +98,6 @@ def coordinates_within(branches: Records, moving: Ints, whole: Records) -> Any:
         columns += [column, column + 1, column, column + 1, *(column + further)]
         values += [*(axes @ own.T).ravel(), *np.ones(len(further))]
     shape = (int(whole['n_coordinates'].sum()), int(branches['n_coordinates'].sum()))
+    from scipy import sparse  # it takes long to load
+
     return sparse.csr_matrix((values, (rows, columns)), shape=shape)

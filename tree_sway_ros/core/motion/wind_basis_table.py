@@ -23,7 +23,8 @@ with V the few shapes that the static rest of the modes left out takes.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -113,6 +114,20 @@ class WindBasisTable:
         Share by which the static deflection of the tree, leaning as gusts have it, is told wrong.
 
     """
+
+    @classmethod
+    def of_arrays(cls, kept: Mapping[str, Any]) -> WindBasisTable:
+        """Return the table whose `arrays` these are."""
+        made = object.__new__(cls)
+        made.record, made.rest_shapes = kept['table'], kept['rest_shapes']
+        made.error = float(kept['table_error'])
+        return made
+
+    @property
+    def arrays(self) -> dict[str, Any]:
+        """All that it consists of."""
+        error = np.array(self.error)
+        return {'table': self.record, 'rest_shapes': self.rest_shapes, 'table_error': error}
 
     def __init__(self, bank: ModalBank, drag_law: DragLaw, degree: int) -> None:
         """Ask the tree for its loads in all winds."""

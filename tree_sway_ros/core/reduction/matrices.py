@@ -25,7 +25,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import sparse
 
 from tree_sway_ros.core.arrays import Floats, Ints
 from tree_sway_ros.core.branch.beam import cross, cross_matrix, energies
@@ -177,6 +176,8 @@ class _Blocks:
             self.values.append(values.ravel())
 
     def symmetric(self, shape: tuple[int, int]) -> Any:
+        from scipy import sparse  # it takes long to load, and a set-up that is kept needs none
+
         entries = np.concatenate(self.values)
         where = np.concatenate(self.rows), np.concatenate(self.columns)
         return sparse.coo_matrix((entries, where), shape=shape).tocsc()

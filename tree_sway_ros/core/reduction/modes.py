@@ -14,9 +14,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
-from scipy.sparse import csc_matrix
-from scipy.sparse import linalg as sparse_linalg
 
 from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.reduction.matrices import Reduction
@@ -66,6 +63,10 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
         A tree that buckles under its own weight, or a branch without mass.
 
     """
+    from scipy import linalg
+    from scipy.sparse import csc_matrix
+    from scipy.sparse import linalg as sparse_linalg
+
     n = reduction.n_coordinates
     wanted = n if count is None else count
     if count is None and n > MOST_ALL_MODES:
@@ -134,6 +135,10 @@ def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
     is exact (mode acceleration with Ritz vectors: Wilson, Yuan & Dickens, 1982). There are up to l
     more, orthogonal to them and to each other in mass and stiffness.
     """
+    from scipy import linalg
+    from scipy.sparse import csc_matrix
+    from scipy.sparse import linalg as sparse_linalg
+
     stiffness, mass = csc_matrix(reduction.stiffness), reduction.mass
     rest = sparse_linalg.splu(stiffness).solve(np.ascontiguousarray(loads))
     rest -= loads * reduction.flexibility[:, None]
@@ -156,6 +161,10 @@ def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     """Critical over real weight, infinite without gravity; the coordinate that gives way most."""
+    from scipy import linalg
+    from scipy.sparse import csc_matrix
+    from scipy.sparse import linalg as sparse_linalg
+
     n = reduction.n_coordinates
     softening = -reduction.gravity
     if softening.nnz == 0 or abs(softening).max() == 0.0:

@@ -16,7 +16,6 @@ import ctypes
 from functools import cache
 
 from numpy.linalg import _umath_linalg
-from scipy.linalg import _fblas
 
 _NAMES = ('scipy_openblas_{}64_', 'scipy_openblas_{}', 'openblas_{}64_', 'openblas_{}')
 
@@ -37,6 +36,8 @@ def one_thread() -> Iterator[None]:
 @cache
 def _switches() -> tuple[tuple[Callable[[int], object], Callable[[], int]], ...]:
     """Functions that set and tell the number of threads, of each OpenBLAS there is."""
+    from scipy.linalg import _fblas  # it takes long to load
+
     found = []
     for module in (_umath_linalg, _fblas):
         try:

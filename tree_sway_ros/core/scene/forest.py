@@ -20,6 +20,7 @@ from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.checks import array_to_fill
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
+from tree_sway_ros.core.simulator.assembly import Kept
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
@@ -78,6 +79,7 @@ class Forest:
         tolerance: float = 0.005,
         anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
+        kept: Kept | None = None,
         **changes: Any,
     ) -> None:
         """Calibrate every tree where it stands."""
@@ -98,7 +100,7 @@ class Forest:
         self.names = tuple(names)
         self.tree: Tree = joined([tree.placed() for tree in trees])
         self.simulators = tuple(
-            _simulator(tree, tree.settings_where_it_stands(self.settings), tolerance)
+            _simulator(tree, tree.settings_where_it_stands(self.settings), tolerance, kept)
             for tree in trees
         )
         self.gusts = GustHistory(
@@ -240,10 +242,12 @@ class Forest:
         self._wind[:] = 0.0
 
 
-def _simulator(tree: PlacedTree, settings: Settings, tolerance: float) -> TreeSimulator:
+def _simulator(
+    tree: PlacedTree, settings: Settings, tolerance: float, kept: Kept | None
+) -> TreeSimulator:
     """Make the simulator of one tree where it stands; what is wrong with it names the tree."""
     placed = tree.placed()
     try:
-        return make_simulator(placed, tree.species, settings, tolerance=tolerance)
+        return make_simulator(placed, tree.species, settings, tolerance=tolerance, kept=kept)
     except TreeSwayError as error:
         raise error.inside(tree.name) from error

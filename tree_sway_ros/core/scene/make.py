@@ -1,14 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""One way to every model of a tree, by its name."""
+"""One way to every model of a tree, by its name; what only one needs is loaded for that one."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway_ros.core.simulator.assembly import Kept
 from tree_sway_ros.core.simulator.protocol import Simulator, TreeSimulator
-from tree_sway_ros.core.simulator.segments import SegmentsSimulator
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
 from tree_sway_ros.core.tree.grown_tree import GrownTree, tree_and_species
@@ -23,6 +22,7 @@ def make_simulator(
     *,
     tolerance: float = 0.005,
     budget: float = 0.0,
+    kept: Kept | None = None,
     **changes: Any,
 ) -> TreeSimulator:
     """
@@ -37,6 +37,8 @@ def make_simulator(
     budget
         Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the
         tolerance; 0 for none.
+    kept
+        Where the set-ups of `SwaySimulator` are kept; nowhere if None.
     **changes
         Fields of the settings.
 
@@ -51,10 +53,14 @@ def make_simulator(
     chosen = settings_with(settings, changes)
     bare, wood = tree_and_species(tree, species)
     if chosen.model == 'auto':
+        from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
+
         return AdaptiveSimulator(bare, wood, chosen, tolerance=tolerance, budget=budget)
     if chosen.model == 'segments':
+        from tree_sway_ros.core.simulator.segments import SegmentsSimulator
+
         return SegmentsSimulator(bare, wood, chosen)
-    return SwaySimulator(bare, wood, chosen)
+    return SwaySimulator(bare, wood, chosen, kept=kept)
 
 
 def simulators_of(simulator: Simulator) -> tuple[TreeSimulator, ...]:

@@ -37,6 +37,7 @@ from tree_sway_ros.core.motion.wind_basis import (
 from tree_sway_ros.core.motion.wind_basis_force import pace_layout
 from tree_sway_ros.core.scene.make import make_simulator
 from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree, refuse_nowhere
+from tree_sway_ros.core.simulator.assembly import Kept
 from tree_sway_ros.core.simulator.live_tuning import Tuning
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
@@ -131,6 +132,8 @@ class Stand(KeepsState):
         How many threads place, 1 to 64.
     progress
         Called with the number of kinds that are ready, while the stand is set up.
+    kept
+        As of `SwaySimulator`.
     **changes
         Fields of the settings, as keywords.
 
@@ -160,6 +163,7 @@ class Stand(KeepsState):
         convection_ratio: float = 1.0,
         threads: int = 1,
         progress: Callable[[int], object] = lambda done: None,
+        kept: Kept | None = None,
         **changes: Any,
     ) -> None:
         """Make a table for every kind that is used."""
@@ -172,7 +176,7 @@ class Stand(KeepsState):
         self._kinds = {name: kinds[name] for name in self._used}
         self._models: list[SwaySimulator] = []
         for done, name in enumerate(self._used, start=1):
-            self._models.append(_model_of(name, kinds[name], self.settings))
+            self._models.append(_model_of(name, kinds[name], self.settings, kept))
             progress(done)
         banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
         self._banks = banks
@@ -519,11 +523,11 @@ def _oscillators(model: SwaySimulator) -> WindBasisBank:
     return oscillators
 
 
-def _model_of(name: str, kind: StandKind, settings: Settings) -> SwaySimulator:
+def _model_of(name: str, kind: StandKind, settings: Settings, kept: Kept | None) -> SwaySimulator:
     """Make the model that trees of a kind share; what is wrong with it names the kind."""
     try:
         species = kind.species if kind.species is not None else species_named(kind.tree.species)
-        return SwaySimulator(kind.tree, species, replace(settings, model='wind_basis'))
+        return SwaySimulator(kind.tree, species, replace(settings, model='wind_basis'), kept=kept)
     except TreeSwayError as error:
         raise error.inside(name) from error
 

@@ -8,10 +8,10 @@ What only one model needs is imported where that model is made.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import cast, Protocol, TYPE_CHECKING
+from typing import Any, cast, Protocol, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,18 +29,18 @@ from tree_sway_ros.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway_ros.core.motion.placing import place
-from tree_sway_ros.core.motion.records import branch_layout, WORK
+from tree_sway_ros.core.motion.records import branch_layout, in_lines, WORK
 from tree_sway_ros.core.reduction.matrices import reduce_tree, Reduction
 from tree_sway_ros.core.reduction.modes import (
     Modes,
     most_driven,
     natural_modes,
-    refuse_buckling,
     with_static,
 )
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings
+from tree_sway_ros.core.state.tree_state import digest_of
 from tree_sway_ros.core.tree.species import Species
 from tree_sway_ros.core.tree.tree import Tree
 from tree_sway_ros.errors import ParameterError
@@ -115,6 +115,16 @@ Coordinates of all further modes together that a tree which wind drives in many 
 frame takes up to a tenth longer by them.
 
 """
+
+
+class Kept(Protocol):
+    """Where set-ups are kept, for a next start that has the same one."""
+
+    def read(self, digest: str) -> dict[str, Any] | None:
+        """Arrays by name, as they were written under this digest; None if there are none."""
+
+    def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
+        """Keep arrays, or leave it."""
 
 
 class Frozen:
@@ -243,12 +253,23 @@ class Layer:
 
 
 class CalibratedTree:
-    """A tree calibrated once, for all models; its models run in numpy if ``plain``."""
+    """
+    A tree calibrated once, for all models; its models run in numpy if ``plain``.
+
+    What steps modes is looked for first where set-ups are ``kept``, and put there.
+    """
 
     def __init__(
-        self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
+        self,
+        tree: Tree,
+        species: Species,
+        settings: Settings,
+        *,
+        plain: bool = False,
+        kept: Kept | None = None,
     ) -> None:
         """Wait to be asked."""
+        self._kept = kept
         self.plain = plain or bool(WHY_PLAIN)
         if settings.root_stiffness is not None:
             species = replace(species, root_stiffness=settings.root_stiffness)
@@ -295,7 +316,6 @@ class CalibratedTree:
 
         return delays_of(self.tree, self.leaf_load_area)
 
-    @one_thread()
     def bank(self, model: str, n_modes: int | None = None) -> Bank:
         """
         Build the oscillators of a model, ``modes`` and ``wind_basis`` with so many modes.
@@ -316,40 +336,76 @@ class CalibratedTree:
                 where='model',
                 cure=f'use one of: {", ".join(MODELS)}; make_simulator knows the others',
             )
-        layer, settings = self.layer(model), self.settings
+        if model in _COUPLED:
+            return self._bank_of_modes(model, n_modes)
+        layer = self.layer(model)
         branches, oscillators = layer.branches.copy(), cast(Oscillators, None)
         if model == 'frozen':
             oscillators, frequencies = Frozen(branches, layer.reduction.n_coordinates), np.zeros(0)
-        elif model in _COUPLED:
-            modes = self._modes(model, n_modes)
-            modal = self._modal_bank()(
-                branches, layer.reduction, modes, self.damping_ratio, settings.integrator
-            )
-            oscillators, frequencies = modal, modes.frequencies
-            if model == 'wind_basis':
-                from tree_sway_ros.core.motion.wind_basis import WindBasisBank
-                from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
-
-                need_compiler("the model 'wind_basis'")
-                n = len(modes.circular)
-                if n not in self._tables:
-                    self._tables[n] = WindBasisTable(modal, self.drag_law, settings.degree)
-                oscillators = WindBasisBank(modal, self._tables[n])
         else:
-            refuse_buckling(self.tree, layer.reduction)
-            from tree_sway_ros.core.tree.similar_twigs import twig_sources
-
-            copy_twigs(branches, twig_sources(self.tree, self.settings.twig_tolerance))
-            bank = self._uncoupled(layer, branches, carries=model == 'subtree')
+            oscillators = bank = self._bank_of_branches(layer, branches, model)
             frequencies = np.sort(np.sqrt(bank.stiffness / bank.inertia)) / (2.0 * np.pi)
-            oscillators = bank
+        return self._laid_out(oscillators, branches, layer.segments, frequencies, layer.mass)
+
+    def _bank_of_modes(self, model: str, n_modes: int | None) -> Bank:
+        """Take a set-up that is kept, or make one; the same bits either way."""
+        digest, found = '', None
+        if self._kept is not None:
+            digest = digest_of(self.tree, self.species, replace(self.settings, model=model))
+            digest = f'{digest}-{n_modes}'
+            found = self._kept.read(digest)
+        made_of = self._modal_arrays(model, n_modes) if found is None else found
+        branches = made_of['branches'].copy()
+        modal = self._modal_bank()(branches, made_of, self.damping_ratio, self.settings.integrator)
+        oscillators: Oscillators = modal
+        if model == 'wind_basis':
+            from tree_sway_ros.core.motion.wind_basis import WindBasisBank
+            from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
+
+            need_compiler("the model 'wind_basis'")
+            n = len(modal.stiffness)
+            if found is not None:
+                self._tables[n] = WindBasisTable.of_arrays(found)
+            if n not in self._tables:
+                self._tables[n] = self._table(modal)
+            made_of |= self._tables[n].arrays
+            oscillators = WindBasisBank(modal, self._tables[n])
+        if found is None and self._kept is not None:
+            self._kept.write(digest, made_of)
+        frequencies = made_of['circular'] / (2.0 * np.pi)
+        segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
+        mass = float(made_of['tree_mass'])
+        return self._laid_out(oscillators, branches, segments, frequencies, mass)
+
+    @one_thread()
+    def _modal_arrays(self, model: str, n_modes: int | None) -> dict[str, Any]:
+        """Find all that modes are stepped and placed by."""
+        from tree_sway_ros.core.motion.modal import modal_arrays
+
+        layer = self.coupled
+        told = {'branches': layer.branches, 'segments': layer.segments}
+        arrays = modal_arrays(layer.branches, layer.reduction, self._modes(model, n_modes))
+        return {**told, **arrays, 'tree_mass': np.array(layer.mass)}
+
+    @one_thread()
+    def _table(self, modal: ModalBank) -> WindBasisTable:
+        from tree_sway_ros.core.motion.wind_basis_table import WindBasisTable
+
+        return WindBasisTable(modal, self.drag_law, self.settings.degree)
+
+    def _laid_out(
+        self,
+        oscillators: Oscillators,
+        branches: Records,
+        segments: Records,
+        frequencies: Floats,
+        mass: float,
+    ) -> Bank:
         solved = int((branches['source'] == np.arange(len(branches))).sum())
-        segments = layer.segments
         heads = head_records(branches, segments)
         return Bank(
-            oscillators, branches, segments, heads, frequencies, solved, layer.mass,
-            plain=self.plain,
-        )  # fmt: skip
+            oscillators, branches, segments, heads, frequencies, solved, mass, plain=self.plain
+        )
 
     def at_rest(self, model: str) -> Bank:
         """Return what places the key rotations of a model, and steps nothing."""
@@ -455,12 +511,17 @@ class CalibratedTree:
 
         return ModalBank
 
-    def _uncoupled(self, layer: Layer, branches: Records, *, carries: bool) -> UncoupledBank:
+    @one_thread()
+    def _bank_of_branches(self, layer: Layer, branches: Records, model: str) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
         from tree_sway_ros.core.motion.uncoupled import UncoupledBank
         from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
+        from tree_sway_ros.core.reduction.modes import refuse_buckling
+        from tree_sway_ros.core.tree.similar_twigs import twig_sources
 
-        tree, settings = self.tree, self.settings
+        tree, settings, carries = self.tree, self.settings, model == 'subtree'
+        refuse_buckling(tree, layer.reduction)
+        copy_twigs(branches, twig_sources(tree, settings.twig_tolerance))
         inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)
         stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
         if not carries:

@@ -10,6 +10,7 @@ quotient, which errs by the square of what the shapes would change by.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 import math
 
@@ -107,7 +108,7 @@ class LiveTuning:
     def __init__(
         self,
         oscillators: ModalBank | UncoupledBank,
-        reduction: Reduction,
+        reduction: Callable[[], Reduction],
         settings: Settings,
         damping_ratio: float,
         is_tabled: bool = False,
@@ -119,14 +120,13 @@ class LiveTuning:
         self._stiffness, self._damping = oscillators.stiffness.copy(), oscillators.damping.copy()
         self._rest: list[tuple[Floats, Floats, float]] = []
         if isinstance(oscillators, ModalBank):
-            shapes = oscillators.shapes
-            weight = np.einsum('im,im->m', shapes, reduction.gravity @ shapes)
+            weight = oscillators.weight
             powers = ('flexibility', -1.0), ('held', -1.0), ('limit', 1.0)
             for name, power in powers:
                 array = getattr(oscillators, name)
                 self._rest.append((array, array.copy(), power))
         else:
-            diagonal = np.asarray(reduction.gravity.diagonal())
+            diagonal = np.asarray(reduction().gravity.diagonal())
             weight = diagonal.reshape(-1, 2).mean(axis=1)
         self._per_gravity = weight / settings.gravity if settings.gravity > 0.0 else 0.0 * weight
 

@@ -17,7 +17,7 @@ from tree_sway_ros.core.checks import array_to_fill, array_to_read
 from tree_sway_ros.core.kernel import entry_of, fused
 from tree_sway_ros.core.motion.drag import pressure
 from tree_sway_ros.core.oscillators.rule_names import CONDITIONALLY_STABLE
-from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen
+from tree_sway_ros.core.simulator.assembly import Bank, CalibratedTree, Frozen, Kept
 from tree_sway_ros.core.simulator.one_tree import OneTree
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
@@ -66,6 +66,8 @@ class SwaySimulator(OneTree, KeepsState):
         How it is modelled, on a model of `MODELS`; `make_simulator` makes those on the others too.
     calibrated
         The same tree, species and settings calibrated before, to share the work among models.
+    kept
+        Where set-ups are kept and found again; nowhere if None.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
@@ -94,6 +96,7 @@ class SwaySimulator(OneTree, KeepsState):
         settings: Settings | None = None,
         *,
         calibrated: CalibratedTree | None = None,
+        kept: Kept | None = None,
         **changes: Any,
     ) -> None:
         """Calibrate the tree; nothing is left to do at the first step but to compile."""
@@ -101,7 +104,7 @@ class SwaySimulator(OneTree, KeepsState):
         self.settings = in_season(tree, self.species, settings_with(settings, changes))
         self.counts = Counts()
         if calibrated is None:
-            calibrated = CalibratedTree(tree, self.species, self.settings)
+            calibrated = CalibratedTree(tree, self.species, self.settings, kept=kept)
         self.bank: Bank = calibrated.bank(self.settings.model, self.settings.n_modes)
         self.drag_law = calibrated.drag_law
         self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
@@ -316,7 +319,7 @@ class SwaySimulator(OneTree, KeepsState):
             calibrated = self._calibrated
             self._tuning = LiveTuning(
                 of.modal if of.is_tabled else of,  # type: ignore[attr-defined, arg-type]
-                calibrated.layer(self.model).reduction,
+                lambda: calibrated.layer(self.model).reduction,
                 self.settings,
                 calibrated.damping_ratio,
                 of.is_tabled,

@@ -10,7 +10,7 @@ round.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 import math
@@ -186,7 +186,7 @@ class WindConvention:
                 return previous
             east, north = self.project(np.eye(3)[0]), self.project(np.eye(3)[1])
             along = east if np.linalg.norm(east) > 0.1 else north
-        return _quaternion_of_axes(along / math.hypot(*along), self._unit_normal)
+        return quaternion_of_axes(along / math.hypot(*along), self._unit_normal)
 
     def describe(self) -> str:
         """Return one line that says how the wind is read."""
@@ -200,7 +200,7 @@ class WindConvention:
         return text
 
 
-def _quaternion_of_axes(along: Floats, normal: tuple[float, float, float]) -> Floats:
+def quaternion_of_axes(along: Floats, normal: Iterable[float]) -> Floats:
     """Return the unit quaternion w, x, y, z that turns x and z into these unit vectors, (3,)."""
     (xx, xy, xz), (zx, zy, zz) = along.tolist(), normal
     yx, yy, yz = zy * xz - zz * xy, zz * xx - zx * xz, zx * xy - zy * xx

@@ -11,6 +11,7 @@ import numpy as np
 
 from tree_sway_ros.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway_ros.core.scene.make import make_simulator
+from tree_sway_ros.core.simulator.assembly import Kept
 from tree_sway_ros.core.simulator.protocol import TreeSimulator
 from tree_sway_ros.core.simulator.season import is_in_leaf
 from tree_sway_ros.core.simulator.settings import Settings, settings_with
@@ -65,11 +66,16 @@ class TreeFile:
         return self
 
     def simulator(
-        self, settings: Settings | None = None, *, tolerance: float = 0.005, **changes: Any
+        self,
+        settings: Settings | None = None,
+        *,
+        tolerance: float = 0.005,
+        kept: Kept | None = None,
+        **changes: Any,
     ) -> TreeSimulator:
         """Make a simulator of the tree; arguments and errors are those of `make_simulator`."""
         model = settings_with(settings, changes)
-        return make_simulator(self.tree, self.species, model, tolerance=tolerance)
+        return make_simulator(self.tree, self.species, model, tolerance=tolerance, kept=kept)
 
     def leaves(self, told: bool | None, count: int) -> LeafClusters | None:
         """

@@ -1,0 +1,68 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Set-ups of trees on disk, so that a solver that is started again sways sooner.
+
+They stand beside the compiled kernels, in numpy's own format, without pickles. A file is found by
+a digest of the tree, its species and settings, of the source of all that takes part, of the
+versions of numpy and scipy, and of the machine; what cannot be read is made anew, and what cannot
+be written is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+import hashlib
+from importlib.metadata import version
+from pathlib import Path
+import platform
+from typing import Any
+import zipfile
+
+import numpy as np
+
+from tree_sway_ros.core.simulator import assembly
+from tree_sway_ros.errors import TreeSwayError
+from tree_sway_ros.files.whole_file import whole_file
+from tree_sway_ros.kernel_cache import kernel_folder, source_digest
+
+MOST = 32
+"""So many set-ups are kept; the oldest go first."""
+
+
+class KeptSetUps:
+    """What `SwaySimulator` and others take as ``kept``; in the folder of the kernels if None."""
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder or kernel_folder()
+
+    def read(self, digest: str) -> dict[str, Any] | None:
+        """Arrays by name, as they were written under this digest; None if there are none."""
+        if self._folder is None:
+            return None
+        try:
+            with np.load(self._path(digest), allow_pickle=False) as kept:
+                return dict(kept)
+        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
+            return None
+
+    def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
+        """Keep arrays, all of them or nothing, in place of the oldest that are kept."""
+        if self._folder is None:
+            return
+        with suppress(OSError, TreeSwayError):
+            with whole_file(self._path(digest)) as partial, partial.open('wb') as file:
+                np.savez(file, allow_pickle=False, **arrays)
+            kept = sorted(self._folder.glob('*.set_up.npz'), key=lambda path: path.stat().st_mtime)
+            for path in kept[:-MOST]:
+                path.unlink()
+
+    def _path(self, digest: str) -> Path:
+        told = [
+            *(digest, source_digest(Path(assembly.__file__)), platform.node()),
+            *(version(name) for name in ('numpy', 'scipy')),
+        ]
+        key = hashlib.blake2b('\0'.join(told).encode(), digest_size=16).hexdigest()
+        assert self._folder is not None
+        return self._folder / f'{key}.set_up.npz'
