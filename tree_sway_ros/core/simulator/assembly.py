@@ -199,7 +199,7 @@ class Bank:
 
     @cached_property
     def bases(self) -> Floats:
-        """What `place` writes of bases, (b, 8)."""
+        """Return what `place` writes of bases, (b, 8)."""
         return np.zeros((len(self.branches), 8))
 
     @cached_property
