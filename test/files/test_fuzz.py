@@ -231,7 +231,7 @@ def test_large_and_nasty(tmp_path, suffix, content):
 
 
 def nasty_mtg(n: int) -> bytes:
-    """A chain of vertices without diameters, and mostly without positions."""
+    """Make a chain of vertices without diameters, and mostly without positions."""
     head = 'CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\n'
     head += 'ENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n'
     chain = ''.join(f'\t^<S{i}\n' for i in range(n))
@@ -239,7 +239,7 @@ def nasty_mtg(n: int) -> bytes:
 
 
 def nasty_swc(n: int) -> bytes:
-    """A chain of points at one place, each with a side branch."""
+    """Make a chain of points at one place, each with a side branch."""
     rows = ['1 1 0 0 0 1 -1', '2 1 0 0 1 1 1']
     rows += [f'{2 * i + 1} 1 0 0 1 .9 {2 * i - 1 if i > 1 else 2}' for i in range(1, n)]
     rows += [f'{2 * i + 2} 1 1 0 1 .1 {2 * i + 1}' for i in range(1, n)]

@@ -20,7 +20,7 @@ GIVEN = dict.fromkeys(ARGUMENTS, '')
 
 @pytest.fixture
 def launch_file():
-    """The launch file as a module; only where ROS's launch is installed."""
+    """Load the launch file as a module; only where ROS's launch is installed."""
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
     path = ROOT / 'launch' / 'sway.launch.py'
     spec = importlib.util.spec_from_file_location('sway_launch', path)

@@ -31,7 +31,7 @@ DEADLINE = 60.0
 
 
 def recorded(observer, path, format, topics):
-    """A bag of a second of states and wind."""
+    """Record a bag of a second of states and wind."""
     with BagWriter(path, format) as bag:
         recorder = Recorder(observer.context, bag, topics)
         try:

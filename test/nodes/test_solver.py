@@ -87,10 +87,7 @@ def test_a_late_joiner_gets_the_structure_and_the_next_pose(compose, observer, t
 
 
 def test_a_subscriber_that_takes_nothing_slows_nobody(compose, observer, tree_file):
-    """
-    It asks for every message and never takes one; when it does, it gets the latest, no backlog.
-
-    """
+    """It asks for all messages and takes none; when it does, it gets the latest, no backlog."""
     nodes = compose(solver={'tree': tree_file})
     idle = rclpy.create_node(
         'idle', context=observer.context

@@ -116,7 +116,7 @@ def transform(frame, parent, yaw, stamp=0):
 
 @pytest.fixture
 def tf(monkeypatch):
-    """What the wind node does with messages of /tf and /tf_static, where tf2_msgs may lack."""
+    """Give what the wind node does with messages of /tf and /tf_static, if tf2_msgs lacks too."""
     callbacks, subscribe = {}, WindNode.subscription
 
     def listen(node, topic, callback, *more, **named):

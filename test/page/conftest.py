@@ -127,7 +127,7 @@ class Browser:
             await asyncio.sleep(0.05)
 
     async def screenshot(self) -> bytes:
-        """The page as PNG."""
+        """Return the page as PNG."""
         return base64.b64decode((await self.call('Page.captureScreenshot'))['data'])
 
 

@@ -136,7 +136,7 @@ def test_who_is_not_there_or_sends_nonsense_is_told(server: PageServer) -> None:
 
 
 def arrivals() -> list[dict[str, object]]:
-    """A stream as it comes: late, twice, out of order, cut, from another clock."""
+    """Make a stream as it comes: late, twice, out of order, cut, from another clock."""
     rng = np.random.default_rng(4)
     frames: list[dict[str, object]] = []
     moment = latest = 1_000.0

@@ -22,7 +22,7 @@ THICK = np.array([0.1, 0.08, 0.02])
 
 
 def subtree(parents, of):
-    """A branch and all it carries, by asking every branch for its ancestors."""
+    """List a branch and all it carries, by asking every branch for its ancestors."""
     found = set()
     for branch in range(len(parents)):
         ancestor = branch
