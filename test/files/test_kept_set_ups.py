@@ -113,6 +113,15 @@ def test_a_damaged_set_up_is_made_anew(fork, kept, files, none_is_made, damage):
     assert poses_of(SwaySimulator(fork(), kept=kept)) == expected
 
 
+def test_a_set_up_under_the_name_of_another_is_not_taken(fork, stem, kept, files):
+    SwaySimulator(fork(), kept=kept)
+    (one,) = files()
+    SwaySimulator(stem(), kept=kept)
+    (other,) = set(files()) - {one}
+    one.replace(other)
+    assert poses_of(SwaySimulator(stem(), kept=kept)) == poses_of(SwaySimulator(stem()))
+
+
 def test_what_cannot_be_written_is_left(fork, tmp_path):
     nowhere = KeptSetUps(tmp_path / 'is not there')
     assert poses_of(SwaySimulator(fork(), kept=nowhere)) == poses_of(SwaySimulator(fork()))

@@ -30,6 +30,8 @@ from tree_sway_ros.kernel_cache import kernel_folder, source_digest
 MOST = 32
 """So many set-ups are kept; the oldest go first."""
 
+_SUFFIX = '.set_up.npz'
+
 
 class KeptSetUps:
     """What `SwaySimulator` and others take as ``kept``; in the folder of the kernels if None."""
@@ -41,9 +43,11 @@ class KeptSetUps:
         """Arrays by name, as they were written under this digest; None if there are none."""
         if self._folder is None:
             return None
+        key = _key(digest)
         try:
-            with np.load(self._path(digest), allow_pickle=False) as kept:
-                return dict(kept)
+            with np.load(self._folder / f'{key}{_SUFFIX}', allow_pickle=False) as kept:
+                arrays = dict(kept)
+            return arrays if str(arrays.pop('key')) == key else None
         except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
             return None
 
@@ -51,18 +55,19 @@ class KeptSetUps:
         """Keep arrays, all of them or nothing, in place of the oldest that are kept."""
         if self._folder is None:
             return
+        key = _key(digest)
         with suppress(OSError, TreeSwayError):
-            with whole_file(self._path(digest)) as partial, partial.open('wb') as file:
-                np.savez(file, allow_pickle=False, **arrays)
-            kept = sorted(self._folder.glob('*.set_up.npz'), key=lambda path: path.stat().st_mtime)
+            with whole_file(self._folder / f'{key}{_SUFFIX}') as partial:
+                np.savez(partial, allow_pickle=False, key=np.array(key), **arrays)
+            kept = sorted(self._folder.glob(f'*{_SUFFIX}'), key=lambda path: path.stat().st_mtime)
             for path in kept[:-MOST]:
                 path.unlink()
 
-    def _path(self, digest: str) -> Path:
-        told = [
-            *(digest, source_digest(Path(assembly.__file__)), platform.node()),
-            *(version(name) for name in ('numpy', 'scipy')),
-        ]
-        key = hashlib.blake2b('\0'.join(told).encode(), digest_size=16).hexdigest()
-        assert self._folder is not None
-        return self._folder / f'{key}.set_up.npz'
+
+def _key(digest: str) -> str:
+    """Name of a set-up, which it bears inside as well."""
+    told = [
+        *(digest, source_digest(Path(assembly.__file__)), platform.node()),
+        *(version(name) for name in ('numpy', 'scipy')),
+    ]
+    return hashlib.blake2b('\0'.join(told).encode(), digest_size=16).hexdigest()

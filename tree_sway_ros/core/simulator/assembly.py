@@ -352,7 +352,7 @@ class CalibratedTree:
         digest, found = '', None
         if self._kept is not None:
             digest = digest_of(self.tree, self.species, replace(self.settings, model=model))
-            digest = f'{digest}-{n_modes}'
+            digest = f'{digest}-{n_modes}-{WHY_PLAIN}'
             found = self._kept.read(digest)
         made_of = self._modal_arrays(model, n_modes) if found is None else found
         branches = made_of['branches'].copy()
