@@ -13,13 +13,13 @@ import tempfile
 # test beside.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
-from hypothesis import settings
-import numpy as np
-import pytest
+from hypothesis import settings  # noqa: E402
+import numpy as np  # noqa: E402
+import pytest  # noqa: E402
 
-from tree_sway_ros.core.kernel import WHY_PLAIN
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.core.kernel import WHY_PLAIN  # noqa: E402
+from tree_sway_ros.core.tree.building import tree_from_segments  # noqa: E402
+from tree_sway_ros.errors import MissingDependencyError  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -137,7 +137,7 @@ class _Sketch:
         return number
 
     def tree(self, **changes):
-        given = dict(parent=np.array(self.parent), branch=np.array(self.branch)) | changes
+        given = {'parent': np.array(self.parent), 'branch': np.array(self.branch)} | changes
         return tree_from_segments(self.start, self.end, self.diameter, **given)
 
 

@@ -31,6 +31,8 @@ def chain(run):
 
 
 class Processes:
+    """The processes of the chain, each to be killed and started again."""
+
     def __init__(self, run):
         self._run = run
         self._arguments = {}

@@ -148,21 +148,21 @@ def assert_sound_wind(record) -> None:
     assert (record.refused == 0) == (record.first_refused == '')
 
 
-def check(path: Path, name: str, content: bytes, format: str | None) -> None:
+def check(path: Path, name: str, content: bytes, kind: str | None) -> None:
     path.write_bytes(content)
     begin = time.process_time()
     taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     message = 'none'
     try:
         if name in WINDS:
-            assert_sound_wind(read_wind(path, format=format))
+            assert_sound_wind(read_wind(path, format=kind))
         else:
             if name == 'glade.yaml':
                 trees = parse_forest(
                     path.read_text(errors='replace'), lambda *_: SEEDLING, name
                 ).trees
             else:
-                trees = read_trees(path, format=format)
+                trees = read_trees(path, format=kind)
             for tree_file in trees:
                 assert_sound_tree(tree_file.tree)
     except TreeSwayError as error:
@@ -188,9 +188,9 @@ def fuzz(samples, folder: Path, n_examples: int) -> None:
         named=st.integers(0, 20),
     )
     def run(name, mutations, named):
-        format = None if named > 9 else formats[name][named % len(formats[name])]
+        kind = None if named > 9 else formats[name][named % len(formats[name])]
         content = mutated(samples[name], mutations)
-        check(folder / f'file{Path(name).suffix}', name, content, format)
+        check(folder / f'file{Path(name).suffix}', name, content, kind)
 
     run()
 

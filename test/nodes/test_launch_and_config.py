@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from tree_sway_ros.ros.process.topics import TOPICS
+from tree_sway_ros.ros.process.topics import TOPICS  # noqa: I100
 
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import TransformStamped  # noqa: E402
+from geometry_msgs.msg import TransformStamped  # noqa: E402, I100
 
 from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402

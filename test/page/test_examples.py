@@ -20,11 +20,11 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.page.server import PageServer, PageSettings
-from tree_sway_ros.page.session import Choices, Session
-from tree_sway_ros.page.wind_source import SimulatedWind
-from tree_sway_ros.tools.cli import main
+from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
+from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway_ros.page.session import Choices, Session  # noqa: E402
+from tree_sway_ros.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway_ros.tools.cli import main  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / 'examples' / 'web'

@@ -19,10 +19,10 @@ import pytest
 
 pytest.importorskip('zenoh', reason='eclipse-zenoh is not installed')
 
-from tree_sway_ros.page.client import StreamClient
-from tree_sway_ros.relay.line import Line
-from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
-from tree_sway_ros.tools.cli import main
+from tree_sway_ros.page.client import StreamClient  # noqa: E402
+from tree_sway_ros.relay.line import Line  # noqa: E402
+from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind  # noqa: E402
+from tree_sway_ros.tools.cli import main  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = str(ROOT / 'test' / 'files' / 'data' / 'seedling.yaml')

@@ -19,7 +19,7 @@ from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools.arguments import opened_scene
 
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
-from tree_sway_ros.tools import demo
+from tree_sway_ros.tools import demo  # noqa: E402, I100
 
 pytestmark = pytest.mark.ros
 

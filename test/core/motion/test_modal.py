@@ -20,7 +20,7 @@ DT = 1 / 120
 
 
 def modal(tree, **changes):
-    chosen = dict(model='modes', n_modes=4, gravity=0.0, enrich='none') | changes
+    chosen = {'model': 'modes', 'n_modes': 4, 'gravity': 0.0, 'enrich': 'none'} | changes
     bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(DT)
     return bank

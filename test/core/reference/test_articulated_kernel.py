@@ -42,7 +42,12 @@ def tree():
 
 
 def model(**changes):
-    chosen = dict(gravity=G, drag_coefficient=0.0, rayleigh=(0.0, 0.0), twist_ratio=0.8) | changes
+    chosen = {
+        'gravity': G,
+        'drag_coefficient': 0.0,
+        'rayleigh': (0.0, 0.0),
+        'twist_ratio': 0.8,
+    } | changes
     return ArticulatedTree(tree(), E, RHO, **chosen)
 
 

@@ -50,6 +50,8 @@ class FakeRclpy(types.ModuleType):
 
 
 class FakeNode:
+    """What `spin` asks of a node."""
+
     def __init__(self):
         self.failure = None
         self.is_done = False

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402
+from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402, I100
 from hypothesis import given, settings  # noqa: E402
 from hypothesis import strategies as st  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402

@@ -139,6 +139,8 @@ class TestAgainstPyConTurb:
 
 
 class TestClosedForms:
+    """Spectra, scales and deviations as the standard has them."""
+
     def test_both_share_one_inertial_subrange_that_is_locally_isotropic(self):
         frequency = np.array([1e4, 1e5])
         kaimal = Turbulence(7.0, 'kaimal').spectrum(frequency)
@@ -164,6 +166,8 @@ class TestClosedForms:
 
 
 class TestRecords:
+    """Records of any rate, length and seed."""
+
     @pytest.mark.parametrize('rate', [1.0, 4.0, 100.0])
     @pytest.mark.parametrize('model', SPECTRA)
     def test_the_variance_is_kept_at_every_rate(self, rate, model):
