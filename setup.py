@@ -23,8 +23,7 @@ def version():
 
 def launchers():
     """
-    Write one small executable per node, to stand in ``lib/tree_sway_ros/``, and return their
-    paths.
+    Write one small executable per node for ``lib/tree_sway_ros/``, and return their paths.
 
     ``ros2 run`` looks there. colcon installs the console scripts there itself (setup.cfg); pip
     puts them in ``bin/``, so a wheel brings these along, which go on to ``bin/``.

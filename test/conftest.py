@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-For all tests: repeatable Hypothesis, one thread per test, a ROS domain for each, small trees, and
-derivatives against differences.
-
-"""
+"""For all tests: repeatable Hypothesis, a thread and a ROS domain each, small trees, slopes."""
 
 import contextlib
 import os
@@ -17,13 +13,13 @@ import tempfile
 # test beside.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
-from hypothesis import settings
-import numpy as np
-import pytest
+from hypothesis import settings  # noqa: E402
+import numpy as np  # noqa: E402
+import pytest  # noqa: E402
 
-from tree_sway_ros.core.kernel import WHY_PLAIN
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.errors import MissingDependencyError
+from tree_sway_ros.core.kernel import WHY_PLAIN  # noqa: E402
+from tree_sway_ros.core.tree.building import tree_from_segments  # noqa: E402
+from tree_sway_ros.errors import MissingDependencyError  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -38,10 +34,9 @@ LAST_DOMAIN = 101
 @contextlib.contextmanager
 def _claimed_domain():
     """
-    A ROS domain that no other test has, of this run or another on this machine.
+    Claim a ROS domain that no other test has, of this run or another on this machine.
 
     It is locked until the end of the block, or of the process whatever it dies of.
-
     """
     if not sys.platform.startswith('linux'):
         yield random.randint(1, LAST_DOMAIN)
@@ -64,13 +59,13 @@ def _claimed_domain():
 
 @pytest.fixture(scope='session')
 def claimed_domain():
-    """``with claimed_domain() as domain:`` for fixtures that live longer than a test."""
+    """Claim a ROS domain, to the end of a block, for fixtures that outlive a test."""
     return _claimed_domain
 
 
 @pytest.fixture
 def domain():
-    """A ROS domain for one test alone."""
+    """Claim a ROS domain for one test alone."""
     pytest.importorskip('rclpy', reason='ROS 2 is not installed')
     with _claimed_domain() as claimed:
         yield claimed
@@ -142,15 +137,12 @@ class _Sketch:
         return number
 
     def tree(self, **changes):
-        given = dict(parent=np.array(self.parent), branch=np.array(self.branch)) | changes
+        given = {'parent': np.array(self.parent), 'branch': np.array(self.branch)} | changes
         return tree_from_segments(self.start, self.end, self.diameter, **given)
 
 
 def _fork(fine=1):
-    """
-    Stem, two limbs and a twig, none in one plane, the limbs bent; segments cut `fine` times finer.
-
-    """
+    """Stem, two limbs and a twig, none in one plane, the limbs bent; cut `fine` times finer."""
     s = _Sketch()
     stem = s.add(None, 0, (0.05, 0.0, 1.0), 2.0, 0.030, 0.012, 4 * fine, sag=0.05)
     limb = s.add(stem, 2 * fine, (1.0, 0.3, 0.6), 0.9, 0.014, 0.006, 3 * fine, sag=0.08)
@@ -160,7 +152,7 @@ def _fork(fine=1):
 
 
 def _mirror_fork():
-    """A tree that is its own mirror image in the plane y = 0, and the partner of each segment."""
+    """Make a tree that is its own mirror image in the plane y = 0, and each segment's partner."""
     s = _Sketch()
     stem = s.add(None, 0, (0.1, 0.0, 1.0), 1.5, 0.02, 0.01, 3)
     for side in (1.0, -1.0):
@@ -175,10 +167,7 @@ def _mirror_fork():
 
 
 def _random_tree(seed, n=12):
-    """
-    Segments in random order, each on an earlier one's end; returns start, end, diameter, parent.
-
-    """
+    """Segments in random order on earlier ones' ends; returns start, end, diameter, parent."""
     rng = np.random.default_rng(seed)
     start, end = np.zeros((n, 3)), np.zeros((n, 3))
     parent = np.full(n, -1)

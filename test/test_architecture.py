@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The contract of the code's layout: layers, sizes, names, docstrings; read from the source, not run.
-
-"""
+"""The contract of the code's layout: layers, sizes, names, docstrings; read from the source."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ import subprocess
 import pytest
 import yaml
 
-import tree_sway_ros
+import tree_sway_ros  # noqa: I100
 
 ROOT = Path(__file__).resolve().parent.parent
 YAML = [

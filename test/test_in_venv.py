@@ -19,7 +19,7 @@ SCRIPT = ROOT / '.ci' / 'in_venv.py'
 
 @pytest.fixture
 def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The script as a module, its environment in a folder of the test."""
+    """Load the script as a module, its environment in a folder of the test."""
     monkeypatch.setenv('TREE_SWAY_VENV', str(tmp_path / 'venv'))
     spec = importlib.util.spec_from_file_location('in_venv', SCRIPT)
     assert spec is not None
@@ -30,7 +30,7 @@ def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 def refusal(capsys: pytest.CaptureFixture[str]) -> str:
-    """The one line on standard error."""
+    """Return the one line on standard error."""
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith('in_venv: ')
     return line

@@ -88,7 +88,7 @@ def test_what_ubuntu_has_no_package_of_is_not_asked_for(package: ElementTree.Ele
 
 @pytest.fixture(scope='module')
 def setup_words() -> dict[str, Any]:
-    """What setup.py hands to setuptools, run by a link in another folder, as colcon does."""
+    """Return what setup.py hands to setuptools, run by a link in another folder, as by colcon."""
     setuptools = pytest.importorskip('setuptools', reason='setuptools is not installed here')
     words: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:

@@ -1,7 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What ``import tree_sway_ros`` offers: some twenty names, none of which costs anything
-unasked."""
+"""What ``import tree_sway_ros`` offers: some twenty names, none of which costs anything idle."""
 
 from __future__ import annotations
 

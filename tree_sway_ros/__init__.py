@@ -19,8 +19,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
-__version__ = '0.1.0'
-
 if TYPE_CHECKING:
     from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
     from tree_sway_ros.core.growth.grow import grow
@@ -42,6 +40,8 @@ if TYPE_CHECKING:
     from tree_sway_ros.files.export.tree_export import write_tree
     from tree_sway_ros.files.trees.source import open_scene, open_tree
     from tree_sway_ros.files.wind.wind_file import read_wind
+
+__version__ = '0.1.0'
 
 _MODULES = {
     'core.growth.builtin': ('BUILTIN_TREES',),

@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-How hot functions are compiled: numpy's division, one precision in and out, the plain function
-kept.
-
-"""
+"""How hot functions are compiled: numpy's division, one precision, the plain function kept."""
 
 from __future__ import annotations
 

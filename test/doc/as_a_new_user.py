@@ -59,7 +59,7 @@ def main() -> None:
 
 @contextmanager
 def debian(folder: str, suite: str) -> Iterator[object]:
-    """A Debian in a folder, with a user and the repository; gives what runs a line there."""
+    """Make a Debian in a folder, with a user and the repository; give what runs a line there."""
     Path(folder).chmod(0o755)  # for the user within
     site = 'apt-get indextargets --format $(SITE)'.split()
     mirror = subprocess.run(site, capture_output=True, text=True, check=True).stdout.split()[0]

@@ -49,7 +49,7 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
             'A new model of the wind', 'tree_sway_ros/core/wind/simulated/spectra.py',
             [r'^SPECTRA = ', r"^ +'kaimal': "], 'test/core/wind/simulated/test_spectra.py',
             'between',
-            "from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS as n;"
+            'from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS as n;'
             "print(*next(p for p in n['anemometer'] if p.name == 'turbulence').choices)",
         ),
     ],

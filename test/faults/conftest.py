@@ -106,7 +106,7 @@ def chain(tmp_path_factory, claimed_domain):
 
 @pytest.fixture
 def faulty(chain):
-    """The chain with a fault: ``faulty("nan")``; afterwards it has none and is well again."""
+    """Start a fault of the chain by its kind; afterwards there is none and all is well again."""
 
     def start(kind, **more):
         chain.tell(fault=kind, **more)

@@ -158,7 +158,7 @@ def fuzz(wind, solver, n, seed):
 
 @pytest.fixture
 def nodes(compose):
-    """The wind node and the solver, configured; time is the test's."""
+    """Make the wind node and the solver, configured; time is the test's."""
     pytest.importorskip('rclpy', reason='ROS 2 is not installed')
     own = {'wind': {'frozen_after': 1.0}, 'solver': {'tree': 'benjamina'}}
     made = compose(**{name: {**values, 'lifecycle': True} for name, values in own.items()})

@@ -19,7 +19,7 @@ PERIOD = 50_000_000
 
 @pytest.fixture(scope='module')
 def half_hour():
-    """The record of a quarter of an hour, to its end and back again, with gusts of 6 m/s."""
+    """Play the record of a quarter of an hour to its end and back again, with gusts of 6 m/s."""
     if not SONIC.is_file():
         pytest.skip(f'no recorded wind at {SONIC}')
     wind = read_wind(SONIC).velocity

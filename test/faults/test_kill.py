@@ -31,6 +31,8 @@ def chain(run):
 
 
 class Processes:
+    """The processes of the chain, each to be killed and started again."""
+
     def __init__(self, run):
         self._run = run
         self._arguments = {}
@@ -53,20 +55,27 @@ class Processes:
 
 
 def outages(chain, observer, tree, rounds):
-    """Seconds from each kill to the whole stream, by who was killed."""
+    """Seconds from each kill to the whole stream of a tree that moves, by who was killed."""
     frames = observer.listen(SEGMENT_POSES, raw=True)
     filtered = observer.listen(WIND_FILTERED, raw=True)
     chain.start('solver', f'tree:={tree}')
     chain.start('wind')
     chain.start('anemometer', 'rate:=50.0')
-    observer.until(lambda: frames and filtered, 'the stream', deadline=60.0)
+
+    def is_whole(seen, heard):
+        """Whether frames and wind have come since, and a solver that began at rest feels it."""
+        if not (len(frames) > seen + 5 and len(filtered) > heard + 5):
+            return False
+        return frames[-1][_POSES:] != frames[-2][_POSES:]
+
+    observer.until(lambda: is_whole(0, 0), 'the stream', deadline=60.0)
     found = []
     for name, _ in zip(itertools.cycle(('solver', 'wind', 'anemometer')), range(rounds)):
         chain.kill(name)
         seen, heard, begin = len(frames), len(filtered), time.monotonic()
         chain.start(name)
         observer.until(
-            lambda seen=seen, heard=heard: len(frames) > seen + 5 and len(filtered) > heard + 5,
+            lambda seen=seen, heard=heard: is_whole(seen, heard),
             f'the stream after the end of {name}',
             deadline=PATIENCE,
         )

@@ -148,21 +148,21 @@ def assert_sound_wind(record) -> None:
     assert (record.refused == 0) == (record.first_refused == '')
 
 
-def check(path: Path, name: str, content: bytes, format: str | None) -> None:
+def check(path: Path, name: str, content: bytes, kind: str | None) -> None:
     path.write_bytes(content)
     begin = time.process_time()
     taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     message = 'none'
     try:
         if name in WINDS:
-            assert_sound_wind(read_wind(path, format=format))
+            assert_sound_wind(read_wind(path, format=kind))
         else:
             if name == 'glade.yaml':
                 trees = parse_forest(
                     path.read_text(errors='replace'), lambda *_: SEEDLING, name
                 ).trees
             else:
-                trees = read_trees(path, format=format)
+                trees = read_trees(path, format=kind)
             for tree_file in trees:
                 assert_sound_tree(tree_file.tree)
     except TreeSwayError as error:
@@ -188,9 +188,9 @@ def fuzz(samples, folder: Path, n_examples: int) -> None:
         named=st.integers(0, 20),
     )
     def run(name, mutations, named):
-        format = None if named > 9 else formats[name][named % len(formats[name])]
+        kind = None if named > 9 else formats[name][named % len(formats[name])]
         content = mutated(samples[name], mutations)
-        check(folder / f'file{Path(name).suffix}', name, content, format)
+        check(folder / f'file{Path(name).suffix}', name, content, kind)
 
     run()
 
@@ -231,7 +231,7 @@ def test_large_and_nasty(tmp_path, suffix, content):
 
 
 def nasty_mtg(n: int) -> bytes:
-    """A chain of vertices without diameters, and mostly without positions."""
+    """Make a chain of vertices without diameters, and mostly without positions."""
     head = 'CODE:\tFORM-A\nSYMBOL\tSCALE\nP\t1\nS\t2\n'
     head += 'ENTITY-CODE\t\tXX\tYY\tZZ\n/P1\n\t/S1\t0\t0\t0\n'
     chain = ''.join(f'\t^<S{i}\n' for i in range(n))
@@ -239,7 +239,7 @@ def nasty_mtg(n: int) -> bytes:
 
 
 def nasty_swc(n: int) -> bytes:
-    """A chain of points at one place, each with a side branch."""
+    """Make a chain of points at one place, each with a side branch."""
     rows = ['1 1 0 0 0 1 -1', '2 1 0 0 1 1 1']
     rows += [f'{2 * i + 1} 1 0 0 1 .9 {2 * i - 1 if i > 1 else 2}' for i in range(1, n)]
     rows += [f'{2 * i + 2} 1 1 0 1 .1 {2 * i + 1}' for i in range(1, n)]

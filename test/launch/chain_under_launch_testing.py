@@ -30,6 +30,8 @@ def generate_test_description():
 
 
 class TestWhileItSways(unittest.TestCase):
+    """What is said and sent while all nodes run."""
+
     def test_it_says_when_it_is_ready_and_streams(self, proc_output):
         proc_output.assertWaitFor('ready after', timeout=DEADLINE, stream='stderr')
         proc_output.assertWaitFor('reading wind as: blows TO', timeout=DEADLINE, stream='stderr')
@@ -48,5 +50,7 @@ class TestWhileItSways(unittest.TestCase):
 
 @launch_testing.post_shutdown_test()
 class TestAfterwards(unittest.TestCase):
+    """How the nodes end."""
+
     def test_every_node_ended_well(self, proc_info):
         launch_testing.asserts.assertExitCodes(proc_info)

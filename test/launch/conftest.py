@@ -74,7 +74,7 @@ class Launched:
         return ''.join(self.said)
 
     def until(self, pattern):
-        """The match of a pattern in what is said."""
+        """Wait for the match of a pattern in what is said."""
         with self._more:
             self._more.wait_for(lambda: self._is_over or re.search(pattern, self.text), DEADLINE)
             found = re.search(pattern, self.text)
@@ -102,7 +102,7 @@ class Launched:
 
 @pytest.fixture
 def prefix(tmp_path):
-    """What ``colcon build`` installs, as far as launch looks at it."""
+    """Make what ``colcon build`` installs, as far as launch looks at it."""
     from tree_sway_ros.nodes import executables
 
     made = tmp_path / 'prefix'
@@ -134,7 +134,7 @@ def environment(prefix, ros_environment):
 
 @pytest.fixture
 def launched(environment):
-    """Launch a file: ``launched("sway.launch.py", tree="goldcrest")``."""
+    """Launch a file by its name, with arguments: ``'sway.launch.py', tree='goldcrest'``."""
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
     made, variables = [], environment
 

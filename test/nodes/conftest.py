@@ -54,7 +54,7 @@ class Observer:
         self._thread.start()
 
     def listen(self, topic, kind=None, name=None, raw=False, depth=None):
-        """A list that fills with the messages of a topic of the table."""
+        """Return a list that fills with the messages of a topic of the table."""
         from tree_sway_ros.ros.process.topics import message_class, qos_profile
 
         messages = []
@@ -72,7 +72,7 @@ class Observer:
         return messages
 
     def publisher(self, topic, kind=None, name=None):
-        """A publisher on a topic of the table, once somebody listens to it."""
+        """Return a publisher on a topic of the table, once somebody listens to it."""
         from tree_sway_ros.ros.process.topics import message_class, qos_profile
 
         made = self.node.create_publisher(
@@ -82,7 +82,7 @@ class Observer:
         return made
 
     def call(self, kind, name, request):
-        """The response of a service."""
+        """Return the response of a service."""
         client = self.node.create_client(kind, name)
         self.until(client.service_is_ready, name)
         future = client.call_async(request)
@@ -119,7 +119,7 @@ def observer(domain):
 
 @pytest.fixture
 def compose(domain):
-    """Start nodes in this process: ``compose(solver={...})``."""
+    """Start nodes in this process, each by its name and parameters: ``solver={...}``."""
     from tree_sway_ros.ros.process.composition import Composition
 
     made = []
@@ -148,7 +148,7 @@ def tree_file(tmp_path):
 
 @pytest.fixture
 def statuses(observer):
-    """Newest status of each name on /diagnostics: ``statuses("solver: wind")``."""
+    """Give the newest status of each name on /diagnostics, for names like ``'solver: wind'``."""
     from tree_sway_ros.ros.process.topics import DIAGNOSTICS
 
     arrays = observer.listen(DIAGNOSTICS)

@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from builtin_interfaces.msg import Time  # noqa: E402
+from builtin_interfaces.msg import Time  # noqa: E402, I100
 from rosgraph_msgs.msg import Clock  # noqa: E402
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402

@@ -94,10 +94,7 @@ def test_killed_and_started_again_it_sways_as_if_nothing_had_been(
         return {stamp: x for stamp, x in poses.items() if stamp > settled}
 
     def agree():
-        """
-        In the last half second: a wind that came too late on a busy machine is forgotten, too.
-
-        """
+        """In the last half second: a wind too late on a busy machine is forgotten, too."""
         ours, theirs = late(frames), late(steady)
         last = sorted(set(ours) & set(theirs))[-30:]
         return len(last) == 30 and all(abs(ours[stamp] - theirs[stamp]) < 1e-7 for stamp in last)

@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402
+from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402, I100
 
 from tree_sway_ros.ros.process.topics import (  # noqa: E402
     CAMERA,

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402
+from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402, I100
 from std_srvs.srv import Trigger  # noqa: E402
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402

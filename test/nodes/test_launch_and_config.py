@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from tree_sway_ros.ros.process.topics import TOPICS
+from tree_sway_ros.ros.process.topics import TOPICS  # noqa: I100
 
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
@@ -20,7 +20,7 @@ GIVEN = dict.fromkeys(ARGUMENTS, '')
 
 @pytest.fixture
 def launch_file():
-    """The launch file as a module; only where ROS's launch is installed."""
+    """Load the launch file as a module; only where ROS's launch is installed."""
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
     path = ROOT / 'launch' / 'sway.launch.py'
     spec = importlib.util.spec_from_file_location('sway_launch', path)

@@ -5,7 +5,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from lifecycle_msgs.msg import Transition  # noqa: E402
+from lifecycle_msgs.msg import Transition  # noqa: E402, I100
 from lifecycle_msgs.srv import ChangeState, GetState  # noqa: E402
 
 from tree_sway_ros.ros.process.topics import SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402

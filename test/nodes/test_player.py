@@ -58,7 +58,7 @@ FRAME = 16_666_667
 
 
 def poses_of(compose, observer, wind_file, tree_file, speed):
-    """What a whole record moves a tree to, frame by frame."""
+    """Return what a whole record moves a tree to, frame by frame."""
     frames = observer.listen(SEGMENT_POSES, depth=1000)
     simulated = {'use_sim_time': True}
     nodes = compose(

@@ -15,7 +15,7 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytest.importorskip('rosbags', reason='rosbags is not installed')
 pytestmark = pytest.mark.ros
 
-from rosbags.highlevel import AnyReader  # noqa: E402
+from rosbags.highlevel import AnyReader  # noqa: E402, I100
 
 from tree_sway_ros.errors import TreeSwayError  # noqa: E402
 from tree_sway_ros.files.recording.bag_writer import BagWriter  # noqa: E402
@@ -30,9 +30,9 @@ CONFIG = Path(__file__).resolve().parents[2] / 'config'
 DEADLINE = 60.0
 
 
-def recorded(observer, path, format, topics):
-    """A bag of a second of states and wind."""
-    with BagWriter(path, format) as bag:
+def recorded(observer, path, storage, topics):
+    """Record a bag of a second of states and wind."""
+    with BagWriter(path, storage) as bag:
         recorder = Recorder(observer.context, bag, topics)
         try:
             end = time.monotonic() + DEADLINE
@@ -44,11 +44,11 @@ def recorded(observer, path, format, topics):
     return bag.counts
 
 
-@pytest.mark.parametrize(('format', 'topics'), [('mcap', _USUAL + _MORE), ('sqlite3', _USUAL)])
-def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path, format, topics):
+@pytest.mark.parametrize(('storage', 'topics'), [('mcap', _USUAL + _MORE), ('sqlite3', _USUAL)])
+def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path, storage, topics):
     nodes = compose(anemometer={'rate': 40.0}, wind={}, solver={'tree': tree_file})
     bag = tmp_path / 'bag'
-    counts = recorded(observer, bag, format, topics)
+    counts = recorded(observer, bag, storage, topics)
     nodes.close()
     assert len(counts) == len(topics)
     assert len(read_wind(bag, topic='/wind').time) >= 28

@@ -40,7 +40,7 @@ class World:
                 self._wind.publish(wind_to_message(VECTOR, sample))
             self.set(self.now)
 
-    def set(self, now):
+    def set(self, now):  # noqa: A003
         self.now = now
         self._clock.publish(clock_message(now))
         solver = self.nodes['solver'].get_clock()

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import PoseArray, Vector3Stamped  # noqa: E402
+from geometry_msgs.msg import PoseArray, Vector3Stamped  # noqa: E402, I100
 from rcl_interfaces.srv import SetParameters  # noqa: E402
 import rclpy  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
@@ -16,7 +16,7 @@ from rclpy.serialization import deserialize_message  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
 from tree_sway_ros.core.simulator.simulator import SwaySimulator  # noqa: E402
-from tree_sway_ros.errors import MissingDependencyError, ParameterError, TreeSwayError  # noqa: E402
+from tree_sway_ros.errors import MissingDependencyError, ParameterError, TreeSwayError  # noqa: E402, E501
 from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
 from tree_sway_ros.ros.process.topics import (  # noqa: E402
     MARKERS,
@@ -87,10 +87,7 @@ def test_a_late_joiner_gets_the_structure_and_the_next_pose(compose, observer, t
 
 
 def test_a_subscriber_that_takes_nothing_slows_nobody(compose, observer, tree_file):
-    """
-    It asks for every message and never takes one; when it does, it gets the latest, no backlog.
-
-    """
+    """It asks for all messages and takes none; when it does, it gets the latest, no backlog."""
     nodes = compose(solver={'tree': tree_file})
     idle = rclpy.create_node(
         'idle', context=observer.context

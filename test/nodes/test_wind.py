@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import TransformStamped  # noqa: E402
+from geometry_msgs.msg import TransformStamped  # noqa: E402, I100
 
 from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
@@ -116,7 +116,7 @@ def transform(frame, parent, yaw, stamp=0):
 
 @pytest.fixture
 def tf(monkeypatch):
-    """What the wind node does with messages of /tf and /tf_static, where tf2_msgs may lack."""
+    """Give what the wind node does with messages of /tf and /tf_static, if tf2_msgs lacks too."""
     callbacks, subscribe = {}, WindNode.subscription
 
     def listen(node, topic, callback, *more, **named):

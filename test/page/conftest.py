@@ -98,7 +98,7 @@ class Browser:
         elif method == 'Network.requestWillBeSent':
             self.requests.append(told['request']['url'])
 
-    async def open(
+    async def open(  # noqa: A003
         self, url: str, width: int = 1280, height: int = 800, dark: bool = False
     ) -> None:
         """Open a page at a size and a colour scheme."""
@@ -127,7 +127,7 @@ class Browser:
             await asyncio.sleep(0.05)
 
     async def screenshot(self) -> bytes:
-        """The page as PNG."""
+        """Return the page as PNG."""
         return base64.b64decode((await self.call('Page.captureScreenshot'))['data'])
 
 

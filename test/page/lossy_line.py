@@ -61,7 +61,7 @@ def main() -> None:
 
 
 def run_line(delay: float, loss: float, seconds: float) -> dict[str, float]:
-    """What a client sees over a line of such delay [s] and loss."""
+    """Return what a client sees over a line of such delay [s] and loss."""
     ends = [socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(2)]
     sides = []
     for name, (_, inner) in zip(('serve', 'listen'), ends, strict=True):

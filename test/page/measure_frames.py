@@ -83,7 +83,7 @@ async def look(url: str, name: str, session: Session, seconds: float, is_profile
 
 
 def cpu_time(browser: Browser) -> float:
-    """What the browser's processes have used so far [s]."""
+    """Return what the browser's processes have used so far [s]."""
     parents = {}
     for folder in Path('/proc').glob('[0-9]*'):
         with contextlib.suppress(OSError):

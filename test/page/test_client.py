@@ -17,20 +17,20 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.core.arrays import Floats
-from tree_sway_ros.core.state.full_scale import FULL_SCALE
-from tree_sway_ros.errors import TransportError
-from tree_sway_ros.page.client import StreamClient
-from tree_sway_ros.page.controls import Control, ControlPanel
-from tree_sway_ros.page.placer import Placer
-from tree_sway_ros.page.playout import ClockOffset, Moment, Playout
-from tree_sway_ros.page.protocol import (
+from tree_sway_ros.core.arrays import Floats  # noqa: E402
+from tree_sway_ros.core.state.full_scale import FULL_SCALE  # noqa: E402
+from tree_sway_ros.errors import TransportError  # noqa: E402
+from tree_sway_ros.page.client import StreamClient  # noqa: E402
+from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
+from tree_sway_ros.page.placer import Placer  # noqa: E402
+from tree_sway_ros.page.playout import ClockOffset, Moment, Playout  # noqa: E402
+from tree_sway_ros.page.protocol import (  # noqa: E402
     decode_description,
     encode_frame,
     Frame,
     RESTARTED,
 )
-from tree_sway_ros.page.server import PageServer, PageSettings
+from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
 
 DEADLINE = 20.0
 HERE = Path(__file__).parent
@@ -136,7 +136,7 @@ def test_who_is_not_there_or_sends_nonsense_is_told(server: PageServer) -> None:
 
 
 def arrivals() -> list[dict[str, object]]:
-    """A stream as it comes: late, twice, out of order, cut, from another clock."""
+    """Make a stream as it comes: late, twice, out of order, cut, from another clock."""
     rng = np.random.default_rng(4)
     frames: list[dict[str, object]] = []
     moment = latest = 1_000.0

@@ -1,7 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The examples as their pages say: against a server of this program, in Python and in a
-browser."""
+"""The examples as their pages say: on a server of this program, in Python and in a browser."""
 
 from __future__ import annotations
 
@@ -21,11 +20,11 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.page.server import PageServer, PageSettings
-from tree_sway_ros.page.session import Choices, Session
-from tree_sway_ros.page.wind_source import SimulatedWind
-from tree_sway_ros.tools.cli import main
+from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
+from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway_ros.page.session import Choices, Session  # noqa: E402
+from tree_sway_ros.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway_ros.tools.cli import main  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / 'examples' / 'web'
@@ -52,7 +51,7 @@ def files() -> Iterator[str]:
 
 @pytest.fixture(scope='module')
 def page(files: str) -> Iterator[PageServer]:
-    """A live tree whose stream the pages of the examples may follow."""
+    """Serve a live tree whose stream the pages of the examples may follow."""
     simulator = open_tree('goldcrest').simulator(model='modes')
     session = Session(lambda _: simulator, Choices('goldcrest'), SimulatedWind(9.0))
     with PageServer(PageSettings(port=0, origins=(files,)), None, session.status) as server:

@@ -61,7 +61,7 @@ def test_a_long_line_that_loses_packets_loses_no_frame() -> None:
 
 @pytest.fixture
 def server() -> Iterator[PageServer]:
-    """A server that is given a state 60 times per second, on a thread of its own."""
+    """Run a server that is given a state 60 times per second, on a thread of its own."""
     ended = threading.Event()
     description = decode_description(DESCRIPTION)
     steps = np.zeros(len(description.scale), dtype=np.int16)

@@ -86,7 +86,7 @@ def visit(live: Live, browser_class: Any) -> Visit:
 
 
 def picture(data: bytes) -> Any:
-    """A screenshot as (h, w, 3)."""
+    """Return a screenshot as (h, w, 3)."""
     return np.asarray(Image.open(io.BytesIO(data)).convert('RGB'), dtype=np.int16)
 
 

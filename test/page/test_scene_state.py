@@ -61,7 +61,7 @@ def swayed(simulator: Any, state: SceneState, speed: float) -> tuple[list[bytes]
 
 @pytest.fixture(scope='module')
 def tall() -> tuple[SceneState, list[bytes], list[Any]]:
-    """A broadleaf of 8 m in a wind of 7 m/s."""
+    """Make a broadleaf of 8 m in a wind of 7 m/s."""
     tree = grow('broadleaf', 8.0, rng=np.random.default_rng(0))
     simulator = make_simulator(tree, species_named(tree.species), model='modes')
     state = SceneState(simulator)
@@ -185,7 +185,7 @@ def test_a_scene_too_large_to_describe_is_refused(monkeypatch: pytest.MonkeyPatc
 
 @pytest.fixture(scope='module')
 def avenue() -> tuple[Stand, SceneState]:
-    """A thousand trees of two kinds, two of them on a model of their own."""
+    """Make a thousand trees of two kinds, two of them on a model of their own."""
     kinds = {}
     for name in ('seedling', 'other'):
         source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')

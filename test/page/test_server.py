@@ -134,7 +134,7 @@ def test_a_new_description_reaches_who_is_there(server: PageServer) -> None:
 
 
 def panel(applied: list[Any]) -> ControlPanel:
-    """A slider, a choice and a button."""
+    """Make a slider, a choice and a button."""
 
     def apply(name: str, value: Any) -> None:
         if value == 'segments':

@@ -14,12 +14,12 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.page.protocol import decode_description, decode_frame, PAUSED
-from tree_sway_ros.page.session import Choices, Session
-from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind
+from tree_sway_ros.core.simulator.settings import Settings  # noqa: E402
+from tree_sway_ros.errors import FormatError, ParameterError  # noqa: E402
+from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
+from tree_sway_ros.page.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
+from tree_sway_ros.page.session import Choices, Session  # noqa: E402
+from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind  # noqa: E402
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 30.0

@@ -19,10 +19,10 @@ import pytest
 
 pytest.importorskip('zenoh', reason='eclipse-zenoh is not installed')
 
-from tree_sway_ros.page.client import StreamClient
-from tree_sway_ros.relay.line import Line
-from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
-from tree_sway_ros.tools.cli import main
+from tree_sway_ros.page.client import StreamClient  # noqa: E402
+from tree_sway_ros.relay.line import Line  # noqa: E402
+from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind  # noqa: E402
+from tree_sway_ros.tools.cli import main  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = str(ROOT / 'test' / 'files' / 'data' / 'seedling.yaml')
@@ -31,7 +31,7 @@ Process = subprocess.Popen[str]
 
 
 def place() -> str:
-    """An endpoint that nobody has."""
+    """Name an endpoint that nobody has."""
     with socket.socket() as trial:
         trial.bind(('127.0.0.1', 0))
         return f'tcp/127.0.0.1:{trial.getsockname()[1]}'
@@ -41,7 +41,7 @@ def place() -> str:
 def relay(
     *given: str, environment: dict[str, str] | None = None
 ) -> Iterator[subprocess.Popen[str]]:
-    """A site in a process of its own, once it has said its first line."""
+    """Run a site in a process of its own, until it has said its first line."""
     command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'relay', *given]
     process = subprocess.Popen(
         command, cwd=ROOT, text=True, stdout=subprocess.PIPE, env=environment or dict(os.environ)

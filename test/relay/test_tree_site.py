@@ -20,7 +20,7 @@ SECOND = 1_000_000_000
 
 
 def winds(seconds: float) -> list[tuple[int, Any]]:
-    """A gusty wind at 20 Hz."""
+    """Make a gusty wind at 20 Hz."""
     times = np.arange(0.0, seconds, 0.05)
     vectors = np.stack([6 + 2 * np.sin(2 * times), np.cos(3 * times), 0 * times], axis=1)
     return [(START + round(t * SECOND), v) for t, v in zip(times, vectors, strict=True)]

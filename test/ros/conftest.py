@@ -11,7 +11,7 @@ os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 
 @pytest.fixture
 def context(domain):
-    """A ROS context in a domain of its own."""
+    """Make a ROS context in a domain of its own."""
     rclpy = pytest.importorskip('rclpy')
     from rclpy.context import Context
 

@@ -1,7 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree cut anew: the same shape, the same names, and the same motion however finely it is
-cut."""
+"""A tree cut anew: same shape, same names, and same motion however finely it is cut."""
 
 from __future__ import annotations
 
@@ -39,10 +38,7 @@ def tip_motion(tree, model, winds):
 
 
 def limbs(sketch, cuts):
-    """
-    Stem, two limbs and a twig, straight and tapered; children sit in the middle of their parents.
-
-    """
+    """Stem, two limbs and a twig, straight and tapered; children sit in their parents' middles."""
     s = sketch()
     stem = s.add(None, 0, (0.05, 0.0, 1.0), 2.0, 0.030, 0.012, cuts)
     limb = s.add(stem, cuts // 2, (1.0, 0.3, 0.6), 0.9, 0.014, 0.006, cuts)

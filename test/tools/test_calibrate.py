@@ -31,14 +31,14 @@ DT = 0.02
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """The tree that is measured."""
+    """Make the tree that is measured."""
     path = tmp_path / 'ash.yaml'
     path.write_text(TREE)
     return path
 
 
 def info(path: Path, capsys: pytest.CaptureFixture[str], *more: str) -> dict[str, Any]:
-    """What ``tree-sway info`` says of a tree."""
+    """Return what ``tree-sway info`` says of a tree."""
     capsys.readouterr()
     assert cli.main(['info', str(path), '--json', *more]) == 0
     facts: dict[str, Any] = json.loads(capsys.readouterr().out)
@@ -87,10 +87,7 @@ def test_info_shows_the_frequency_that_was_given(
 def test_a_pull_and_release_gives_the_tree_back(
     tree: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """
-    A wind holds the tree aside and stops; from another guess the record leads back to its wood.
-
-    """
+    """A wind holds the tree aside and stops; the record leads from another guess to its wood."""
     truth = open_tree(tree)
     sim = SwaySimulator(truth.tree, truth.species, model='modes')
     held, free = round(15.0 / DT), round(20.0 / DT)
@@ -153,7 +150,7 @@ def test_a_modulus_that_no_wood_has_is_said(
 
 
 def sample(path: Path, motion: str) -> str:
-    """A file of one column, written as Python."""
+    """Write a file of one column, written as Python."""
     rng = np.random.default_rng(0)
     t = np.arange(0.0, 60.0, 0.05)
     values = eval(motion, {'t': t, 'rng': rng, 'np': np})

@@ -24,7 +24,7 @@ def run(*arguments: str) -> tuple[int, str]:
 
 
 def one_line(text: str) -> str:
-    """The only line of a text."""
+    """Return the only line of a text."""
     lines = text.strip().splitlines()
     assert len(lines) == 1, text
     return lines[0]
@@ -172,7 +172,7 @@ def test_a_file_is_written_over_with_force(tmp_path: Path) -> None:
 
 
 def run_process(command: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """A line of bash in which $TREE_SWAY is this command line."""
+    """Run a line of bash in which $TREE_SWAY is this command line."""
     return subprocess.run(
         ['bash', '-o', 'pipefail', '-c', command],
         capture_output=True,

@@ -19,7 +19,7 @@ from tree_sway_ros.files.trees.source import open_tree
 from tree_sway_ros.tools.arguments import opened_scene
 
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
-from tree_sway_ros.tools import demo
+from tree_sway_ros.tools import demo  # noqa: E402, I100
 
 pytestmark = pytest.mark.ros
 
@@ -34,7 +34,7 @@ _started: list[Started] = []
 
 @pytest.fixture
 def environment(ros_environment: dict[str, str]) -> Iterator[dict[str, str]]:
-    """A ROS domain for one test alone, on this machine alone; no process outlives it."""
+    """Give a ROS domain for one test alone, on this machine alone; no process outlives it."""
     yield ros_environment
     while _started:
         process = _started.pop()
@@ -65,7 +65,7 @@ def lines_until(process: Started, sign: str) -> Iterator[str]:
 
 
 def number(pattern: str, text: str) -> float:
-    """The number that a pattern finds in a text."""
+    """Return the number that a pattern finds in a text."""
     found = re.search(pattern, text)
     assert found, text
     return float(found[1])

@@ -20,7 +20,7 @@ MODULUS, DENSITY = 8e9, 900.0
 
 
 def facts(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
-    """What the command says of a tree, for programs."""
+    """Return what the command says of a tree, for programs."""
     assert cli.main(['info', *arguments, '--json']) == 0
     found = json.loads(capsys.readouterr().out)
     assert isinstance(found, dict)
@@ -28,7 +28,7 @@ def facts(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]
 
 
 def write_pole(path: Path, length: float, diameter: float, n: int = 20) -> str:
-    """A clamped uniform rod, leaning a little to the east."""
+    """Write a clamped uniform rod, leaning a little to the east."""
     along = np.array([0.2, 0.0, 1.0]) / np.hypot(0.2, 1.0)
     nodes = np.outer(np.linspace(0.0, length, n + 1), along)
     write_tree(path, tree_from_segments(nodes[:-1], nodes[1:], np.full(n, diameter)))

@@ -19,7 +19,7 @@ SEEDLING = str(FILES / 'seedling.yaml')
 
 
 def frame(path: Path, number: int = 0) -> np.ndarray:
-    """A frame of a picture as (h, w, 3)."""
+    """Return a frame of a picture as (h, w, 3)."""
     image = Image.open(path)
     image.seek(number)
     return np.asarray(image.convert('RGB')).astype(float)

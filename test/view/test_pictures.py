@@ -44,7 +44,7 @@ def in_calm(tree: Tree, path: Path, **options: Any) -> Path:
 
 
 def at_rest(tree: Tree, path: Path, **options: Any) -> np.ndarray:
-    """The half that shows the tree at rest, of a tree that is not wide."""
+    """Return the half that shows the tree at rest, of a tree that is not wide."""
     picture = pixels(in_calm(tree, path, **options))
     return picture[:, : picture.shape[1] // 2]
 

@@ -3,10 +3,10 @@
 """
 Set-ups of trees on disk, so that a solver that is started again sways sooner.
 
-They stand beside the compiled kernels, in numpy's own format, without pickles. A file is found by
-a digest of the tree, its species and settings, of the source of all that takes part, of the
-versions of numpy and scipy, and of the machine; what cannot be read is made anew, and what cannot
-be written is left.
+They stand beside the compiled kernels, in numpy's own format, which is read without pickles. A
+file is found by a digest of the tree, its species and settings, of the source of all that takes
+part, of the versions of numpy and scipy, and of the machine; what cannot be read is made anew, and
+what cannot be written is left.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from importlib.metadata import version
 from pathlib import Path
 import platform
 from typing import Any
-import zipfile
 
 import numpy as np
 
@@ -29,6 +28,8 @@ from tree_sway_ros.kernel_cache import kernel_folder, source_digest
 
 MOST = 32
 """So many set-ups are kept; the oldest go first."""
+
+_SUFFIX = '.set_up.npz'
 
 
 class KeptSetUps:
@@ -41,28 +42,31 @@ class KeptSetUps:
         """Arrays by name, as they were written under this digest; None if there are none."""
         if self._folder is None:
             return None
+        key = _key(digest)
         try:
-            with np.load(self._path(digest), allow_pickle=False) as kept:
-                return dict(kept)
-        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
+            with np.load(self._folder / f'{key}{_SUFFIX}') as kept:
+                arrays = dict(kept)
+            return arrays if str(arrays.pop('key')) == key else None
+        except Exception:  # whatever numpy makes of a damaged file
             return None
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
         """Keep arrays, all of them or nothing, in place of the oldest that are kept."""
         if self._folder is None:
             return
+        key = _key(digest)
         with suppress(OSError, TreeSwayError):
-            with whole_file(self._path(digest)) as partial, partial.open('wb') as file:
-                np.savez(file, allow_pickle=False, **arrays)
-            kept = sorted(self._folder.glob('*.set_up.npz'), key=lambda path: path.stat().st_mtime)
+            with whole_file(self._folder / f'{key}{_SUFFIX}') as partial:
+                np.savez(partial, key=np.array(key), **arrays)
+            kept = sorted(self._folder.glob(f'*{_SUFFIX}'), key=lambda path: path.stat().st_mtime)
             for path in kept[:-MOST]:
                 path.unlink()
 
-    def _path(self, digest: str) -> Path:
-        told = [
-            *(digest, source_digest(Path(assembly.__file__)), platform.node()),
-            *(version(name) for name in ('numpy', 'scipy')),
-        ]
-        key = hashlib.blake2b('\0'.join(told).encode(), digest_size=16).hexdigest()
-        assert self._folder is not None
-        return self._folder / f'{key}.set_up.npz'
+
+def _key(digest: str) -> str:
+    """Name of a set-up, which it bears inside as well."""
+    told = [
+        *(digest, source_digest(Path(assembly.__file__)), platform.node()),
+        *(version(name) for name in ('numpy', 'scipy')),
+    ]
+    return hashlib.blake2b('\0'.join(told).encode(), digest_size=16).hexdigest()

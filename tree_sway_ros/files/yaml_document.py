@@ -21,7 +21,7 @@ from typing import Any
 
 import yaml
 
-from tree_sway_ros.errors import FormatError, nearest
+from tree_sway_ros.errors import FormatError, nearest  # noqa: I100
 from tree_sway_ros.files.text_file import finite, read_head
 
 Schema = dict[str, Any]

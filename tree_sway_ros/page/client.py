@@ -143,7 +143,7 @@ class StreamClient:
                     cure='start tree-sway show, or look at the address',
                 )
 
-    def set(self, name: str, value: Value) -> None:
+    def set(self, name: str, value: Value) -> None:  # noqa: A003
         """Change a control of the server; a refusal comes as `problem`."""
         self._loop.call_soon_threadsafe(self._say, {'set': {'name': name, 'value': value}})
 

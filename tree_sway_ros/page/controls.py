@@ -69,7 +69,7 @@ class Control:
             if not (math.isfinite(number) and low <= number <= high):
                 raise self._error(f'{number:g} is out of range')
             return number
-        if not isinstance(value, bool | str) or type(value) is not type(self.value):
+        if not (isinstance(value, bool | str) and isinstance(value, type(self.value))):
             raise self._error(f'{value!r} is not {type(self.value).__name__}')
         if self.choices and value not in self.choices:
             raise self._error(f"'{value}' is not among its choices")
@@ -118,7 +118,7 @@ class ControlPanel:
             if name in self._controls:
                 self._controls[name] = replace(self._controls[name], value=value)
 
-    def set(self, name: object, value: object) -> str | None:
+    def set(self, name: object, value: object) -> str | None:  # noqa: A003
         """Change something; returns why not, None if it was done."""
         control = self._controls.get(name) if isinstance(name, str) else None
         if control is None or self._apply is None:

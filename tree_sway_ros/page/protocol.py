@@ -64,7 +64,7 @@ class ToldPlace(TypedDict):
 class ToldHeader(TypedDict):
     """Names and numbers of a tree or a scene in JSON; ``doc/streaming.md`` tells each."""
 
-    format: str
+    format: str  # noqa: A003
     name: str
     frame_id: str
     kinds: list[ToldShape]

@@ -50,7 +50,7 @@ class SimulatedWind:
         self._seed = seed
         self._model = self._made()
 
-    def set(self, name: str, value: float) -> None:
+    def set(self, name: str, value: float) -> None:  # noqa: A003
         """Change ``mean_speed`` [m/s], ``intensity`` or ``bearing_to`` [rad]."""
         self.values[name] = value
         self._model = self._made()

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Quadrature along a branch: exact where it should be, whatever the cut, and the beam's own shapes.
-
-"""
+"""Quadrature along a branch: exact where it should be, whatever the cut; the beam's shapes."""
 
 from __future__ import annotations
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The fields by which a branch moves: orthogonal, right-handed, the static one first, and closer to
-the truth the more there are.
-"""
+"""The fields by which a branch moves: orthogonal, right-handed, the static first, converging."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def made():
 
 @pytest.fixture
 def adaptive(made):
-    """The one simulator, as new, with other demands."""
+    """Give the one simulator, as new, with other demands."""
 
     def asked(tolerance, budget=0.0):
         made.tolerance, made.budget, made.pace = tolerance, budget, 1.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway_ros.core.fidelity.estimate import choose
-from tree_sway_ros.core.fidelity.ladder import FidelityLadder
+from tree_sway_ros.core.fidelity.ladder import BEND, FidelityLadder, FLOOR, MARGIN
 from tree_sway_ros.core.reference.articulated import ArticulatedTree
 from tree_sway_ros.core.simulator.settings import Settings
 from tree_sway_ros.core.simulator.simulator import SwaySimulator
@@ -75,6 +75,21 @@ def test_the_more_is_frozen_the_less_it_costs_and_the_more_it_errs(ladder):
     assert [e.cost for e in modes] == sorted((e.cost for e in modes), reverse=True)
     assert modes[-1].cost < 0.7 * modes[0].cost
     assert modes[0].error < modes[-1].error
+
+
+def test_the_better_models_are_told_to_err_more_where_the_tree_bends_far(ladder):
+    def share(speed):
+        found = {e.name: e for e in ladder.estimates(WindClimate.steady(speed, 0.2))}
+        return found['coupled'].error / found['frozen'].error
+
+    reach = float(np.linalg.norm(ladder.tree.end - ladder.tree.start[0], axis=1).max())
+    frozen = next(
+        e for e in ladder.estimates(WindClimate.steady(20.0, 0.2)) if e.model == 'frozen'
+    )
+    bent = BEND * frozen.error / MARGIN / reach
+    assert bent > 0.005
+    assert share(1.0) == pytest.approx(FLOOR / MARGIN, rel=0.02)
+    assert share(20.0) == pytest.approx((FLOOR + bent) / MARGIN, rel=0.02)
 
 
 def test_no_wind_needs_no_model(ladder):

@@ -46,11 +46,7 @@ def test_sets_are_nested_from_none_to_all_but_the_stem(sets):
 
 
 def test_what_freezing_costs_is_within_its_share(answer, sets):
-    """
-    Set the keys of the frozen to zero, and look at the tips: in still air, the mean load and no
-    more.
-
-    """
+    """Set keys of the frozen to zero, and look at the tips: in still air, the mean load alone."""
     whole, branches, rotations = answer
     owner = np.repeat(np.arange(whole.tree.n_branches), branches['n_coordinates'])
     static = rotations[:, :, :1].real

@@ -9,11 +9,7 @@ from tree_sway_ros.core.growth.skeleton import Skeleton
 
 
 def tripod() -> Skeleton:
-    """
-    A stem of three segments; a branch of two on its first node, which carries a twig; one at the
-    top.
-
-    """
+    """Make a stem of 3 segments, a branch of 2 with a twig on its first node, one at the top."""
     skeleton = Skeleton()
     stem = skeleton.add(np.array([[1.0, 1, 0], [1, 1, 1], [1, 1, 2], [1, 1, 3]]))
     low = skeleton.add(np.array([[1.0, 1, 1], [2, 1, 1], [3, 1, 1]]), stem, 1)

@@ -11,7 +11,7 @@ from tree_sway_ros.errors import ParameterError
 
 
 def fork() -> Skeleton:
-    """A stem of three metres with two twigs of half a metre on its second node."""
+    """Make a stem of three metres with two twigs of half a metre on its second node."""
     skeleton = Skeleton()
     stem = skeleton.add(np.array([[0.0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3]]))
     for side in (-1.0, 1.0):

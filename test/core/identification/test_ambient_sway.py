@@ -56,11 +56,7 @@ def test_unbiased_and_as_uncertain_as_it_says(damping, colour):
 
 
 def test_the_uncertainty_is_that_of_theory():
-    """
-    Au (2014): relative standard errors of sqrt(zeta / 2 pi N) and 1 / sqrt(2 pi zeta N) at best, N
-    cycles.
-
-    """
+    """Au (2014): sqrt(zeta / 2 pi N) and 1 / sqrt(2 pi zeta N), relative, of N cycles at best."""
     found = ambient_sway(driven(0.05, 1, duration=2000.0), DT, 0.7)
     assert 1.0 < found.frequency_error / 0.7 / np.sqrt(0.05 / (2 * np.pi * found.cycles)) < 1.6
     assert 1.0 < found.damping_error / 0.05 * np.sqrt(2 * np.pi * 0.05 * found.cycles) < 2.5

@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Drag on a branch: the integral along it, nothing along the grain, and never so much that it
-overshoots.
-
-"""
+"""Drag on a branch: the integral along it, nothing along the grain, never an overshoot."""
 
 from __future__ import annotations
 
@@ -73,11 +69,7 @@ def test_a_bent_branch_is_met_wherever_the_wind_comes_from(sketch):
 @settings(deadline=None)
 @given(st.floats(0.0, 1e4), st.floats(1e-6, 1e6), st.integers(0, 1000))
 def test_implicit_drag_never_overshoots(stem_record, speed, compliance, seed):
-    """
-    What the force does to the branch within the step leaves the air still faster than it, and just
-    so much.
-
-    """
+    """What the force does within the step leaves the air still faster than the branch, just so."""
     record = stem_record
     free = np.random.default_rng(seed).normal(size=3)
     free *= speed / np.linalg.norm(free)
@@ -140,10 +132,10 @@ def test_levers_are_those_of_the_load(stem):
 @pytest.mark.parametrize('model', ['branch', 'subtree', 'modes'])
 def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     """
-    A cantilever that swings freely: one over the amplitude grows in every cycle by 8/3 of the drag
-    of all pieces over the inertia, ``8/3 c int psi^3 ds / int mu psi^2 ds``, psi the displacement
-    per unit of the tip's (energy balance over a cycle).
+    A cantilever that swings freely loses in each cycle what the drag of its pieces takes.
 
+    One over the amplitude grows by 8/3 of that drag over the inertia, ``8/3 c int psi^3 ds / int
+    mu psi^2 ds``, psi the displacement per unit of the tip's.
     """
     length, width = 2.0, 0.02
     tree, wood = stem(length=length, base=width, cuts=8), species_named('broadleaf')

@@ -20,7 +20,7 @@ DT = 1 / 120
 
 
 def modal(tree, **changes):
-    chosen = dict(model='modes', n_modes=4, gravity=0.0, enrich='none') | changes
+    chosen = {'model': 'modes', 'n_modes': 4, 'gravity': 0.0, 'enrich': 'none'} | changes
     bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(DT)
     return bank
@@ -70,10 +70,7 @@ def test_moments_beyond_the_limit_are_held_and_counted(fork):
 
 
 def test_compliance_is_the_answer_to_a_unit_of_force(fork):
-    """
-    What the bank says a force on a load centre does to it half a step on, tried out on its modes.
-
-    """
+    """What the bank says a force on a load centre does half a step on, tried on its modes."""
     tree = fork()
     bank = modal(tree, model='coupled')
     branches, shapes = bank.branches, bank.shapes

@@ -23,7 +23,7 @@ from tree_sway_ros.study.bench.bench_tree import bench_tree
 
 
 def segments_in_all_directions(n=60):
-    """A tree without rule: segments of any thickness on the ends of others, with gaps."""
+    """Make a tree without rule: segments of any thickness on the ends of others, with gaps."""
     rng = np.random.default_rng(8)
     start, end, parent = np.zeros((n, 3)), np.zeros((n, 3)), np.full(n, -1)
     end[0] = (0, 0, 1)
@@ -40,7 +40,7 @@ def tree():
 
 
 def pair(tree, model, **changes):
-    """A simulator on compiled kernels, and one in numpy."""
+    """Make a simulator on compiled kernels, and one in numpy."""
     sim = SwaySimulator(tree, model=model, gravity=0.0, **changes)
     plain = CalibratedTree(tree, sim.species, sim.settings, plain=True)
     return sim, SwaySimulator(tree, settings=sim.settings, calibrated=plain)

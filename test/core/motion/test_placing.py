@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Placing: rest is the input, lengths are kept, children stay where they grow, the chord turns by the
-key rotation.
-
-"""
+"""Placing: rest is the input, lengths and joints are kept, the chord turns by the key."""
 
 from __future__ import annotations
 
@@ -56,11 +52,7 @@ class Puppet:
         return out[:, :3], out[:, :3] + self.tree.length[:, None] * ahead
 
     def random(self, seed, largest=1.5):
-        """
-        Key rotations of up to a size in every branch, and of a tenth of it in its further
-        fields.
-
-        """
+        """Key rotations of up to a size in every branch, a tenth of it in further fields."""
         rng = np.random.default_rng(seed)
         x = rng.uniform(-0.1, 0.1, self.n) * largest
         for branch in self.bank.branches:
@@ -76,10 +68,7 @@ def puppet(fork, request):
 
 @pytest.fixture(scope='module')
 def gappy(random_tree):
-    """
-    A random tree whose segments end a little before the next ones start, away from the origin.
-
-    """
+    """Make a random tree whose segments end a little before the next, away from the origin."""
     start, end, diameter, parent = random_tree(5, 30)
     return tree_from_segments(
         start + 3.0, end + 3.0 - 0.1 * (end - start), diameter, parent=parent
@@ -190,10 +179,7 @@ def test_the_chord_goes_on_with_the_key_where_the_shapes_change_over(stem, taper
 
 @pytest.mark.parametrize('taper', [0.0, 0.5])
 def test_the_bent_branch_is_the_beams_curve(stem, taper):
-    """
-    The static slope, drawn with lengths kept: angles of segments over the key's, at a small angle.
-
-    """
+    """The static slope, drawn with lengths kept: segments' angles over the key's, if small."""
     tree = stem(length=1.0, tip=0.02 * (1 - taper), cuts=40)
     doll = Puppet(tree, 'branch')
     small = 1e-3
@@ -210,10 +196,7 @@ def test_the_bent_branch_is_the_beams_curve(stem, taper):
 
 
 def test_a_whole_turn_of_the_heading_is_even(stem):
-    """
-    Two axes, no singular direction: bent to any side, an upright stem is the same curve turned.
-
-    """
+    """Two axes, no singular direction: an upright stem bends to any side as the same curve."""
     doll = Puppet(stem())
     reference = doll.nodes([0.6, 0.0])[1]
     for heading in np.linspace(0, 2 * np.pi, 7):

@@ -35,7 +35,7 @@ def count(bank):
 
 
 def at_rest(bank):
-    """Static rotations under the mean of winds from all sides."""
+    """Find the static rotations under the mean of winds from all sides."""
     moments = mean_wind_moments(bank.branches, count(bank))
     return bank.oscillators.response(moments, np.zeros(1))
 
@@ -100,9 +100,9 @@ def test_fast_loads_move_inertia_alone(bank_of, model):
 
 def test_modes_left_out_answer_at_once(bank_of):
     """
-    Truncation keeps their static share: at rest it is exact, for the linear part of a wind from
-    any side, far above the modes it stays.
+    Truncation keeps the modes' static share: exact at rest, far above those that stay.
 
+    The wind is from any side, and its load linear.
     """
     rests = [at_rest(bank_of(model)) for model in ('modes', 'coupled')]
     assert rests[0] == pytest.approx(rests[1], abs=1e-9 * np.abs(rests[1]).max())

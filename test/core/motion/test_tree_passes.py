@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-How branches move on each other and hand on loads: virtual work, balance of forces, rigid motion.
-
-"""
+"""How branches move on each other and hand on loads: virtual work, balance, rigid motion."""
 
 from __future__ import annotations
 

@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Every branch an oscillator of its own: the exact propagator at work, carried loads, the paper's
-equation.
-
-"""
+"""Every branch an oscillator: the exact propagator, carried loads, the paper's equation."""
 
 from __future__ import annotations
 
@@ -22,17 +18,14 @@ DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 
 
 def oscillators(tree, dt=1 / 60, **changes):
-    chosen = dict(model='branch', gravity=0.0, twig_tolerance=-1.0) | changes
+    chosen = {'model': 'branch', 'gravity': 0.0, 'twig_tolerance': -1.0} | changes
     bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(dt)
     return bank
 
 
 def test_a_planar_sway_is_the_papers_equation(stem):
-    """
-    I theta'' + k2 theta' + k1 theta = c (Py cos - Px sin), the drag met as the branch now stands.
-
-    """
+    """I theta'' + k2 theta' + k1 theta = c (Py cos - Px sin), the drag met where it now is."""
     bank = oscillators(stem(length=1.0, base=0.003, cuts=4), dt=1 / 480, damping_ratio=0.1)
     branch = bank.branches[0]
     inertia, damping, stiffness = bank.inertia[0], bank.damping[0], bank.stiffness[0]

@@ -21,7 +21,7 @@ DT = 1.0 / 60.0
 
 
 def crooked(seed, n_branches=40, cuts=6):
-    """A random crooked tree, its branches 25 to 45 times as long as thick."""
+    """Make a random crooked tree, its branches 25 to 45 times as long as thick."""
     rng = np.random.default_rng(seed)
     start, end, thick, parent, number, branches = [], [], [], [], [], []
 

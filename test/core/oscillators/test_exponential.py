@@ -30,10 +30,7 @@ def found(alpha, kappa):
 
 
 def exact(alpha, kappa):
-    """
-    The same from the textbook formulas in 80 digits; and the size of what g and d are a sum of.
-
-    """
+    """Take textbook formulas in 80 digits; tell the size of what g and d are a sum of, too."""
     with mpmath.workdps(80):
         a, k = mpmath.mpf(alpha), mpmath.mpf(kappa)
         root = mpmath.sqrt(mpmath.mpc(a * a - k))

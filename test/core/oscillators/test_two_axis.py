@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The two-axis branch: its formulas against Lagrange's own, its step against a numpy twin, its guard.
-
-"""
+"""The two-axis branch: its formulas by Lagrange's, its step by a numpy twin, its guard."""
 
 from __future__ import annotations
 

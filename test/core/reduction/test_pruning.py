@@ -61,11 +61,7 @@ def test_matrices_lose_rows_and_nothing_else(whole):
 
 
 def test_an_even_wind_pushes_as_hard_as_before(whole):
-    """
-    The drag of branches that point all ways, as one load: within two percent, mean of its parts
-    within six.
-
-    """
+    """Drag of branches to all sides as one load: within 2 percent, mean of its parts 6."""
     pruning, full = Pruning(whole.tree, twigs_of(whole.tree)), whole.coupled
     records = moving_records(pruning, full.branches)
     n, keep = full.reduction.n_coordinates, pruning.coordinates(full.reduction)

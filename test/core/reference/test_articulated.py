@@ -35,7 +35,7 @@ DT = 1.0 / 60.0
 
 @cache
 def bush():
-    """A stem with three branches, short to compute."""
+    """Make a stem with three branches, short to compute."""
     start = [[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 2], [0.5, 0, 1.5], [0, 0, 2]]
     end = [[0, 0, 1], [0, 0, 2], [0.5, 0, 1.5], [0, 0.3, 2.9], [1.0, 0.2, 1.7], [-0.6, 0.1, 2.4]]
     width = [

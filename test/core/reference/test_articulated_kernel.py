@@ -34,7 +34,7 @@ E, RHO, G = 3.0e8, 900.0, 9.81
 
 @cache
 def tree():
-    """A stem with three branches, none in one plane."""
+    """Make a stem with three branches, none in one plane."""
     start = [[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 2], [0.5, 0, 1.5]]
     end = [[0, 0, 1], [0, 0, 2], [0.5, 0, 1.5], [0, 0.3, 2.9], [1.0, 0.2, 1.7]]
     width = [[0.05, 0.04], [0.04, 0.03], [0.02, 0.015], [0.03, 0.01], [0.015, 0.01]]
@@ -42,7 +42,12 @@ def tree():
 
 
 def model(**changes):
-    chosen = dict(gravity=G, drag_coefficient=0.0, rayleigh=(0.0, 0.0), twist_ratio=0.8) | changes
+    chosen = {
+        'gravity': G,
+        'drag_coefficient': 0.0,
+        'rayleigh': (0.0, 0.0),
+        'twist_ratio': 0.8,
+    } | changes
     return ArticulatedTree(tree(), E, RHO, **chosen)
 
 
@@ -211,10 +216,7 @@ def test_end_displacements_are_the_slope_of_the_places():
 
 
 def test_one_segment_is_a_pendulum_on_a_spring():
-    """
-    A rod hinged at its middle: half of it swings, k = EI / L, and a weight above it softens that.
-
-    """
+    """A rod hinged at its middle: half of it swings, k = EI / L, softened by weight above."""
     stem = tapered_stem(2.0, [0.05, 0.05])
     inertia = np.pi / 64 * 0.05**4
     half = RHO * np.pi / 4 * 0.05**2

@@ -12,7 +12,7 @@ from tree_sway_ros.study.frame.frame import frame_model
 
 
 def with_arms(*places):
-    """A stem of one segment, a metre tall, and an arm at each height."""
+    """Make a stem of one segment, a metre tall, and an arm at each height."""
     start = [[0.0, 0.0, 0.0], *([0.0, 0.0, z] for z in places)]
     end = [[0.0, 0.0, 1.0], *([0.5, 0.1 * k, z] for k, z in enumerate(places))]
     width = [[0.1, 0.06], *([0.02, 0.01] for _ in places)]

@@ -17,7 +17,7 @@ SEEDS = st.integers(0, 10**6)
 
 
 def vector(seed, size=2.5):
-    """A rotation vector of any size up to this."""
+    """Draw a rotation vector of any size up to this."""
     rng = np.random.default_rng(seed)
     v = rng.normal(size=3)
     return tuple(v / np.linalg.norm(v) * size * rng.uniform())
@@ -115,10 +115,7 @@ def test_twist_of_a_pure_twist_and_of_a_pure_swing():
 
 @pytest.mark.parametrize('size', [1e-6, 0.9e-2, 1.1e-2, 1.0, 3.0])
 def test_held_torque_works_as_a_constant_one(size, differences):
-    """
-    Its work on a small turn more is the constant torque's on the change of the rotation vector.
-
-    """
+    """Its work on a small turn more is a constant torque's on the change of the vector."""
     torque = np.array([1.0, -2.0, 0.5])
     v = size * np.array(vector(3, 1.0)) / np.linalg.norm(vector(3, 1.0))
     q = quaternion(v)

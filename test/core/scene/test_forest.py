@@ -30,7 +30,7 @@ def gusts(n, mean=8.0):
 
 
 def turned(wind, yaw):
-    """The wind in the frame of a tree that is turned by yaw."""
+    """Return the wind in the frame of a tree that is turned by yaw."""
     return Rotation.from_euler('z', -yaw).apply(wind)
 
 

@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Trees where they stand: turned and moved without a change to anything else; joined to one record.
-
-"""
+"""Trees where they stand: turned and moved, with no other change; joined to one record."""
 
 from __future__ import annotations
 

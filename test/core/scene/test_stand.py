@@ -105,7 +105,7 @@ def test_only_what_is_asked_for_is_placed(kinds):
 
 @pytest.fixture
 def mixed(kinds):
-    """A stand of every sort of tree."""
+    """Make a stand of every sort of tree."""
 
     def make(**changes):
         trees = [

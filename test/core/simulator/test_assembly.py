@@ -71,15 +71,18 @@ def test_damping_is_asked_for_or_the_species_in_its_season(stem):
 
 def test_the_volume_rule_sets_stiffness_and_damping_from_volumes(fork):
     tree = fork()
-    chosen = dict(
-        model='branch', stiffness='volume_rule', volume_stiffness=3e5, volume_damping=2e3
-    )
+    chosen = {
+        'model': 'branch',
+        'stiffness': 'volume_rule',
+        'volume_stiffness': 3e5,
+        'volume_damping': 2e3,
+    }
     o = bank_of(tree, **chosen).oscillators
     volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
     rule = np.sqrt(volume * volume[[0, 0, 1, 0]])
     assert o.stiffness == pytest.approx(3e5 * rule)
     assert o.damping == pytest.approx(2e3 * rule)
-    twice = bank_of(tree, **(chosen | dict(volume_stiffness=1.2e6)))
+    twice = bank_of(tree, **(chosen | {'volume_stiffness': 1.2e6}))
     assert twice.frequencies == pytest.approx(2.0 * bank_of(tree, **chosen).frequencies)
 
 

@@ -28,9 +28,9 @@ USUAL = Settings(model='modes', n_modes=2, mode_choice='slowest', gravity=0.0, i
 
 def first_frequency(ratio: float) -> float:
     """
-    Of a uniform beam on a spring of ``ratio EI / L``, its other end free (Blevins 1979, ch. 8):
-    ``ratio (1 + cos x cosh x) = x (sin x cosh x - cos x sinh x)``.
+    Of a uniform beam on a spring of ``ratio EI / L``, its other end free (Blevins 1979, ch. 8).
 
+    It is ``ratio (1 + cos x cosh x) = x (sin x cosh x - cos x sinh x)``.
     """
 
     def zero(x: float) -> float:

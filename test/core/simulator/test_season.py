@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Leaves on or off: lower frequencies, more damping, a load that grows less than the square of the
-wind.
-
-"""
+"""Leaves on or off: lower frequencies, more damping, a load below the square of the wind."""
 
 from __future__ import annotations
 
@@ -152,10 +148,7 @@ _too_light = pytest.mark.xfail(
     ],
 )
 def test_leaves_lower_the_first_frequency(name, shares):
-    """
-    Leaves of 15 to 60 % of the branches' mass bring it to 0.70 to 0.95 of that of the bare tree.
-
-    """
+    """Leaves of 15 to 60 % of the branches' mass bring it to 0.70 to 0.95 of the bare one."""
     tree = tree_named(name)
     leafy = in_season(tree, species_named(tree.species), Settings(in_leaf=True))
     mass = leafy.leaf_mass / leafy.leaf_mass.sum() * branch_wood(tree)

@@ -1,10 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-What a live stream may throw at a simulator: bad winds, storms, stalls, steps of any length,
-restarts.
-
-"""
+"""What a live stream throws at a simulator: bad winds, storms, stalls, any step, restarts."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ THICK = np.array([0.1, 0.08, 0.02])
 
 
 def subtree(parents, of):
-    """A branch and all it carries, by asking every branch for its ancestors."""
+    """List a branch and all it carries, by asking every branch for its ancestors."""
     found = set()
     for branch in range(len(parents)):
         ancestor = branch
@@ -167,29 +167,34 @@ def test_the_input_stays_the_callers_own():
 @pytest.mark.parametrize(
     ('change', 'message'),
     [
-        (dict(start=[], end=[], diameter=[]), 'no segments; give at least one'),
-        (dict(end=END[:2]), r'end \(2, 3\) .* do not match; give \(n, 3\)'),
-        (dict(diameter=[0.1, 0.1]), 'do not match'),
-        (dict(start=START[:, :2]), 'do not match'),
-        (dict(start=np.where(START == 1, np.nan, START)), 'row 1: a number that is not finite'),
-        (dict(diameter=[0.1, 0.1, np.inf]), 'row 2: a number that is not finite'),
-        (dict(end=[END[0], START[1], END[2]]), r'row 1: zero length \(.*remove the segment'),
-        (dict(diameter=[0.1, 0.0, 0.1]), 'row 1: diameter .* is not positive'),
-        (dict(diameter=[[0.1, 0.1], [0.1, 0.1], [0.1, -0.1]]), 'row 2: diameter'),
-        (dict(parent=[-1, 0, 3]), 'row 2: orphan: its parent 3 does not exist; name a parent'),
-        (dict(parent=[-1, 0, -2]), 'row 2: orphan'),
-        (dict(parent=[-1, 0, -1]), 'row 2: 2 roots: .*only row 0'),
-        (dict(parent=[-1, 2, 1]), 'row 1: cyclic: .*break the cycle'),
-        (dict(parent=[0, 0, 1]), 'row 0: cyclic'),
-        (dict(parent=[-1.0, 0.0, 0.0]), 'parent must be 3 integers'),
-        (dict(parent=[-1, 0]), r'parent must be 3 integers, not \(2,\)'),
-        (dict(branch=['a', 'a', 'b']), 'branch must be 3 integers'),
-        (dict(branch=[0, 0, 0]), 'row 2: branch 0 is not one chain: .*branch of its own'),
-        (dict(branch=[0, 1, 0], parent=[-1, 0, 1]), 'row 2: branch 0 is not one chain'),
-        (dict(branch_names=['only one']), '1 branch names for 2 branches'),
+        ({'start': [], 'end': [], 'diameter': []}, 'no segments; give at least one'),
+        ({'end': END[:2]}, r'end \(2, 3\) .* do not match; give \(n, 3\)'),
+        ({'diameter': [0.1, 0.1]}, 'do not match'),
+        ({'start': START[:, :2]}, 'do not match'),
+        ({'start': np.where(START == 1, np.nan, START)}, 'row 1: a number that is not finite'),
+        ({'diameter': [0.1, 0.1, np.inf]}, 'row 2: a number that is not finite'),
+        ({'end': [END[0], START[1], END[2]]}, r'row 1: zero length \(.*remove the segment'),
+        ({'diameter': [0.1, 0.0, 0.1]}, 'row 1: diameter .* is not positive'),
+        ({'diameter': [[0.1, 0.1], [0.1, 0.1], [0.1, -0.1]]}, 'row 2: diameter'),
+        ({'parent': [-1, 0, 3]}, 'row 2: orphan: its parent 3 does not exist; name a parent'),
+        ({'parent': [-1, 0, -2]}, 'row 2: orphan'),
+        ({'parent': [-1, 0, -1]}, 'row 2: 2 roots: .*only row 0'),
+        ({'parent': [-1, 2, 1]}, 'row 1: cyclic: .*break the cycle'),
+        ({'parent': [0, 0, 1]}, 'row 0: cyclic'),
+        ({'parent': [-1.0, 0.0, 0.0]}, 'parent must be 3 integers'),
+        ({'parent': [-1, 0]}, r'parent must be 3 integers, not \(2,\)'),
+        ({'branch': ['a', 'a', 'b']}, 'branch must be 3 integers'),
+        ({'branch': [0, 0, 0]}, 'row 2: branch 0 is not one chain: .*branch of its own'),
+        ({'branch': [0, 1, 0], 'parent': [-1, 0, 1]}, 'row 2: branch 0 is not one chain'),
+        ({'branch_names': ['only one']}, '1 branch names for 2 branches'),
     ],
 )
 def test_what_cannot_be_is_refused_with_place_and_cure(change, message):
-    given_input = dict(start=START, end=END, diameter=THICK, labels=['row 0', 'row 1', 'row 2'])
+    given_input = {
+        'start': START,
+        'end': END,
+        'diameter': THICK,
+        'labels': ['row 0', 'row 1', 'row 2'],
+    }
     with pytest.raises(TreeError, match=message):
         tree_from_segments(**(given_input | change))

@@ -12,7 +12,7 @@ from tree_sway_ros.core.tree.similar_twigs import twig_sources
 
 
 def brush(sketch, twigs):
-    """A stem with twigs on its node 2: each of direction, length and diameter."""
+    """Make a stem with twigs on its node 2: each of direction, length and diameter."""
     drawn = sketch()
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.01, 4)
     for direction, length, thick in twigs:

@@ -245,6 +245,8 @@ def test_its_state_may_be_asked_while_another_thread_feeds_it():
 
 
 class TestRefusals:
+    """Samples, steps and options that are refused."""
+
     @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
     def test_not_finite_leaves_no_trace(self, bad):
         average, untouched = WindAverage(), WindAverage()
@@ -295,6 +297,8 @@ def test_memory_is_bounded():
 
 
 class TestDropouts:
+    """Samples that stop coming, for a while or for good."""
+
     def test_no_wind_ever(self):
         average = WindAverage()
         _, means = run(average, 1.0, hears=lambda t: False)
@@ -393,6 +397,8 @@ class TestDropouts:
 
 
 class TestClocks:
+    """Clocks that jump back or ahead."""
+
     def test_set_back_it_begins_anew_from_the_wind_there_is(self):
         average = WindAverage()
         _, before = run(average, 5.0, since=900.0)

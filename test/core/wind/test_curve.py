@@ -26,10 +26,7 @@ def curve_of(knots, is_stepped=False, capacity=64):
 
 
 def exact_mean(times, values, start, end, is_stepped):
-    """
-    Mean by the trapezoidal (or left) rule on a grid that holds every knot: exact, another way.
-
-    """
+    """Mean by the trapezoidal (or left) rule on a grid with every knot: exact, another way."""
     grid = np.unique(np.concatenate([[start, end], times[(times > start) & (times < end)]]))
     width = np.diff(grid)[:, np.newaxis]
     if is_stepped:

@@ -152,6 +152,8 @@ def test_a_calm_of_zeros_is_not_frozen():
 
 
 class TestStamps:
+    """Stamps that are missing, repeated, out of order or ahead."""
+
     def test_zero_stamp_takes_the_arrival(self):
         gate = WindGate()
         verdict = offer(gate, 0.0, (1, 0, 0), 100.0)

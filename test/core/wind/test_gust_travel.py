@@ -19,7 +19,7 @@ DT = 1.0 / 60.0
 
 
 def felt(history, winds, dt=DT):
-    """What each place feels, (k, t, 3)."""
+    """Return what each place feels, (k, t, 3)."""
     return np.array([history.push(wind, dt).copy() for wind in winds])
 
 

@@ -46,11 +46,11 @@ def test_below_ground_there_is_no_wind(kind):
 @pytest.mark.parametrize(
     ('given', 'message'),
     [
-        (dict(kind='cubic'), "unknown wind profile 'cubic'; use one of: none, power, log"),
-        (dict(anemometer_height=0.0), 'anemometer height 0.0 m'),
-        (dict(anemometer_height=float('nan')), 'anemometer height nan m'),
-        (dict(kind='log', roughness=0.0), 'roughness length 0.0 m'),
-        (dict(kind='log', roughness=12.0), 'below the anemometer'),
+        ({'kind': 'cubic'}, "unknown wind profile 'cubic'; use one of: none, power, log"),
+        ({'anemometer_height': 0.0}, 'anemometer height 0.0 m'),
+        ({'anemometer_height': float('nan')}, 'anemometer height nan m'),
+        ({'kind': 'log', 'roughness': 0.0}, 'roughness length 0.0 m'),
+        ({'kind': 'log', 'roughness': 12.0}, 'below the anemometer'),
     ],
 )
 def test_what_has_no_wind_is_refused(given, message):

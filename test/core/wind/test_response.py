@@ -18,7 +18,7 @@ SEIZED = 5.0
 
 
 def behind(time, wind, constant):
-    """What a sensor shows that follows the wind with a time constant [s]."""
+    """Return what a sensor shows that follows the wind with a time constant [s]."""
     shown = np.array(wind, dtype=float)
     for i, weight in enumerate(np.exp(-np.diff(time) / constant), start=1):
         shown[i] = weight * shown[i - 1] + (1.0 - weight) * wind[i]

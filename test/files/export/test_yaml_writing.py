@@ -26,7 +26,7 @@ def assert_same_tree(one: Tree, other: Tree) -> None:
 
 
 def random_tree(seed: int, n: int = 30, joined: bool = False) -> Tree:
-    """A tree with gaps, steps in thickness and odd names."""
+    """Make a tree with gaps, steps in thickness and odd names."""
     rng = np.random.default_rng(seed)
     parent = np.array([-1, *(rng.integers(0, i) for i in range(1, n))])
     start, end = np.zeros((n, 3)), rng.normal(size=(n, 3))

@@ -11,11 +11,11 @@ import pytest
 
 pytest.importorskip('rosbags', reason='rosbags is not installed')
 
-from rosbags.typesys import get_typestore, Stores
+from rosbags.typesys import get_typestore, Stores  # noqa: E402
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.recording.bag_writer import BagWriter
-from tree_sway_ros.files.recording.state_record import (
+from tree_sway_ros.errors import FormatError, ParameterError  # noqa: E402
+from tree_sway_ros.files.recording.bag_writer import BagWriter  # noqa: E402
+from tree_sway_ros.files.recording.state_record import (  # noqa: E402
     DESCRIPTION_TYPE,
     read_state_record,
     restamped,
@@ -43,8 +43,8 @@ def description(text: str = '{"state":{}}') -> bytes:
     return bytes(TYPES.serialize_cdr(message, DESCRIPTION_TYPE))
 
 
-def recorded(path: Path, format: str, text: str = '{"state":{}}') -> Path:
-    with BagWriter(path, format) as bag:
+def recorded(path: Path, storage: str, text: str = '{"state":{}}') -> Path:
+    with BagWriter(path, storage) as bag:
         bag.add('/oak/tree_description', DESCRIPTION_TYPE, latched=True)
         bag.add('/oak/tree_state', STATE_TYPE, depth=10)
         bag.write('/oak/tree_description', 0, description(text))
@@ -53,9 +53,9 @@ def recorded(path: Path, format: str, text: str = '{"state":{}}') -> Path:
     return path
 
 
-@pytest.mark.parametrize('format', ['mcap', 'sqlite3'])
-def test_a_state_comes_back_as_it_was_sent(tmp_path: Path, format: str) -> None:
-    record = read_state_record(recorded(tmp_path / 'bag', format))
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_state_comes_back_as_it_was_sent(tmp_path: Path, storage: str) -> None:
+    record = read_state_record(recorded(tmp_path / 'bag', storage))
     assert record.time.tolist() == pytest.approx([0.0, 0.1, 0.3, 0.4])
     assert (record.epoch, record.refused) == (10.0, 1)
     assert record.states[2] == state(10 * SECOND + 300_000_000, 3.0)

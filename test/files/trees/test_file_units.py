@@ -17,7 +17,7 @@ HEADER = 'segment,parent,x0,y0,z0,x1,y1,z1,d0,d1'
 
 
 def table(tmp_path: Path, length: float, diameter: float, up: str = 'z') -> Path:
-    """A stem of 6 m and a twig, as a file in these units has them."""
+    """Make a stem of 6 m and a twig, as a file in these units has them."""
     rows = [HEADER]
     for start, end, d, parent in (
         ((0.0, 0.0, 0.0), (0.0, 0.0, 3.0), 0.12, -1),

@@ -238,10 +238,7 @@ class TestScansByOthers:
         assert tree.base_diameter[0] == pytest.approx(0.270)
 
     def test_the_walnut_sways_as_walnuts_do(self):
-        """
-        f1 within 1.2 to 1.9 Hz, 20 modes or more below 2.9 Hz, with the walnut wood of the table.
-
-        """
+        """f1 within 1.2 to 1.9 Hz, 20 modes or more below 2.9 Hz, with the table's walnut."""
         tree_file = read_tree(TREES / 'walnut.mtg', species='walnut')
         settings = Settings(model='modes', n_modes=20, mode_choice='slowest')
         slowest = build_bank(tree_file.tree, tree_file.species, settings).frequencies

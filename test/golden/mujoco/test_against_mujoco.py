@@ -1,9 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-The articulated reference and the reduced model against tips that MuJoCo found (`make_golden.py`).
-
-"""
+"""The articulated reference and the reduced model against tips by MuJoCo (`make_golden.py`)."""
 
 from pathlib import Path
 

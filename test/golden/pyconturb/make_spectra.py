@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Make `spectra.csv` with PyConTurb (J. Rinker, DTU, MIT licence), an independent turbulence
-generator.
+Make `spectra.csv` with PyConTurb (J. Rinker, DTU, MIT licence), an independent generator.
 
     python -m pip install pyconturb==2.7.4 && python make_spectra.py > spectra.csv
 

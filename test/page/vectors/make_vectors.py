@@ -45,7 +45,7 @@ TREES = (
 
 
 def small_tree(name: str, x: float) -> Tree:
-    """A stem, two branches and a twig on one of them; its root node at (x, 0, 0)."""
+    """Make a stem, two branches and a twig on one of them; its root node at (x, 0, 0)."""
     start: list[Any] = []
     end: list[Any] = []
     parent: list[int] = []
@@ -69,7 +69,7 @@ def small_tree(name: str, x: float) -> Tree:
 
 
 def simulators() -> list[SwaySimulator]:
-    """A tree that moves all over, and one whose twig is frozen."""
+    """Make a tree that moves all over, and one whose twig is frozen."""
     first, second = small_tree('left', 0.0), small_tree('right', 1.5)
     species = species_named(first.species)
     frozen = np.array([name == second.branch_names[-1] for name in second.branch_names])

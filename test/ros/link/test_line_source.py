@@ -14,6 +14,8 @@ from tree_sway_ros.ros.link.line_source import LineSource
 
 
 class Heard:
+    """The lines of a source, and what it logs."""
+
     def __init__(self, address, **options):
         self.lines, self.said = [], []
         self._more = threading.Condition()

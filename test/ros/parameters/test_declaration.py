@@ -123,7 +123,7 @@ def test_a_value_keeps_its_kind_in_ros_too(declare, name, value):
     kind = node.get_parameter(name).type_
     assert change(node, name, value).successful
     assert node.get_parameter(name).type_ == kind
-    assert type(values[name]) is type(node.get_parameter(name).value)
+    assert values[name].__class__ is node.get_parameter(name).value.__class__
     assert change(node, 'delay', 1.5).successful
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import pytest
 import yaml
 
-from tree_sway_ros.core.simulator.settings import Settings
+from tree_sway_ros.core.simulator.settings import Settings  # noqa: I100
 from tree_sway_ros.core.wind.averaging import WindAverage
 from tree_sway_ros.core.wind.convention import WindConvention
 from tree_sway_ros.core.wind.gate import WindGate

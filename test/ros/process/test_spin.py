@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
 from pathlib import Path
+import platform
 import signal
+import subprocess
 import sys
 import time
 import types
@@ -48,6 +50,8 @@ class FakeRclpy(types.ModuleType):
 
 
 class FakeNode:
+    """What `spin` asks of a node."""
+
     def __init__(self):
         self.failure = None
         self.is_done = False
@@ -155,6 +159,29 @@ def test_nodes_announce_themselves_often_and_hear_by_udp_unless_a_profile_is_nam
     assert [each.text for each in period] == ['0', '300000000']
     (place,) = profile.iterfind(f'.//{space}defaultUnicastLocatorList/{space}locator/*')
     assert place.tag == f'{space}udpv4'
+
+
+FREED = """
+import ctypes, sys, types
+from tree_sway_ros.ros.process import spin
+if sys.argv[1] == 'init':
+    spin.init(types.SimpleNamespace(init=lambda args: None))
+libc = ctypes.CDLL(None)
+libc.malloc.restype, libc.malloc.argtypes = ctypes.c_void_p, [ctypes.c_size_t]
+libc.free.argtypes = [ctypes.c_void_p]
+libc.free(libc.malloc(8 << 20))
+print(ctypes.c_size_t.from_address(libc.malloc(4 << 20) - 8).value & 2)
+"""
+"""Whether glibc maps a block of 4 MB, to be given back when it is freed, once it freed 8 MB."""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != 'glibc', reason='of glibc alone')
+@pytest.mark.parametrize(('before', 'bit'), [('nothing', 0), ('init', 2)])
+def test_large_blocks_go_back_to_the_system_after_larger_ones(before, bit):
+    told = subprocess.run(
+        [sys.executable, '-c', FREED, before], capture_output=True, text=True, check=True
+    )
+    assert int(told.stdout) == bit
 
 
 def test_no_ros_is_one_line(monkeypatch, capsys):

@@ -5,7 +5,7 @@ import pytest
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
-from builtin_interfaces.msg import Time  # noqa: E402
+from builtin_interfaces.msg import Time  # noqa: E402, I100
 
 from tree_sway_ros.core.wind.gate import GateCounts, SECOND, WindGate  # noqa: E402
 from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402

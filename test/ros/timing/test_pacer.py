@@ -42,7 +42,7 @@ class Ticks:
         self.pacer.start()
         return self
 
-    def set(self, nanoseconds, wait_for=None):
+    def set(self, nanoseconds, wait_for=None):  # noqa: A003
         self.clock.set_ros_time_override(
             Time(nanoseconds=nanoseconds, clock_type=self.clock.clock_type)
         )

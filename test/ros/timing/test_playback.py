@@ -70,7 +70,7 @@ def test_neither_samples_nor_the_clock_ever_go_back(time, clock_period, loop):
 
 
 def play(playback, n, speed=1000.0, **options):
-    """The first n of what a thread publishes."""
+    """Take the first n of what a thread publishes."""
     published, ended = [], threading.Event()
     full = threading.Event()
 

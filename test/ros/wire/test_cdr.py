@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402
+from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402, I100
 from hypothesis import given, settings  # noqa: E402
 from hypothesis import strategies as st  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
@@ -19,7 +19,7 @@ FRAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size
 
 
 def built(poses, frame_id, stamp):
-    """The same message made of Python objects: what the bytes must say."""
+    """Make the same message of Python objects: what the bytes must say."""
     message = PoseArray()
     message.header.frame_id = frame_id
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)

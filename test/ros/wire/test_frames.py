@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import TransformStamped  # noqa: E402
+from geometry_msgs.msg import TransformStamped  # noqa: E402, I100
 from scipy.spatial.transform import Rotation  # noqa: E402
 
 from tree_sway_ros.ros.wire import frames  # noqa: E402

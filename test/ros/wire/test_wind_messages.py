@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
-from hypothesis import given  # noqa: E402
+from hypothesis import given  # noqa: E402, I100
 from hypothesis import strategies as st  # noqa: E402
 
 from tree_sway_ros.errors import ParameterError  # noqa: E402

@@ -65,7 +65,7 @@ def test_a_tree_is_set_up_once_for_many_winds():
 
 
 def workers_of(parent: int) -> list[int]:
-    """Processes that a process has spawned to compute."""
+    """List processes that a process has spawned to compute."""
     found = []
     for path in Path('/proc').glob('[0-9]*/stat'):
         try:

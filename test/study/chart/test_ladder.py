@@ -44,6 +44,8 @@ def test_cost_is_written_for_every_model_and_size(tmp_path):
 
 def test_frame_times_keep_models_apart():
     class Busy:
+        """A simulator that takes as long as its work."""
+
         def __init__(self, work):
             self.work = work
 

@@ -140,11 +140,7 @@ def test_a_load_is_shared_as_it_lies(shapes):
 
 
 def test_moment_terms_are_the_second_variation(shapes):
-    """
-    For linear turns -M . (theta x theta') is a product of their ends: M (a1 b2 - a2 b1) / L per
-    length.
-
-    """
+    """For linear turns -M . (theta x theta') joins ends: M (a1 b2 - a2 b1) / L per length."""
     moment = np.zeros((2, 5, 3))
     moment[..., 0] = 7.0
     k = element.geometric_stiffness(shapes, LENGTHS, np.zeros((2, 5, 3)), moment)[UNIFORM]

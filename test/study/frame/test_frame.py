@@ -24,10 +24,7 @@ def dimensionless(frequency):
 
 
 def greenhill(width):
-    """
-    Length at which an upright uniform stem buckles: 7.8373 EI / (rho A g) cubed (Greenhill 1881).
-
-    """
+    """Length at which an upright uniform stem buckles: 7.8373 EI / (rho A g) cubed (Greenhill)."""
     return (7.8373 * E * width**2 / (16.0 * RHO * 9.81)) ** (1 / 3)
 
 

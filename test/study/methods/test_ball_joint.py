@@ -53,8 +53,7 @@ def test_the_ball_joint_keeps_its_energy():
 
 
 def test_static_deflection_is_keplers_equation():
-    """theta = psi - E with E + s sin E = psi, the load at the angle psi from the rest
-    direction."""
+    """It is psi - E with E + s sin E = psi, the load at the angle psi from the rest direction."""
     branch, s = Branch(2.0, 0.3), 0.9
     for psi in (0.4, 1.2, 2.0):
         load = s * np.array([np.cos(psi), np.sin(psi) * 0.6, np.sin(psi) * 0.8])

@@ -87,8 +87,7 @@ def test_constraint_jacobians_against_differences(table):
 
 
 def test_the_two_references_agree(swaying):
-    """Radau on the multiplier form and Runge-Kutta on the angles in long double, at a
-    twentieth."""
+    """Radau on multipliers and Runge-Kutta on angles in long double, at a twentieth."""
     step, steps = plain(rk4.step), 2400
     state = np.zeros((4, 1), np.longdouble)
     chain, dt = swaying.chain.astype(np.longdouble), np.longdouble(1) / steps

@@ -43,7 +43,7 @@ def test_a_kernel_runs_on_counted_numbers_as_on_floats():
 
 @pytest.mark.parametrize(('m', 'k'), [(1, 1), (4, 1), (7, 3)])
 def test_elimination_costs_what_the_textbook_says(m, k):
-    """m (m - 1) (2 m - 1) / 6 + k m (m - 1) products, m (m - 1) / 2 + k m divisions."""
+    """Products m (m - 1) (2 m - 1) / 6 + k m (m - 1), divisions m (m - 1) / 2 + k m."""
     rng, tally = np.random.default_rng(m), Counter()
     a = counted(rng.normal(size=(m, m)) + m * np.eye(m), tally)
     assert plain(solve)(a, counted(rng.normal(size=(m, k)), tally))

@@ -29,7 +29,7 @@ def test_loads_are_taken_at_the_nodes_of_every_step():
 
 @pytest.mark.parametrize('name', METHODS)
 def test_free_decay_is_the_closed_form(name):
-    """theta = e^(-z w t) (cos + z w / wd sin) from 0.3 rad; without load one segment is linear."""
+    """It is e^(-z w t) (cos + z w / wd sin) from 0.3 rad; without load one segment is linear."""
     chain, method, steps = single_segment(1.0, 0.05), method_named(name), 480
     run = integrate(method, chain, calm(method, 1, steps), 1 / steps, theta=[0.3])
     w, t = 2 * np.pi, np.arange(steps + 1) / steps

@@ -37,7 +37,7 @@ def record() -> StreamRecord:
 
 @pytest.fixture
 def totals() -> StreamTotals:
-    """The same stream, counted as it came."""
+    """Count the same stream as it came."""
     made = StreamTotals()
     for stamp in STAMPS:
         made.add_poses(stamp + 0.001, stamp, TIP)

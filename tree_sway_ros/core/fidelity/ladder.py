@@ -46,6 +46,9 @@ MARGIN = 1.3
 FLOOR = 0.05
 """Share of the motion by which even the coupled model may err against every segment solved."""
 
+BEND = 0.15
+"""Share on top of that per motion of the tips over the farthest tip's way from the root."""
+
 TABLE_FLOOR, TABLE_MARGIN = 0.03, 7.0
 """
 Share of the motion by which `wind_basis` may err further, whatever its table; and per error that
@@ -95,6 +98,7 @@ class FidelityLadder:
         self._drag_law = whole.drag_law
         best, best_modes = _best(tree)
         self._coherence = settings.crown_coherence
+        self._reach = float(np.linalg.norm(tree.end - tree.start[0], axis=1).max())
         bank = whole.bank(best, best_modes)
         rotations = self._response(whole, bank)
         self._truth = tip_motion(bank.branches, rotations)
@@ -147,7 +151,8 @@ class FidelityLadder:
         found = []
         for each, error in zip(self._models.values(), errors.tolist(), strict=True):
             # What no linear model knows has nothing to do with what a lesser one leaves out.
-            rest = (FLOOR + each.table_error) * offset if each.model != 'frozen' else 0.0
+            share = FLOOR + BEND * offset / self._reach + each.table_error
+            rest = share * offset if each.model != 'frozen' else 0.0
             bound = math.hypot(error, rest)
             found.append(
                 Estimate(each.model, each.n_modes, bound, swing, each.cost, each.n_frozen)

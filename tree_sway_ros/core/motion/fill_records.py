@@ -93,6 +93,9 @@ def head_records(branches: Records, segments: Records) -> Records:
         heads[name][block, lane] = branches[name]
     for name in ('frame', 'skew', 'tip_skew', 'offset'):
         heads[name][block, ..., lane] = branches[name]
+    heads['is_at_axes'] = (np.abs(heads['offset'][:, 1:]) <= _AS_ONE * heads['offset'][:, :1]).all(
+        axis=(1, 2)
+    )
     heads['steepest'][block, lane] = branches['steepest'][:, 0]
     heads['base_turn'][block, ..., lane] = branches['twist'][..., 3:]
     return heads

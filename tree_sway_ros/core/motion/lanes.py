@@ -116,7 +116,7 @@ if not WHY_PLAIN:
         return mixed(ab, cd, low), mixed(ba, dc, low), mixed(ab, cd, high), mixed(ba, dc, high)
 
     def _carried(is_put: bool) -> Any:
-        def carry(typing, lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
+        def carry(typing, lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]  # noqa: E501
             def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
                 kinds = signature.args
                 lanes, row, lane, array, *rows, first = values

@@ -85,25 +85,34 @@ def place_standing_at(
     for block in range(last):
         head = heads[block]
         _read_parents(branches, head, scratch, bases, x, east, north, up, cosine, sine, out)
-        _turn_on_parents(head, scratch)
-        _turn_bases(head, scratch, scale)
-        farthest = _write_bases(head, scratch, bases)
+        is_near = _turn_on_parents(head, scratch)
+        if is_near:
+            farthest = _turn_bases(head, scratch, scale, True)
+        else:
+            farthest = _turn_bases(head, scratch, scale, False)
+        _write_bases(head, scratch, bases)
         if head.n_rows > 2:
             farthest = max(farthest, _set_further_keys(branches, head, scratch, x))
+        is_near = is_near and farthest <= NEAR_LIMIT
         for rank in range(head.n_records):
             segment = segments[head.block + rank]
-            if not farthest <= SERIES_LIMIT:
-                _bend_far(segment, scratch, head.n_rows)
-            elif head.n_rows > 2:
-                _bend(segment, scratch)
-            elif farthest <= NEAR_LIMIT:
-                _bend_in_plane(segment, scratch, True)
+            if is_near and head.n_rows == 2 and head.is_joined:
+                _bend_and_join(segment, scratch, scale)
             else:
-                _bend_in_plane(segment, scratch, False)
-            if head.is_joined:
-                _join(segment, scratch, scale)
-            else:
-                _join_gaps(segment, scratch, scale)
+                if not farthest <= SERIES_LIMIT:
+                    _bend_far(segment, scratch, head.n_rows)
+                elif head.n_rows > 2 and not is_near:
+                    _bend(segment, scratch, LANES, False)
+                elif head.n_rows > 2 and 2 * segment.n_lanes <= LANES:
+                    _bend(segment, scratch, LANES // 2, True)
+                elif head.n_rows > 2:
+                    _bend(segment, scratch, LANES, True)
+                else:
+                    _bend_in_plane(segment, scratch)
+                if head.is_joined:
+                    _join(segment, scratch, scale, True)
+                else:
+                    _join(segment, scratch, scale, False)
             _write_poses(head, scratch, rank, segment.n_lanes, out)
 
 
@@ -138,7 +147,7 @@ def _read_parents(
     if head.n_parent_rows > 2:
         parent_key[2:] = 0.0
     if head.parent[0] < 0:  # the stem, alone
-        parent_key[:], carrier[:] = 0.0, 0.0
+        base[:], carrier[:] = 0.0, 0.0
         base[0, 0], base[1, 0], base[2, 0], base[3, 0] = cosine, 0.0, 0.0, sine
         carrier[0, 0], carrier[1, 0], carrier[2, 0] = east, north, up
         carrier[5, 0], carrier[6, 0] = sine, cosine
@@ -155,9 +164,9 @@ def _read_parents(
     for j in range(head.n_lanes):
         i = np.uintp(head.coordinate[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
-    for j in range(LANES):
-        parent_key[0, j], parent_key[1, j] = base[4, j], base[5, j]
     if head.n_parent_rows > 2:
+        for j in range(LANES):
+            parent_key[0, j], parent_key[1, j] = base[4, j], base[5, j]
         for j in range(head.n_lanes):
             parent = branches[parents[j]]
             i = parent.coordinate
@@ -175,22 +184,33 @@ def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> N
     turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
 
 
+@inlined
+def _is_beyond(turned: Floats, key: Floats, j: int) -> int:
+    """Return 1 where the lane j is turned or bent further than the short series holds."""
+    hx, hy, hz, x, y = turned[0, j], turned[1, j], turned[2, j], key[0, j], key[1, j]
+    is_turned = hx * hx + hy * hy + hz * hz > NEAR_LIMIT
+    return 1 if is_turned or x * x + y * y > _BLEND_FROM else 0
+
+
 @fused
-def _turn_on_parents(head: Record, scratch: Record) -> None:
-    """Find how sixteen branches are turned from the bases of their parents, by half the vector."""
+def _turn_on_parents(head: Record, scratch: Record) -> bool:
+    """
+    Find how sixteen branches are turned from the bases of their parents, by half the vector.
+
+    Returns whether none is turned, nor bent by its key, beyond the short series.
+    """
     key, per, turned = scratch.parent_key, head.base_turn, scratch.carrier_turn
+    n_beyond = 0
     if head.n_parent_rows == 2:
         for j in range(LANES):
-            _turn_by(key, per, turned, 2, j)
+            _turn_by(scratch.parent_base[4:], per, turned, 2, j)
+            n_beyond += _is_beyond(turned, scratch.key, j)
     else:
         for j in range(LANES):
             _turn_by(key, per, turned, per.shape[0], j)
-    n_far = 0
-    for j in range(LANES):
-        hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
-        n_far += 1 if hx * hx + hy * hy + hz * hz > SERIES_LIMIT else 0
-    if n_far == 0:
-        return
+            n_beyond += _is_beyond(turned, scratch.key, j)
+    if n_beyond == 0:
+        return True
     base = scratch.parent_base
     for j in range(head.n_lanes):
         hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
@@ -200,24 +220,34 @@ def _turn_on_parents(head: Record, scratch: Record) -> None:
                 base[0, j], base[1, j], base[2, j], base[3, j], qw, qx, qy, qz
             )
             turned[0, j], turned[1, j], turned[2, j] = 0.0, 0.0, 0.0
+    return False
 
 
 @fused
-def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
-    """Turn the bases of sixteen branches, place them, and set how their first shape bends."""
+def _turn_bases(head: Record, scratch: Record, scale: float, is_near: bool) -> float:
+    """
+    Turn the bases of sixteen branches, place them, and set how their first shape bends.
+
+    Returns a bound on the square of half the angle that any segment turns by.
+    """
     key, below = scratch.key, scratch.parent_base
     carrier, turned = scratch.carrier, scratch.carrier_turn
     frame, offset = head.frame, head.offset
     base, half_turn, half_key, swing, following = (
         scratch.base, scratch.half_turn, scratch.half_key, scratch.swing, scratch.next
     )  # fmt: skip
+    together = 0.0
     for j in range(LANES):
         x, y = key[0, j], key[1, j]
         t = x * x + y * y
-        blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
-        bounded = 0.5 * min(t, _STRETCH_TO)
+        blend, bounded = 0.0, 0.5 * t
+        if not is_near:
+            blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
+            bounded = 0.5 * min(t, _STRETCH_TO)
         own = 0.5 + bounded * head.skew[j]
-        half = own + bounded * blend * (head.tip_skew[j] - head.skew[j])
+        half = own
+        if not is_near:
+            half += bounded * blend * (head.tip_skew[j] - head.skew[j])
         ux = x * frame[2, 0, j] - y * frame[1, 0, j]
         uy = x * frame[2, 1, j] - y * frame[1, 1, j]
         uz = x * frame[2, 2, j] - y * frame[1, 2, j]
@@ -228,8 +258,12 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
         square = half * half * t
         scratch.blend[j], scratch.square[j] = blend, square
         scratch.half_angle[j] = square * head.steepest[j]
+        together += square * head.steepest[j]
         hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
-        c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
+        if is_near:
+            c, s = half_angle_near(hx * hx + hy * hy + hz * hz)
+        else:
+            c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = product(
             below[0, j], below[1, j], below[2, j], below[3, j], c, s * hx, s * hy, s * hz
         )
@@ -238,29 +272,12 @@ def _turn_bases(head: Record, scratch: Record, scale: float) -> None:
         swing[1, j] = bw * wx + by * wz - bz * wy
         swing[2, j] = bw * wy - bx * wz + bz * wx
         swing[3, j] = bw * wz + bx * wy - by * wx
-        ox, oy, oz = rotated(
-            carrier[6, j], carrier[3, j], carrier[4, j], carrier[5, j],
-            offset[0, j], offset[1, j], offset[2, j],
-        )  # fmt: skip
-        following[0, j] = carrier[0, j] + scale * ox
-        following[1, j] = carrier[1, j] + scale * oy
-        following[2, j] = carrier[2, j] + scale * oz
-
-
-@fused
-def _write_bases(head: Record, scratch: Record, bases: Floats) -> float:
-    """Leave their turned bases to the children; bound the square of half of any segment's turn."""
-    branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
-    for j in range(0, whole, 4):
-        a, b, c, d = branch[j], branch[j + 1], branch[j + 2], branch[j + 3]
-        put_four(base, 0, j, bases, a, b, c, d, 0)
-        put_four(base, 4, j, bases, a, b, c, d, 4)
-    for j in range(whole, head.n_bearing):
-        for row in range(6):
-            bases[branch[j], row] = base[row, j]
-    together = 0.0
-    for j in range(head.n_lanes):
-        together += scratch.half_angle[j]
+    if head.is_at_axes:
+        for j in range(LANES):
+            _reach_ahead(carrier, following, scale * offset[0, j], j)
+    else:
+        for j in range(LANES):
+            _reach(carrier, following, scale, offset, j)
     if together <= NEAR_LIMIT:
         return together
     farthest = 0.0
@@ -270,8 +287,21 @@ def _write_bases(head: Record, scratch: Record, bases: Floats) -> float:
 
 
 @fused
+def _write_bases(head: Record, scratch: Record, bases: Floats) -> None:
+    """Leave their turned bases to the children."""
+    branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
+    for j in range(0, whole, 4):
+        a, b, c, d = branch[j], branch[j + 1], branch[j + 2], branch[j + 3]
+        put_four(base, 0, j, bases, a, b, c, d, 0)
+        put_four(base, 4, j, bases, a, b, c, d, 4)
+    for j in range(whole, head.n_bearing):
+        for row in range(6):
+            bases[branch[j], row] = base[row, j]
+
+
+@fused
 def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Floats) -> float:
-    """Set the further coordinates; return as `_write_bases`, of the branches that have them."""
+    """Set the further coordinates; return as `_turn_bases`, of the branches that have them."""
     farthest, half_key = 0.0, scratch.half_key
     half_key[2:] = 0.0
     for j in range(head.n_lanes):
@@ -305,11 +335,15 @@ def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Fl
 
 
 @inlined
-def _half_vector(segment: Record, scratch: Record, j: int) -> tuple[float, float, float]:
+def _half_vector(
+    segment: Record, scratch: Record, j: int, is_near: bool
+) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
-    far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
-    hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
+    hx, hy, hz = 0.0, 0.0, 0.0
+    if not is_near:
+        far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
+        hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
     # All rows that there is room for: a count known when compiled lets the lanes be a vector.
     for c in range(turn.shape[0]):
         key = half_key[c, j]
@@ -328,61 +362,86 @@ def _turn(
     )
 
 
-@fused
-def _join(segment: Record, scratch: Record, scale: float) -> None:
-    """Put sixteen turned segments at the ends of those before them, and find their own ends."""
+@inlined
+def _reach_ahead(pose: Floats, to: Floats, length: float, j: int) -> None:
+    """Find where the x axis of the pose of the lane j reaches."""
+    x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
+    twice = length + length
+    to[0, j] = pose[0, j] + length - twice * (y * y + z * z)
+    to[1, j] = pose[1, j] + twice * (x * y + w * z)
+    to[2, j] = pose[2, j] + twice * (x * z - w * y)
+
+
+@inlined
+def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
+    """Find where a point of a segment's own frame is at the pose of the lane j."""
+    x, y, z = rotated(
+        pose[6, j], pose[3, j], pose[4, j], pose[5, j], own[0, j], own[1, j], own[2, j]
+    )
+    to[0, j] = pose[0, j] + scale * x
+    to[1, j] = pose[1, j] + scale * y
+    to[2, j] = pose[2, j] + scale * z
+
+
+@inlined
+def _join_lane(segment: Record, scratch: Record, scale: float, is_joined: bool, j: int) -> None:
+    """Put the turned segment of the lane j behind that before it, and find where the next is."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
-    for j in range(LANES):
-        x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
-        px, py, pz, length = following[0, j], following[1, j], following[2, j], scale * reach[0, j]
-        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
-        twice = length + length
-        following[0, j] = px + length - twice * (y * y + z * z)
-        following[1, j] = py + twice * (x * y + w * z)
-        following[2, j] = pz + twice * (x * z - w * y)
+    pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
+    if is_joined:
+        _reach_ahead(pose, following, scale * reach[0, j], j)
+    else:
+        _reach(pose, following, scale, reach, j)
 
 
 @fused
-def _join_gaps(segment: Record, scratch: Record, scale: float) -> None:
-    """Do the same where the next segment does not start at this one's end."""
-    pose, following, reach = scratch.pose, scratch.next, segment.reach
+def _join(segment: Record, scratch: Record, scale: float, is_joined: bool) -> None:
+    """Put sixteen turned segments behind those before them, and find where the next ones are."""
     for j in range(LANES):
-        px, py, pz = following[0, j], following[1, j], following[2, j]
-        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
-        rx, ry, rz = rotated(
-            pose[6, j], pose[3, j], pose[4, j], pose[5, j], reach[0, j], reach[1, j], reach[2, j]
-        )
-        following[0, j] = px + scale * rx
-        following[1, j] = py + scale * ry
-        following[2, j] = pz + scale * rz
+        _join_lane(segment, scratch, scale, is_joined, j)
+
+
+@inlined
+def _swing(segment: Record, scratch: Record, j: int, c: float, s: float) -> None:
+    """Turn the segment of the lane j about the one axis of its branch."""
+    base, swing = scratch.base, scratch.swing
+    _turn(
+        segment, scratch, j,
+        c * base[0, j] + s * swing[0, j], c * base[1, j] + s * swing[1, j],
+        c * base[2, j] + s * swing[2, j], c * base[3, j] + s * swing[3, j],
+    )  # fmt: skip
 
 
 @fused
-def _bend_in_plane(segment: Record, scratch: Record, is_near: bool) -> None:
+def _bend_and_join(segment: Record, scratch: Record, scale: float) -> None:
+    """Turn and join sixteen segments, each of a branch that bends a little about one axis."""
+    for j in range(LANES):
+        slope = segment.slope[j]
+        c, s = half_angle_near(slope * slope * scratch.square[j])
+        _swing(segment, scratch, j, c, s * slope)
+        _join_lane(segment, scratch, scale, True, j)
+
+
+@fused
+def _bend_in_plane(segment: Record, scratch: Record) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
-    slope, base, swing = segment.slope, scratch.base, scratch.swing
+    slope = segment.slope
     for j in range(LANES):
         first = slope[j] + scratch.blend[j] * (segment.tip_slope[j] - slope[j])
-        t = first * first * scratch.square[j]
-        if is_near:
-            c, s = half_angle_near(t)
-        else:
-            c, s = half_angle_series(t)
-        s *= first
-        _turn(
-            segment, scratch, j,
-            c * base[0, j] + s * swing[0, j], c * base[1, j] + s * swing[1, j],
-            c * base[2, j] + s * swing[2, j], c * base[3, j] + s * swing[3, j],
-        )  # fmt: skip
+        c, s = half_angle_series(first * first * scratch.square[j])
+        _swing(segment, scratch, j, c, s * first)
 
 
 @fused
-def _bend(segment: Record, scratch: Record) -> None:
-    """Turn sixteen segments of branches with further coordinates."""
+def _bend(segment: Record, scratch: Record, n_lanes: int, is_near: bool) -> None:
+    """Turn segments of branches with further coordinates, in the first lanes."""
     base = scratch.base
-    for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, scratch, j)
-        c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
+    for j in range(n_lanes):
+        hx, hy, hz = _half_vector(segment, scratch, j, is_near)
+        if is_near:
+            c, s = half_angle_near(hx * hx + hy * hy + hz * hz)
+        else:
+            c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
         _turn(segment, scratch, j, qw, qx, qy, qz)
@@ -394,7 +453,7 @@ def _bend_far(segment: Record, scratch: Record, n_rows: int) -> None:
     base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):
         if n_rows > 2:
-            hx, hy, hz = _half_vector(segment, scratch, j)
+            hx, hy, hz = _half_vector(segment, scratch, j, False)
         else:
             slope = segment.slope[j]
             slope += scratch.blend[j] * (segment.tip_slope[j] - slope)

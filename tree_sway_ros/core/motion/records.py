@@ -152,6 +152,7 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ('n_rows', 'i8'),  # most coordinates that one of them has; 2 where all are plain
             ('n_parent_rows', 'i8'),  # the same of their parents
             ('is_joined', 'i8'),  # whether each segment starts where the one before ends
+            ('is_at_axes', 'i8'),  # whether they sit on the axes of their base segments
             # As in `BRANCH`:
             ('branch', 'i8', (LANES,)),
             ('parent', 'i8', (LANES,)),

@@ -199,7 +199,7 @@ class Bank:
 
     @cached_property
     def bases(self) -> Floats:
-        """What `place` writes of bases, (b, 8)."""
+        """Return what `place` writes of bases, (b, 8)."""
         return np.zeros((len(self.branches), 8))
 
     @cached_property
@@ -352,7 +352,7 @@ class CalibratedTree:
         digest, found = '', None
         if self._kept is not None:
             digest = digest_of(self.tree, self.species, replace(self.settings, model=model))
-            digest = f'{digest}-{n_modes}'
+            digest = f'{digest}-{n_modes}-{WHY_PLAIN}'
             found = self._kept.read(digest)
         made_of = self._modal_arrays(model, n_modes) if found is None else found
         branches = made_of['branches'].copy()

@@ -69,4 +69,4 @@ class CrownGusts:
 def _hand_out(loads: Records, crowns: Records, x: float, y: float, z: float, dt: float) -> None:
     """Push the wind and give every branch that of its delay."""
     push_wind(crowns, x, y, z, dt)
-    set_gusts(loads, crowns[0].apart)
+    set_gusts(loads, crowns[0]['apart'])

@@ -113,9 +113,9 @@ class SwaySimulator(OneTree, KeepsState):
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
         if self.settings.crown_coherence < 1.0:
-            from tree_sway_ros.core.simulator.crown_gusts import CrownGusts
+            from tree_sway_ros.core.simulator import crown_gusts
 
-            self._gusts = CrownGusts(
+            self._gusts = crown_gusts.CrownGusts(
                 calibrated.crown_delays, self.settings.crown_coherence, self.bank.oscillators.loads
             )
         self._calibrated = calibrated

@@ -184,16 +184,17 @@ class CrownWind:
 def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
     """Do what `CrownWind.push` does, for the first record of an array."""
     here = crowns[0]
-    run, at, mean, behind, apart = here.run, here.at, here.mean, here.behind, here.apart
+    run, at, mean = here['run'], here['at'], here['mean']
+    behind, apart = here['behind'], here['apart']
     is_first = at[1] == 0
     remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
     follow_mean(mean, x, y, dt, _AVERAGING)
     speed = max(math.hypot(mean[0], mean[1]), _SLOWEST)
-    goal, most = min(here.spread / speed, LONGEST_DELAY), LARGEST_STRETCH * dt
-    before = goal if is_first else here.delay
+    goal, most = min(here['spread'] / speed, LONGEST_DELAY), LARGEST_STRETCH * dt
+    before = goal if is_first else here['delay']
     delay = min(max(goal, before - most), before + most)
-    here.delay = delay
-    head, cell, rest = run[at[0]], at[0] - 1, 1.0 - here.coherence
+    here['delay'] = delay
+    head, cell, rest = run[at[0]], at[0] - 1, 1.0 - here['coherence']
     for j in range(1, len(apart)):
         share = j / (len(apart) - 1)
         if is_first:

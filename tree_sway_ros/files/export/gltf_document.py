@@ -31,7 +31,7 @@ class GltfDocument:
         objects.append({name: value for name, value in properties.items() if value is not None})
         return len(objects) - 1
 
-    def set(self, **properties: Any) -> None:
+    def set(self, **properties: Any) -> None:  # noqa: A003
         """Set properties of the document itself."""
         self._json.update(properties)
 

@@ -33,7 +33,7 @@ class BagWriter:
 
     """
 
-    def __init__(self, path: Path, format: str = 'mcap') -> None:
+    def __init__(self, path: Path, format: str = 'mcap') -> None:  # noqa: A002
         try:
             from rosbags.rosbag2 import StoragePlugin, Writer
             from rosbags.typesys import get_typestore, Stores

@@ -42,7 +42,9 @@ def options_of(known: TreeFormat) -> tuple[str, ...]:
 
 
 def read_trees(
-    path: str | Path, format: str | None = None, **options: Any
+    path: str | Path,
+    format: str | None = None,  # noqa: A002
+    **options: Any,
 ) -> tuple[TreeFile, ...]:
     """
     Read every tree of a file, of a format that is named or found from content and suffix.
@@ -75,7 +77,7 @@ def read_trees(
     return tuple(tree_of_cylinders(units.of_cylinders(c), path, settings) for c in content)
 
 
-def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:
+def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501
     """
     Read the tree of a file, the first if it holds several; see `read_trees`.
 

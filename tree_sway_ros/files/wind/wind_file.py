@@ -44,7 +44,7 @@ EXAMPLES = ('canopy',)
 """Winds that come with the package: five minutes of a sonic anemometer over a canopy, 20 Hz."""
 
 
-def read_wind(path: str | Path, format: str | None = None, **options: Any) -> WindRecord:
+def read_wind(path: str | Path, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002, E501
     """
     Read a wind record.
 

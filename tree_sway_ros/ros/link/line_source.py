@@ -147,6 +147,8 @@ class LineSource:
 
 
 class _Datagrams(asyncio.DatagramProtocol):
+    """What a socket hears goes into a queue; when it is full, nowhere."""
+
     def __init__(self, queue: asyncio.Queue[bytes]) -> None:
         self._queue = queue
 

@@ -33,6 +33,8 @@ from tree_sway_ros.study.paper.key_segments import key_segments, KeySegments
 RATE = 60
 """Frames per second."""
 
+_TIMINGS = 5
+
 SUBSTEPS = 4
 """Steps of Runge-Kutta's method per frame, in both forms."""
 
@@ -64,7 +66,7 @@ class Solution:
     operations
         Weighted operations per frame for one key segment.
     seconds
-        Time that all solved branches took.
+        Time of the processor that all solved branches took.
 
     """
 
@@ -143,14 +145,14 @@ def solve(keys: KeySegments, speed: Floats, method_name: str, substeps: int) -> 
     )
     angle = np.zeros((len(speed), len(keys.table)))
     reaction = np.zeros((len(keys.solved), 2))
-    began = time.perf_counter()
+    began = time.process_time()
     for place, branch in enumerate(keys.solved):
         chain = PlanarChain(keys.table[branch][None])
         loads = square[:, :, None, None] * keys.load[branch]
         run = integrate(method, chain, loads, dt)
         angle[:, branch] = run.theta[::substeps, 0]
         reaction[place] = _reaction(method.form, chain, run.state, loads[-1, -1])
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     if not np.isfinite(angle).all():
         raise ParameterError(
             f"the form '{method_name}' is unstable at {RATE * substeps} steps per second",
@@ -167,7 +169,8 @@ def measured_share(tree: Tree, keys: KeySegments, speed: Floats) -> float:
     """
     Time to solve every segment of the branches of several, over the time for their key segments.
 
-    Both by multipliers, in one run, the shorter of two timings each.
+    Both by multipliers, in turn, the shortest of five each, in time of the processor: what
+    else a computer does counts little.
 
     """
     counts = np.diff(tree.branch_first)
@@ -175,10 +178,11 @@ def measured_share(tree: Tree, keys: KeySegments, speed: Floats) -> float:
     few = [_alone(keys, several), _alone(keys, np.repeat(several, counts[several]))]
     solve(few[0], speed[:3], *FORMS['multipliers'])
     seconds = [
-        min(solve(part, speed[:31], *FORMS['multipliers']).seconds for _ in range(2))
-        for part in few
+        [solve(part, speed[:31], *FORMS['multipliers']).seconds for part in few]
+        for _ in range(_TIMINGS)
     ]
-    return seconds[1] / seconds[0]
+    keys_alone, every_segment = np.min(seconds, axis=0)
+    return float(every_segment / keys_alone)
 
 
 def _alone(keys: KeySegments, rows: Ints) -> KeySegments:

@@ -10,7 +10,7 @@ RATE = 10
 
 
 def stream(kind, seconds=5.0):
-    """A wind that counts its samples, 10 per second; a fault of half a second every second."""
+    """Make a wind that counts samples, 10 per second; a fault of 0.5 s every second."""
     faults = SensorFaults(kind, 1.0, 0.5)
     sent = []
     for k in range(round(seconds * RATE)):

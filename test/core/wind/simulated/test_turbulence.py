@@ -81,8 +81,7 @@ class TestSimulatedHour:
         assert np.abs(scipy.stats.kurtosis(wind)).max() < 0.4
 
     def test_gusts_come_from_above_and_lulls_from_below(self, hour):
-        """The stress over level ground: -0.3 to -0.4 of the deviations (Kaimal & Finnigan
-        1994)."""
+        """Stress over level ground: -0.3 to -0.4 of the deviations (Kaimal & Finnigan 1994)."""
         _, wind = hour
         correlation = np.corrcoef(wind.T)
         assert -0.4 < correlation[0, 2] < -0.3
@@ -112,8 +111,7 @@ def test_vertical_slope_too_where_the_subrange_reaches_the_band():
 
 
 class TestAgainstPyConTurb:
-    """The same case by an independent generator; the table and its program stand in
-    test/golden."""
+    """The case of an independent generator; table and program stand in test/golden."""
 
     @pytest.fixture(scope='class')
     def table(self):
@@ -141,6 +139,8 @@ class TestAgainstPyConTurb:
 
 
 class TestClosedForms:
+    """Spectra, scales and deviations as the standard has them."""
+
     def test_both_share_one_inertial_subrange_that_is_locally_isotropic(self):
         frequency = np.array([1e4, 1e5])
         kaimal = Turbulence(7.0, 'kaimal').spectrum(frequency)
@@ -166,6 +166,8 @@ class TestClosedForms:
 
 
 class TestRecords:
+    """Records of any rate, length and seed."""
+
     @pytest.mark.parametrize('rate', [1.0, 4.0, 100.0])
     @pytest.mark.parametrize('model', SPECTRA)
     def test_the_variance_is_kept_at_every_rate(self, rate, model):
@@ -191,10 +193,7 @@ class TestRecords:
         assert not record.any()
 
     def test_a_short_record_is_a_piece_of_a_long_one(self):
-        """
-        A minute holds less than the full variance about its own mean, and not always the same.
-
-        """
+        """A minute holds less than the full variance about its mean, and not always the same."""
         minutes = [
             simulate_turbulence(5.0, rate=10.0, duration=60.0, rng=np.random.default_rng(seed))
             for seed in range(30)

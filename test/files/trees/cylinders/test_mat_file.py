@@ -111,6 +111,8 @@ def test_cells_in_cells_without_end(file):
 
 
 class TestVersion73:
+    """Files of version 7.3, which are HDF5."""
+
     @pytest.fixture
     def h5py(self):
         return pytest.importorskip('h5py', reason='h5py is not installed')

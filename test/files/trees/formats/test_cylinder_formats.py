@@ -1,7 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The same small tree in every format; the files list the side branch before the stem's own
-end."""
+"""The same small tree in every format; files list the side branch before the stem's end."""
 
 from pathlib import Path
 
@@ -152,7 +151,7 @@ def test_errors_name_the_line(tmp_path, name, old, new, kind, message):
 
 
 def cyl_data():
-    """The fork as a bare matrix of 14 columns, as TreeQSM 2.0 and older keep it."""
+    """Make the fork as a bare matrix of 14 columns, as TreeQSM 2.0 and older keep it."""
     columns = columns_of_fork()
     branch, order = [1, 2, 1, 2], [0, 1, 0, 1]
     return np.column_stack([columns['radius'], columns['length'], columns['start'],

@@ -39,7 +39,7 @@ class _Vertex:
     label: str
     scale: int
     edge: str
-    complex: int
+    complex: int  # noqa: A003
     parent: int
     features: dict[str, float] = field(default_factory=dict)
 

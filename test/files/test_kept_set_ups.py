@@ -1,0 +1,144 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Set-ups of trees on disk: the same bits, and never a reason to fail."""
+
+import os
+import re
+
+import numpy as np
+import pytest
+
+from tree_sway_ros.core.simulator.assembly import CalibratedTree
+from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway_ros.files import kept_set_ups
+from tree_sway_ros.files.kept_set_ups import KeptSetUps
+
+WIND = (6.0, 3.0, 0.5)
+
+
+@pytest.fixture
+def kept(tmp_path):
+    return KeptSetUps(tmp_path)
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Return the files that there are."""
+    return lambda: sorted(tmp_path.iterdir())
+
+
+def poses_of(simulator):
+    """Poses of a second in the wind, half of it with more stiffness where that may change."""
+    poses = []
+    for frame in range(60):
+        if frame == 30 and simulator.model != 'wind_basis':
+            simulator.tune(stiffness_factor=1.5, gravity=5.0)
+        simulator.step(WIND, 1 / 60)
+        poses.append(simulator.place())
+    return np.array(poses).tobytes()
+
+
+@pytest.fixture
+def none_is_made(monkeypatch):
+    """Fail where a tree is reduced, or asked for its loads, after all."""
+
+    def start():
+        for name in ('_modal_arrays', '_table'):
+            monkeypatch.setattr(CalibratedTree, name, lambda *_: pytest.fail('made anew'))
+
+    return start
+
+
+@pytest.mark.parametrize(
+    'model', ['modes', 'coupled', pytest.param('wind_basis', marks=pytest.mark.compiled)]
+)
+def test_a_set_up_that_is_kept_gives_the_same_bits(fork, kept, files, none_is_made, model):
+    alone, first = (SwaySimulator(fork(), model=model, **given) for given in ({}, {'kept': kept}))
+    assert len(files()) == 1
+    none_is_made()
+    second = SwaySimulator(fork(), model=model, kept=kept)
+    assert poses_of(alone) == poses_of(first) == poses_of(second)
+    assert second.mass == alone.mass
+    assert second.frequencies().tobytes() == alone.frequencies().tobytes()
+    assert len(files()) == 1
+
+
+def test_another_tree_or_setting_has_another_set_up(fork, stem, kept, files):
+    for count, (tree, given) in enumerate(
+        [
+            (fork(), {}),
+            (fork(2), {}),
+            (stem(), {}),
+            (fork(), {'gravity': 0.0}),
+            (fork(), {'in_leaf': True}),
+            (fork(), {'n_modes': 4}),
+            (fork(), {'model': 'coupled'}),
+        ],
+        start=1,
+    ):
+        SwaySimulator(tree, kept=kept, **given)
+        assert len(files()) == count
+
+
+def test_a_set_up_of_other_source_is_not_taken(fork, kept, files, monkeypatch):
+    SwaySimulator(fork(), kept=kept)
+    monkeypatch.setattr(kept_set_ups, 'source_digest', lambda _path: 'of an edited file')
+    SwaySimulator(fork(), kept=kept)
+    assert len(files()) == 2
+
+
+def pickled(path):
+    """Write arrays of objects, which only a pickle holds."""
+    with path.open('wb') as file:
+        np.savez(file, circular=np.array([{}], dtype=object))
+
+
+def one_array(path):
+    """Write what is no archive of arrays."""
+    with path.open('wb') as file:
+        np.save(file, np.zeros(3))
+
+
+@pytest.mark.parametrize(
+    'damage',
+    [
+        lambda path: path.write_bytes(b''),
+        lambda path: path.write_bytes(b'no archive at all'),
+        lambda path: path.write_bytes(path.read_bytes()[:-500]),
+        lambda path: path.write_bytes(re.sub(b'[\x3f\x40]', b'\x41', path.read_bytes())),
+        pickled,
+        one_array,
+    ],
+    ids=['empty', 'text', 'cut off', 'altered', 'pickle', 'one array'],
+)
+def test_a_damaged_set_up_is_made_anew(fork, kept, files, none_is_made, damage):
+    expected = poses_of(SwaySimulator(fork(), kept=kept))
+    (path,) = files()
+    damage(path)
+    assert poses_of(SwaySimulator(fork(), kept=kept)) == expected
+    none_is_made()
+    assert poses_of(SwaySimulator(fork(), kept=kept)) == expected
+
+
+def test_a_set_up_under_the_name_of_another_is_not_taken(fork, stem, kept, files):
+    SwaySimulator(fork(), kept=kept)
+    (one,) = files()
+    SwaySimulator(stem(), kept=kept)
+    (other,) = set(files()) - {one}
+    one.replace(other)
+    assert poses_of(SwaySimulator(stem(), kept=kept)) == poses_of(SwaySimulator(stem()))
+
+
+def test_what_cannot_be_written_is_left(fork, tmp_path):
+    nowhere = KeptSetUps(tmp_path / 'is not there')
+    assert poses_of(SwaySimulator(fork(), kept=nowhere)) == poses_of(SwaySimulator(fork()))
+
+
+def test_the_oldest_go_first(kept, files, monkeypatch):
+    monkeypatch.setattr(kept_set_ups, 'MOST', 2)
+    for age, digest in enumerate(('one', 'two', 'three')):
+        kept.write(digest, {'number': np.array(age)})
+        for path in files():
+            os.utime(path, ns=(0, path.stat().st_mtime_ns - 10**9))
+    assert kept.read('one') is None
+    assert [int(kept.read(each)['number']) for each in ('two', 'three')] == [1, 2]
