@@ -12,7 +12,6 @@ from tree_sway_ros.core.motion.lanes import (
     settle,
     shapes_together,
     take_four,
-    upper_halves,
     write_past_caches,
 )
 
@@ -50,8 +49,7 @@ def _sum(shapes, amounts, into):
 def test_shapes_are_summed_as_by_numpy_compiled_and_plain(n: int) -> None:
     rng = np.random.default_rng(n)
     exact, amounts = rng.normal(0.0, 1.0, (36, n)), rng.normal(0.0, 1.0, 36)
-    shapes = upper_halves(exact)
-    assert 0.0 < np.abs(shapes / exact - 1.0).max() < 2.0**-21
+    shapes = exact.astype(np.float32).astype(np.float64)
     laid = shapes_together(shapes)
     for function in (_sum, _sum.py_func):
         found = np.full(len(laid) * 64, np.nan)

@@ -5,7 +5,7 @@ What compilers do not make vectors of by themselves.
 
 A branch's pose lies in one row, sixteen branches are computed in lanes: number by number, carrying
 them over takes longer than computing them. And the shapes of a tree of many branches are its
-largest table: each is read once, as the upper half of a double.
+largest table: each is read once, kept in single precision and summed in double.
 """
 
 from __future__ import annotations
@@ -56,34 +56,20 @@ def settle() -> None:
     """Wait until all that was written is seen by other threads."""
 
 
-def upper_halves(values: Floats) -> Floats:
-    """Round to the 20 bits of mantissa that the upper half of a double has."""
-    bits = (values.view(np.uint64) + np.uint64(1 << 31)) >> np.uint64(32) << np.uint64(32)
-    return bits.view(np.float64)
-
-
 def shapes_together(shapes: Floats) -> Any:
-    """
-    Lay shapes (k, n) of `upper_halves` out for `add_shapes`, (ceil(n / 64), k, 32).
-
-    An element has the halves of two numbers that are eight apart, the later one's first.
-    """
+    """Lay shapes (k, n) out for `add_shapes`: (ceil(n / 64), k, 64), in single precision."""
     k, n = shapes.shape
     blocks = -(-n // TOGETHER)
-    laid: Any = zeros_in_lines(blocks, np.dtype([('pairs', 'u8', (k, TOGETHER // 2))]))['pairs']
+    laid: Any = zeros_in_lines(blocks, np.dtype([('shapes', 'f4', (k, TOGETHER))]))['shapes']
     whole = np.zeros((k, blocks * TOGETHER))
     whole[:, :n] = shapes
-    bits = whole.view(np.uint64).reshape(k, blocks, -1, 2, 8).swapaxes(0, 1)
-    laid[:] = (bits[..., 1, :] | bits[..., 0, :] >> np.uint64(32)).reshape(laid.shape)
+    laid[:] = whole.reshape(k, blocks, TOGETHER).swapaxes(0, 1)
     return laid
 
 
 def add_shapes(shapes: Any, block: int, amounts: Any, into: Any) -> None:
     """Write a block's coordinates: the sum of shapes of `shapes_together` times amounts (k,)."""
-    pairs = shapes[block].reshape(-1, TOGETHER // 16, 8)
-    halves = np.stack([pairs << np.uint64(32), pairs >> np.uint64(32) << np.uint64(32)], axis=2)
-    summed = np.tensordot(amounts, halves.view(np.float64), axes=1)
-    into[block * TOGETHER : (block + 1) * TOGETHER] = summed.ravel()
+    into[block * TOGETHER : (block + 1) * TOGETHER] = amounts @ shapes[block].astype(np.float64)
 
 
 if not WHY_PLAIN:
@@ -169,9 +155,7 @@ if not WHY_PLAIN:
 
         return types.none(into, types.intp, of, types.intp), generate
 
-    _PAIRS = ir.VectorType(ir.IntType(64), 8)
-    _LOWER = ir.Constant(_PAIRS, [32] * 8)
-    _UPPER = ir.Constant(_PAIRS, [-(1 << 32)] * 8)
+    _SINGLES = ir.VectorType(ir.FloatType(), 8)
 
     @intrinsic
     def _add_shapes(typing, shapes, block, amounts, into):  # type: ignore[no-untyped-def]
@@ -186,16 +170,12 @@ if not WHY_PLAIN:
                 every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
                 shared = builder.shuffle_vector(one, none, every)
                 at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
-                at = builder.bitcast(at, _PAIRS.as_pointer())
-                for k in range(0, len(sums), 2):
-                    pairs = builder.load(builder.gep(at, [row.type(k // 2)]), align=64)
-                    halves = builder.shl(pairs, _LOWER), builder.and_(pairs, _UPPER)
-                    for half, total in zip(halves, sums[k:], strict=False):
-                        part = builder.fmul(
-                            builder.bitcast(half, _LINE), shared, flags=['contract']
-                        )
-                        whole = builder.fadd(builder.load(total), part, flags=['contract'])
-                        builder.store(whole, total)
+                at = builder.bitcast(at, _SINGLES.as_pointer())
+                for k, total in enumerate(sums):
+                    read = builder.load(builder.gep(at, [row.type(k)]), align=32)
+                    part = builder.fmul(builder.fpext(read, _LINE), shared, flags=['contract'])
+                    whole = builder.fadd(builder.load(total), part, flags=['contract'])
+                    builder.store(whole, total)
             at = builder.mul(row, row.type(TOGETHER))
             for k, total in enumerate(sums):
                 first = builder.add(at, row.type(8 * k))

@@ -22,12 +22,7 @@ from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import entry_of, fused, inlined
 from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
-from tree_sway_ros.core.motion.lanes import (
-    add_shapes,
-    shapes_together,
-    TOGETHER,
-    upper_halves,
-)
+from tree_sway_ros.core.motion.lanes import add_shapes, shapes_together, TOGETHER
 from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.wind_basis_force import (
@@ -88,7 +83,8 @@ class WindBasisBank:
         layout = instance_layout(m, COUNT[int(table.record['degree'][0])])
         self.instance = np.zeros(1, dtype=layout)
         # Rounded where they are read most, and so everywhere.
-        self.all_shapes = upper_halves(np.vstack([modal.shapes.T, table.rest_shapes]))
+        both = np.vstack([modal.shapes.T, table.rest_shapes])
+        self.all_shapes = both.astype(np.float32).astype(np.float64)
         filled = np.zeros((len(table.record['stiffness'][0]) - m, n))
         laid = [self.all_shapes[:m], filled, self.all_shapes[m:]]
         self.laid_shapes = shapes_together(np.vstack(laid))
