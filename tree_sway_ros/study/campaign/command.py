@@ -48,11 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         refuse_overwriting(output, '--output')
     began = time.monotonic()
     rows = run_study(
-        cases,
-        kept,
-        workers=arguments.workers,
-        scheduler=arguments.scheduler,
-        progress=_told,
+        cases, kept, workers=arguments.workers, scheduler=arguments.scheduler, progress=_told
     )
     write_table(rows, output)
     print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')
