@@ -93,6 +93,12 @@ def pickled(path):
         np.savez(file, circular=np.array([{}], dtype=object))
 
 
+def one_array(path):
+    """Write what is no archive of arrays."""
+    with path.open('wb') as file:
+        np.save(file, np.zeros(3))
+
+
 @pytest.mark.parametrize(
     'damage',
     [
@@ -101,8 +107,9 @@ def pickled(path):
         lambda path: path.write_bytes(path.read_bytes()[:-500]),
         lambda path: path.write_bytes(re.sub(b'[\x3f\x40]', b'\x41', path.read_bytes())),
         pickled,
+        one_array,
     ],
-    ids=['empty', 'text', 'cut off', 'altered', 'pickle'],
+    ids=['empty', 'text', 'cut off', 'altered', 'pickle', 'one array'],
 )
 def test_a_damaged_set_up_is_made_anew(fork, kept, files, none_is_made, damage):
     expected = poses_of(SwaySimulator(fork(), kept=kept))

@@ -3,10 +3,10 @@
 """
 Set-ups of trees on disk, so that a solver that is started again sways sooner.
 
-They stand beside the compiled kernels, in numpy's own format, without pickles. A file is found by
-a digest of the tree, its species and settings, of the source of all that takes part, of the
-versions of numpy and scipy, and of the machine; what cannot be read is made anew, and what cannot
-be written is left.
+They stand beside the compiled kernels, in numpy's own format, which is read without pickles. A
+file is found by a digest of the tree, its species and settings, of the source of all that takes
+part, of the versions of numpy and scipy, and of the machine; what cannot be read is made anew, and
+what cannot be written is left.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from importlib.metadata import version
 from pathlib import Path
 import platform
 from typing import Any
-import zipfile
 
 import numpy as np
 
@@ -45,10 +44,10 @@ class KeptSetUps:
             return None
         key = _key(digest)
         try:
-            with np.load(self._folder / f'{key}{_SUFFIX}', allow_pickle=False) as kept:
+            with np.load(self._folder / f'{key}{_SUFFIX}') as kept:
                 arrays = dict(kept)
             return arrays if str(arrays.pop('key')) == key else None
-        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
+        except Exception:  # whatever numpy makes of a damaged file
             return None
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
@@ -58,7 +57,7 @@ class KeptSetUps:
         key = _key(digest)
         with suppress(OSError, TreeSwayError):
             with whole_file(self._folder / f'{key}{_SUFFIX}') as partial:
-                np.savez(partial, allow_pickle=False, key=np.array(key), **arrays)
+                np.savez(partial, key=np.array(key), **arrays)
             kept = sorted(self._folder.glob(f'*{_SUFFIX}'), key=lambda path: path.stat().st_mtime)
             for path in kept[:-MOST]:
                 path.unlink()

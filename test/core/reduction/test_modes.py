@@ -196,3 +196,13 @@ def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
     own = wood.density * np.pi / 4 * 0.01**2
     w = np.sqrt(3.0 * wood.modulus * np.pi / 64 * 0.01**4 / (tip + 33.0 / 140.0 * own))
     assert sim.frequencies(1)[0] == pytest.approx(w / (2 * np.pi), rel=0.01)
+
+
+def test_factors_are_no_fuller_than_the_matrix(random_tree):
+    tree = tree_from_segments(*random_tree(4, 120)[:3])
+    stiffness = reduced(tree).stiffness
+    factors = modes_module._factors(stiffness)
+    filled = factors.L.nnz + factors.U.nnz
+    assert filled <= stiffness.nnz + stiffness.shape[0]
+    load = np.random.default_rng(0).normal(0.0, 1.0, stiffness.shape[0])
+    assert stiffness @ factors.solve(load) == pytest.approx(load, abs=1e-9)

@@ -12,6 +12,7 @@ branch.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -92,7 +93,7 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
         )
     else:
         stiffness = csc_matrix(reduction.stiffness)
-        solve = sparse_linalg.splu(stiffness)
+        solve = _factors(stiffness)
         inverse_squares, shapes = sparse_linalg.eigsh(
             reduction.mass,
             k=wanted,
@@ -135,10 +136,9 @@ def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
     """
     from scipy import linalg
     from scipy.sparse import csc_matrix
-    from scipy.sparse import linalg as sparse_linalg
 
     stiffness, mass = csc_matrix(reduction.stiffness), reduction.mass
-    rest = sparse_linalg.splu(stiffness).solve(np.ascontiguousarray(loads))
+    rest = _factors(stiffness).solve(np.ascontiguousarray(loads))
     rest -= loads * reduction.flexibility[:, None]
     size = np.sqrt(np.einsum('nl,nl->l', rest, stiffness @ rest))
     for _ in range(2):
@@ -157,6 +157,20 @@ def with_static(modes: Modes, reduction: Reduction, loads: Floats) -> Modes:
     return Modes(circular[slowest_first], np.ascontiguousarray(shapes[:, slowest_first]))
 
 
+def _factors(matrix: Any) -> Any:
+    """
+    Factorise a sparse matrix that is symmetric and positive definite.
+
+    Eliminated from the twigs to the stem, its factors have no more entries than itself.
+    """
+    from scipy.sparse import linalg as sparse_linalg
+
+    options = {'SymmetricMode': True}
+    return sparse_linalg.splu(
+        matrix, permc_spec='MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options=options
+    )
+
+
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     """Critical over real weight, infinite without gravity; the coordinate that gives way most."""
     from scipy import linalg
@@ -173,7 +187,7 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
         )
     else:
         elastic = csc_matrix(reduction.elastic)
-        solve = sparse_linalg.splu(elastic)
+        solve = _factors(elastic)
         values, vectors = sparse_linalg.eigsh(
             softening,
             k=1,
