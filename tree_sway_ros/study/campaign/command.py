@@ -20,12 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('study', metavar='STUDY.yaml', help='trees, winds and settings')
     parser.add_argument(
-        '-o',
-        '--output',
-        default='study.csv',
-        metavar='FILE',
+        '-o', '--output', default='study.csv', metavar='FILE',
         help='table, .csv or .parquet; cases are kept beside it, and reused (%(default)s)',
-    )
+    )  # fmt: skip
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
