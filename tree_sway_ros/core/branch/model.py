@@ -14,7 +14,6 @@ per length [kg/m].
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -33,11 +32,21 @@ from tree_sway_ros.core.branch.shapes import (
     FEWER_TURNS,
     N_PAIRS,
     N_TURNS,
+    shaken_energies,
     shape_fields,
     wind_loads,
 )
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.tree.tree import Tree
+
+_LEFT = 1e-3
+"""Share of the energy of all branches but the stem that static fields alone may leave out."""
+
+_FEW, _ONE_OF = 12, 50
+"""Branches beside the stem that may have further shapes: so many, or one of so many."""
+
+_LIGHT = 1e-3
+"""Share of the mass of a tree below which a branch with all it carries is never asked."""
 
 
 @dataclass(frozen=True)
@@ -220,6 +229,40 @@ class TreeBeams:
             for branch, bare in enumerate(self._bare)
         ]
 
+    def enriched(self, choice: str) -> frozenset[int]:
+        """
+        Choose the branches that get further shapes and twists.
+
+        Parameters
+        ----------
+        choice
+            ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: the
+            stem and the branches that bend most unlike their static fields when they are shaken,
+            until what is left of that energy is `_LEFT` of that of all branches.
+
+        """
+        parent = self._tree.branch_parent
+        if choice != 'needed':
+            chosen = {
+                'none': (), 'stem': (0,), 'carriers': (0, *parent[1:].tolist()),
+                'all': range(len(parent))
+            }  # fmt: skip
+            return frozenset(chosen[choice])
+        heavy = np.flatnonzero(self._sums.mass[1:] > _LIGHT * self._sums.mass[0]) + 1
+        if len(heavy) == 0:
+            return frozenset((0,))
+        energies = np.array([self._shaken(branch) for branch in heavy.tolist()])
+        order = np.argsort(-energies[:, 1], kind='stable')
+        left = np.cumsum(energies[order[::-1], 1])[::-1]
+        needed = heavy[order[left > _LEFT * energies[:, 0].sum()]]
+        most = max(_FEW, len(parent) // _ONE_OF)
+        return frozenset((0, *needed[:most].tolist()))
+
+    def _shaken(self, branch: int) -> tuple[float, float]:
+        beam, _, mass, children = self._bare[branch]
+        fields = self._model(branch, len(children), 1, 0).fields
+        return shaken_energies(beam, mass, self._sums[children], self._shear_ratio, fields)
+
     def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
         """Model a branch, unless that is done."""
         key = branch, n_carried, n_pairs, n_turns
@@ -251,25 +294,3 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
     """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
     return shape.stiffness(shape, 1.0) / float(beam.integral(mass * shape.deflection**2))
-
-
-def enriched_branches(tree: Tree, choice: str) -> frozenset[int]:
-    """
-    Choose the branches that get further shapes and twists.
-
-    Parameters
-    ----------
-    tree
-        The tree.
-    choice
-        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
-        branches), all ``carriers`` of others, or ``all``.
-
-    """
-    carriers = {0, *tree.branch_parent[1:].tolist()}
-    limbs = {0, *(int(tree.branch_parent[branch]) for branch in carriers if branch > 0)}
-    chosen: dict[str, Iterable[int]] = {
-        'none': (), 'stem': (0,), 'limbs': limbs, 'carriers': carriers,
-        'all': range(tree.n_branches)
-    }  # fmt: skip
-    return frozenset(chosen[choice])

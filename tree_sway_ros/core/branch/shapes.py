@@ -13,6 +13,7 @@ twists in one: no coordinate of its own is spent on twist.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 
@@ -193,20 +194,13 @@ def _further(
     n_turns: int,
 ) -> list[RotationField]:
     """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
-    along = beam.tangent[:, None, :]
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
     stiff = math.sqrt(2.0 * shear_ratio)
-
-    def scaled(curvature: Floats, twist: float) -> Floats:
-        about = (curvature * along).sum(axis=-1, keepdims=True) * along
-        out: Floats = curvature + (twist - 1.0) * about
-        return out
-
     basis: list[Floats] = []
 
     def rest_of(curvature: Floats) -> RotationField | None:
         """Take what is new in a curvature into the basis, and return it."""
-        vector = (measure * scaled(curvature, stiff)).ravel()
+        vector = (measure * _twisted(beam, curvature, stiff)).ravel()
         whole = float(np.linalg.norm(vector))
         for _ in range(2):
             for other in basis:
@@ -215,7 +209,7 @@ def _further(
         if not size > _NEGLIGIBLE * whole:
             return None
         basis.append(vector / size)
-        new = scaled(vector.reshape(curvature.shape) / measure, 1.0 / stiff)
+        new = _twisted(beam, vector.reshape(curvature.shape) / measure, 1.0 / stiff)
         slope, nodes, _ = beam.from_base(new)
         return RotationField(beam, new / max(np.abs(slope).max(), np.abs(nodes).max()))
 
@@ -236,6 +230,52 @@ def _further(
         found += [*new[0], *new[1]]
         sources, turning = [*new[0]], [*new[1]]
     return found
+
+
+def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
+    """Curvature, (p, 5, 3), with its twist so many times as large."""
+    along = beam.tangent[:, None, :]
+    about = (curvature * along).sum(axis=-1, keepdims=True) * along
+    out: Floats = curvature + (scale - 1.0) * about
+    return out
+
+
+def shaken_energies(
+    beam: BranchBeam,
+    mass: Floats,
+    carried: Carried,
+    shear_ratio: float,
+    fields: Sequence[RotationField],
+) -> tuple[float, float]:
+    """
+    Compute the energy of a branch whose base is shaken, and of what its fields cannot follow.
+
+    Parameters
+    ----------
+    beam, mass, carried, shear_ratio
+        As of `shape_fields`.
+    fields
+        By which the branch moves.
+
+    Returns
+    -------
+    tuple of float
+        Twice the sum of the energies of bending and twist by an acceleration of 1 m/s^2 of all
+        that it carries, along x, y and z, for a modulus of 1 Pa; and the part orthogonal to the
+        fields.
+
+    """
+    force = carried.mass[:, None, None] * np.eye(3)
+    moment = cross(carried.mass_moment[:, None], np.eye(3))
+    moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
+    curvatures = beam.curvature_in_space(moments, shear_ratio)
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    stiff = math.sqrt(2.0 * shear_ratio)
+    kinds = [*np.moveaxis(curvatures, 2, 0), *(field.curvature for field in fields)]
+    vectors = np.array([(measure * _twisted(beam, each, stiff)).ravel() for each in kinds])
+    basis = np.linalg.qr(vectors[3:].T)[0]
+    left = vectors[:3] - vectors[:3] @ basis @ basis.T
+    return float(np.square(vectors[:3]).sum()), float(np.square(left).sum())
 
 
 def inertial_moment(

@@ -17,9 +17,7 @@ import math
 
 import numpy as np
 
-from tree_sway_ros.core.branch.model import branch_models, enriched_branches
 from tree_sway_ros.core.checks import within
-from tree_sway_ros.core.reduction.matrices import reduce_tree
 from tree_sway_ros.core.reduction.modes import buckling_factor, natural_modes
 from tree_sway_ros.core.simulator.assembly import CalibratedTree
 from tree_sway_ros.core.simulator.season import in_season
@@ -150,23 +148,8 @@ class _ScaledTree:
 
     def __init__(self, tree: Tree, species: Species, settings: Settings) -> None:
         calibrated = CalibratedTree(tree, species, settings)
-        species = calibrated.species
-        models = branch_models(
-            tree,
-            species.density,
-            carries=True,
-            shear_ratio=species.shear_ratio,
-            enriched=enriched_branches(tree, settings.enrich),
-            speed_profile=settings.profile.over_anemometer(
-                0.5 * (tree.start[:, 2] + tree.end[:, 2])
-            ),
-            leaf_mass=settings.leaf_mass,
-            leaf_area=calibrated.leaf_load_area,
-            root_compliance=species.modulus / species.root_stiffness,
-        )
-        shear = species.shear_ratio * species.modulus
         self.tree = tree
-        self.reduction = reduce_tree(tree, models, species.modulus, shear, settings.gravity)
+        self.reduction = calibrated.coupled.reduction
         factor, coordinate = buckling_factor(self.reduction)
         #: Scale at which the tree just stands, and the branch that gives way first.
         self.least = _STANDS / factor

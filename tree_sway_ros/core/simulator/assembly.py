@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway_ros.core.arrays import Floats, Records
-from tree_sway_ros.core.branch.model import BranchModel, enriched_branches, TreeBeams
+from tree_sway_ros.core.branch.model import BranchModel, TreeBeams
 from tree_sway_ros.core.checks import one_of_each
 from tree_sway_ros.core.kernel import entry_of, need_compiler, WHY_PLAIN
 from tree_sway_ros.core.leaves.foliage import clad_wood
@@ -429,9 +429,7 @@ class CalibratedTree:
     @cached_property
     def coupled(self) -> Layer:
         """Branches that carry their children, those of the enriched ones with further shapes."""
-        return self._reduced(
-            carries=True, enriched=enriched_branches(self.tree, self.settings.enrich)
-        )
+        return self._reduced(carries=True, enriched=self._beams.enriched(self.settings.enrich))
 
     @cached_property
     def _speed(self) -> Floats:

@@ -66,8 +66,8 @@ class Settings:
         How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
         Branches that get further shapes and twists in the models ``modes`` and ``coupled``:
-        ``none``, the ``stem``, the ``limbs`` (stem and all branches that carry branches with
-        branches), all ``carriers`` of others, or ``all``.
+        ``none``, the ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of
+        others, or ``all``.
     root_stiffness
         Stiffness of the roots against tilting in [N m/rad], infinite if they are rigid; the tree's
         own if None.
@@ -93,7 +93,7 @@ class Settings:
     crown_coherence: float = 1.0
     integrator: str = DEFAULT
     twig_tolerance: float = 0.05
-    enrich: str = 'limbs'
+    enrich: str = 'needed'
     root_stiffness: float | None = None
     leaf_mass: Floats | None = None
     leaf_area: Floats | None = None
@@ -105,7 +105,7 @@ class Settings:
         _one_of('mode choice', self.mode_choice, ('driven', 'slowest'))
         _one_of('stiffness', self.stiffness, STIFFNESS_RULES)
         _one_of('integrator', self.integrator, REAL_TIME)
-        _one_of('enrich', self.enrich, ('none', 'stem', 'limbs', 'carriers', 'all'))
+        _one_of('enrich', self.enrich, ('none', 'stem', 'needed', 'carriers', 'all'))
         if self.stiffness == 'volume_rule' and self.model in ('wind_basis', 'modes', 'coupled'):
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",
