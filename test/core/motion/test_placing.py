@@ -137,6 +137,14 @@ def test_children_stay_where_they_grow_on_their_parents(puppet, seed):
         assert seen[0] == pytest.approx(seen[1], abs=1e-12)
 
 
+@pytest.mark.parametrize('enrich', ['none', 'all'])
+def test_poses_are_those_of_the_keys_alone_bit_for_bit(fork, enrich):
+    used, new = (Puppet(fork(), enrich=enrich) for _ in range(2))
+    keys = 0.05 * used.random(3)
+    used.poses(used.random(4))
+    assert (used.poses(keys) == new.poses(keys)).all()
+
+
 def test_the_root_stands_still(gappy_doll):
     moved = gappy_doll.poses(gappy_doll.random(1))
     assert moved[0, :3].tolist() == gappy_doll.tree.start[0].tolist()

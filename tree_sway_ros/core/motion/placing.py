@@ -147,10 +147,11 @@ def _read_parents(
     if head.n_parent_rows > 2:
         parent_key[2:] = 0.0
     if head.parent[0] < 0:  # the stem, alone
-        base[:], carrier[:] = 0.0, 0.0
+        parent_key[:], base[:], carrier[:] = 0.0, 0.0, 0.0
         base[0, 0], base[1, 0], base[2, 0], base[3, 0] = cosine, 0.0, 0.0, sine
         carrier[0, 0], carrier[1, 0], carrier[2, 0] = east, north, up
         carrier[5, 0], carrier[6, 0] = sine, cosine
+        key[:] = 0.0
         key[0, 0], key[1, 0] = x[head.coordinate[0]], x[head.coordinate[0] + 1]
         return
     parents, on = head.parent, head.base_segment
@@ -164,6 +165,8 @@ def _read_parents(
     for j in range(head.n_lanes):
         i = np.uintp(head.coordinate[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
+    for j in range(head.n_lanes, LANES):  # which series is taken hangs on no key of before
+        key[0, j], key[1, j] = 0.0, 0.0
     if head.n_parent_rows > 2:
         for j in range(LANES):
             parent_key[0, j], parent_key[1, j] = base[4, j], base[5, j]
@@ -200,10 +203,10 @@ def _turn_on_parents(head: Record, scratch: Record) -> bool:
     Returns whether none is turned, nor bent by its key, beyond the short series.
     """
     key, per, turned = scratch.parent_key, head.base_turn, scratch.carrier_turn
-    n_beyond = 0
+    base, n_beyond = scratch.parent_base, 0
     if head.n_parent_rows == 2:
         for j in range(LANES):
-            _turn_by(scratch.parent_base[4:], per, turned, 2, j)
+            _turn_by(base[4:], per, turned, 2, j)
             n_beyond += _is_beyond(turned, scratch.key, j)
     else:
         for j in range(LANES):
@@ -211,7 +214,6 @@ def _turn_on_parents(head: Record, scratch: Record) -> bool:
             n_beyond += _is_beyond(turned, scratch.key, j)
     if n_beyond == 0:
         return True
-    base = scratch.parent_base
     for j in range(head.n_lanes):
         hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
         if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:

@@ -22,12 +22,7 @@ from tree_sway_ros.core.arrays import Floats, Record, Records
 from tree_sway_ros.core.kernel import entry_of, fused, inlined
 from tree_sway_ros.core.motion.drag import DragLaw, pressure
 from tree_sway_ros.core.motion.harmonics import COUNT, fill_harmonics
-from tree_sway_ros.core.motion.lanes import (
-    add_shapes,
-    shapes_together,
-    TOGETHER,
-    upper_halves,
-)
+from tree_sway_ros.core.motion.lanes import add_shapes, shapes_together, TOGETHER, upper_halves
 from tree_sway_ros.core.motion.modal import ModalBank
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.wind_basis_force import (

@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 import resource
 import time
 
 import numpy as np
 
-from tree_sway_ros.core.arrays import Floats
 from tree_sway_ros.core.scene.stand import Stand, StandKind, StandTree
 from tree_sway_ros.study.bench.bench_tree import bench_tree
 from tree_sway_ros.study.bench.measured import Measured
@@ -19,7 +19,7 @@ from tree_sway_ros.tools.progress import bar
 
 _DT, _ROUNDS = 1.0 / 60.0, 60
 _CHILDREN = ((12, 3, 3), (11, 3, 3), (10, 4, 3), (13, 3, 3))
-_SPACING = 6.0
+_SPACING, _NUMBERS = 6.0, 200_000
 
 
 def bench_stand(n_trees: int, threads: int = 1) -> Stand:
@@ -81,8 +81,12 @@ def time_stand(
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     threaded = []
     if make is None:
-        once, twice = _by_threads(stand, bench_stand(n_trees, threads=2), poses)
-        threaded = [Measured('two threads place, times faster', once / twice, '-')]
+        other = bench_stand(n_trees, threads=2)
+        faster = times_faster(lambda: stand.place(poses), lambda: other.place(poses))
+        threaded = [
+            Measured('two threads place, times faster', faster, '-'),
+            Measured('two threads that share nothing, times faster', _of_this_machine(), '-'),
+        ]
     return [
         Measured(f'solve {what}', solve, 'ms'),
         Measured(f'place {what}', place, 'ms'),
@@ -94,13 +98,26 @@ def time_stand(
     ]
 
 
-def _by_threads(one: Stand, other: Stand, poses: Floats) -> tuple[float, float]:
-    """Time by the clock to place two stands in turn in [s]: the quietest of all."""
+def times_faster(one: Callable[[], object], other: Callable[[], object]) -> float:
+    """Run both in turn; return how much less time by the clock the other's quietest run takes."""
     spent = np.empty((2, _ROUNDS))
     for number in range(_ROUNDS):
-        for row, stand in zip(spent, (one, other), strict=True):
+        for row, run in zip(spent, (one, other), strict=True):
             begun = time.perf_counter()
-            stand.place(poses)
+            run()
             row[number] = time.perf_counter() - begun
     once, twice = spent.min(axis=1).tolist()
-    return once, twice
+    return float(once / twice)
+
+
+def _of_this_machine() -> float:
+    """Tell how much faster two threads on a few numbers are: near 1 where other work runs."""
+    halves = np.ones((2, _NUMBERS))
+    with ThreadPoolExecutor(1) as pool:
+
+        def together() -> None:
+            other = pool.submit(np.sin, halves[1])
+            np.sin(halves[0])
+            other.result()
+
+        return times_faster(lambda: np.sin(halves), together)
