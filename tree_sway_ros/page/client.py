@@ -22,13 +22,7 @@ from tree_sway_ros.errors import TransportError, TreeSwayError
 from tree_sway_ros.page.controls import Value
 from tree_sway_ros.page.placer import Placer
 from tree_sway_ros.page.playout import DELAY, Moment, Playout
-from tree_sway_ros.page.protocol import (
-    decode_description,
-    decode_frame,
-    Description,
-    Frame,
-    MAGIC,
-)
+from tree_sway_ros.page.protocol import decode_description, decode_frame, Description, Frame, MAGIC
 
 _MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
 _ON_THE_WAY = 200_000

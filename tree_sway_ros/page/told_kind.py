@@ -169,10 +169,8 @@ def _turned(kind: ToldKind, simulator: TreeSimulator) -> tuple[float, Floats] | 
 def _further_turns(joint: np.void, segments: NDArray[np.void]) -> Floats:
     """Vectors that tell what a unit of each further key rotation of a branch does, (3 m, k)."""
     k = int(joint['n_coordinates'])
-    rows = [
-        *turns_of_segments(joint, segments),
-        *(joint[n][:k] for n in ('reach', 'push', 'turn')),
-    ]
+    of_joint = (joint[n][:k] for n in ('reach', 'push', 'turn'))
+    rows = [*turns_of_segments(joint, segments), *of_joint]
     return np.stack(rows)[:, 2:].transpose(0, 2, 1).reshape(3 * len(rows), -1)
 
 

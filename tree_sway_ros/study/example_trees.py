@@ -83,10 +83,7 @@ def broom_tree(*, segments: int = 6) -> Tree:
 
 
 def tapered_stem(
-    length: float,
-    diameter: ArrayLike,
-    *,
-    direction: tuple[float, float, float] = (0.0, 0.0, 1.0),
+    length: float, diameter: ArrayLike, *, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
 ) -> Tree:
     """
     Make a straight stem of one branch.

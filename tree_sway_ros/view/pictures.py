@@ -95,10 +95,7 @@ def _two_axes(frame: Frame) -> tuple[Figure, Axes, Axes]:
     """Beside each other, or what is wide one above the other."""
     if frame.aspect <= _WIDE:
         figure = new_figure(max(2.0 * _INCHES_HIGH * frame.aspect, 6.0), _INCHES_HIGH + 0.4)
-        left, right = (
-            figure.add_axes((0.0, 0.0, 0.5, 0.93)),
-            figure.add_axes((0.5, 0.0, 0.5, 0.93)),
-        )
+        left, right = (figure.add_axes((x, 0.0, 0.5, 0.93)) for x in (0.0, 0.5))
         return figure, left, right
     figure = new_figure(_INCHES_WIDE, 2.0 * _INCHES_WIDE / frame.aspect + 0.4)
     upper, lower = figure.add_axes((0.0, 0.47, 1.0, 0.47)), figure.add_axes((0.0, 0.0, 1.0, 0.47))

@@ -63,15 +63,25 @@ def test_steady_sway_is_the_truths(judge):
     assert (np.abs(judge.steady_sway(sways=SWAYS[:2])) <= (0.02, 0.04)).all()
 
 
-MISSES = pytest.mark.xfail(
-    strict=True,
-    reason='a stiff arching tree: coupled errs by 0.036 in 3 m/s for the twist of its long twigs, '
-    'and it takes 135 m/s to lean it by 30 %',
-)
+def missing(seed, reason):
+    return pytest.param(seed, marks=pytest.mark.xfail(strict=True, reason=reason))
 
 
 @pytest.mark.long
-@pytest.mark.parametrize('seed', [1, 2, 9, 20, 22, pytest.param(11, marks=MISSES)])
+@pytest.mark.parametrize(
+    'seed',
+    [
+        1, 2, 9, 20, 22,
+        missing(
+            11, 'a stiff arching tree: coupled errs by 0.036 in 3 m/s for the twist of its long '
+            'twigs, and it takes 135 m/s to lean it by 30 %'
+        ),
+        missing(
+            47, 'an arching tree: coupled errs by 0.043 in 3 m/s, by 0.039 with further shapes in '
+            'every branch; some twigs stand off by 6 % more than the truth in the mean'
+        ),
+    ],
+)  # fmt: skip
 def test_models_err_and_sway_within_their_limits_on_random_trees(seed):
     judge = Judge(crooked_tree(seed))
     winds = {f'{mean:g}': turbulent(mean, 8.0, seed) for mean in (3.0, 9.0)}

@@ -338,13 +338,9 @@ class RotationField:
 
 @kernel
 def _integrate(
-    values: Floats,
-    length: Floats,
-    weight: Floats,
-    to_points: Floats,
-    points: Floats,
-    nodes: Floats,
-) -> None:
+    values: Floats, length: Floats, weight: Floats,
+    to_points: Floats, points: Floats, nodes: Floats,
+) -> None:  # fmt: skip
     """Integrate values (p, 5, k) from the base up to points, of the same shape, and nodes."""
     n_panels, n_points, n = values.shape
     for i in range(n):

@@ -190,11 +190,8 @@ class TreeBeams:
             if speed_profile is not None:
                 drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
             self._bare.append((beam, drag_area, mass, children))
-            point, dm, load = (
-                beam.point.reshape(-1, 3),
-                beam.weight * mass,
-                beam.weight * drag_area,
-            )
+            point = beam.point.reshape(-1, 3)
+            dm, load = beam.weight * mass, beam.weight * drag_area
             area[branch] = load.sum() + area[children].sum()
             area_moment[branch] = load.ravel() @ point + area_moment[children].sum(axis=0)
             loads = wind_loads(beam, drag_area)

@@ -52,12 +52,9 @@ class DragLaw(NamedTuple):
 
 
 def crown_drag(
-    wood_area: float,
-    leaf_area: Floats,
-    clad_wood: Floats,
-    wood: float,
-    leaves: tuple[float, float],
-) -> tuple[DragLaw, Floats]:
+    wood_area: float, leaf_area: Floats, clad_wood: Floats,
+    wood: float, leaves: tuple[float, float],
+) -> tuple[DragLaw, Floats]:  # fmt: skip
     """
     Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.
 

@@ -168,29 +168,17 @@ def head_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
             ('offset', 'f8', (3, LANES)),
             # Scratch:
             ('key', 'f8', (2, LANES)),  # key rotation
-            (
-                'parent_key',
-                'f8',
-                (n_coordinates, LANES),
-            ),  # half of each of its parent's, stretched
+            ('parent_key', 'f8', (n_coordinates, LANES)),  # half of each parent's, stretched
             ('parent_base', 'f8', (8, LANES)),  # bases of `place`
             ('carrier', 'f8', (7, LANES)),  # pose of the base segment
-            (
-                'carrier_turn',
-                'f8',
-                (3, LANES),
-            ),  # half the rotation vector at the base, from the parent's base
+            ('carrier_turn', 'f8', (3, LANES)),  # half the rotation vector from the parent's base
             ('base', 'f8', (8, LANES)),  # the same of its own
             ('blend', 'f8', (LANES,)),  # how far it has gone over to the tip's slope
             ('half_turn', 'f8', (3, LANES)),  # half the rotation vector per unit of slope
             ('half_key', 'f8', (n_coordinates, LANES)),  # half of each coordinate, stretched
             ('square', 'f8', (LANES,)),  # of the length of half_turn
             ('swing', 'f8', (4, LANES)),  # half_turn, then the base: what a sine is multiplied by
-            (
-                'half_angle',
-                'f8',
-                (LANES,),
-            ),  # bound on the square of half of what segments turn by [rad^2]
+            ('half_angle', 'f8', (LANES,)),  # bound on the squared half turn of any segment
             ('next', 'f8', (3, LANES)),  # where the segment after this one starts
             ('pose', 'f8', (7, LANES)),  # of the segment, in message order
         ]

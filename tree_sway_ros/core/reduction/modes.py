@@ -78,9 +78,7 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
         )
     if not 1 <= wanted <= n:
         raise ParameterError(
-            f'{wanted} modes of a tree that has {n}',
-            where='modes',
-            cure=f'ask for 1 to {n}',
+            f'{wanted} modes of a tree that has {n}', where='modes', cure=f'ask for 1 to {n}'
         )
     refuse_buckling(tree, reduction)
     if wanted == n:

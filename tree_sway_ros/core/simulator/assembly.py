@@ -31,12 +31,7 @@ from tree_sway_ros.core.motion.fill_records import (
 from tree_sway_ros.core.motion.placing import place
 from tree_sway_ros.core.motion.records import branch_layout, in_lines, WORK
 from tree_sway_ros.core.reduction.matrices import reduce_tree, Reduction
-from tree_sway_ros.core.reduction.modes import (
-    Modes,
-    most_driven,
-    natural_modes,
-    with_static,
-)
+from tree_sway_ros.core.reduction.modes import Modes, most_driven, natural_modes, with_static
 from tree_sway_ros.core.reduction.one_thread import one_thread
 from tree_sway_ros.core.simulator.season import in_season
 from tree_sway_ros.core.simulator.settings import MODELS, Settings

@@ -28,11 +28,7 @@ from numpy.typing import NDArray
 from tree_sway_ros.core.arrays import Floats, Ints, Records
 from tree_sway_ros.core.checks import within
 from tree_sway_ros.core.kernel import entry_of, kernel
-from tree_sway_ros.core.wind.gust_travel import (
-    follow_mean,
-    LARGEST_STRETCH,
-    remember,
-)
+from tree_sway_ros.core.wind.gust_travel import follow_mean, LARGEST_STRETCH, remember
 
 DECAY = 8.0
 """Davenport's C in [-], for places across the wind and over each other."""

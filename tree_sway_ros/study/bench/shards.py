@@ -194,11 +194,7 @@ def _cable(state: str) -> None:
 @contextlib.contextmanager
 def _child(host: int, command: list[str], **pipes: Any) -> Iterator[subprocess.Popen[bytes]]:
     """Run a process on a host, to be ended with the run."""
-    environment = {
-        **isolated(0),
-        'ROS_DOMAIN_ID': '77',
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET',
-    }
+    environment = {**isolated(0), 'ROS_DOMAIN_ID': '77', 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}
     child = subprocess.Popen(
         ['ip', 'netns', 'exec', _HOSTS[host], *command],
         env=environment, stderr=subprocess.DEVNULL, **pipes,

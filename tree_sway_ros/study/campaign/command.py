@@ -20,12 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('study', metavar='STUDY.yaml', help='trees, winds and settings')
     parser.add_argument(
-        '-o',
-        '--output',
-        default='study.csv',
-        metavar='FILE',
+        '-o', '--output', default='study.csv', metavar='FILE',
         help='table, .csv or .parquet; cases are kept beside it, and reused (%(default)s)',
-    )
+    )  # fmt: skip
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
@@ -48,11 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         refuse_overwriting(output, '--output')
     began = time.monotonic()
     rows = run_study(
-        cases,
-        kept,
-        workers=arguments.workers,
-        scheduler=arguments.scheduler,
-        progress=_told,
+        cases, kept, workers=arguments.workers, scheduler=arguments.scheduler, progress=_told
     )
     write_table(rows, output)
     print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')

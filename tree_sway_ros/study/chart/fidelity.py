@@ -149,10 +149,7 @@ def climb(tree: Tree, wind: Floats, gravity: float) -> list[Model]:
     cost = frame_times(models, tree, wind, FRAME)
     return [
         Model(
-            tree.name,
-            name,
-            tip_error(tree, tips[name], truth),
-            cost[name].step + cost[name].place,
+            tree.name, name, tip_error(tree, tips[name], truth), cost[name].step + cost[name].place
         )
         for name in models
     ]

@@ -188,12 +188,9 @@ def measured_share(tree: Tree, keys: KeySegments, speed: Floats) -> float:
 def _alone(keys: KeySegments, rows: Ints) -> KeySegments:
     """Return the key segments of some branches, repeated ones as often, each solved."""
     return KeySegments(
-        keys.table[rows],
-        keys.along[rows],
-        keys.across[rows],
-        keys.load[rows],
+        keys.table[rows], keys.along[rows], keys.across[rows], keys.load[rows],
         np.arange(len(rows)),
-    )
+    )  # fmt: skip
 
 
 def _reaction(form: str, chain: PlanarChain, state: Floats, load: Floats) -> Floats:

@@ -29,12 +29,7 @@ def draw_method(path: str | Path) -> Path:
     """Draw figures 1 and 2: the rotation plane of a segment, and the four steps of a branch."""
     figure = new_figure(11.0, 4.0)
     _rotation_plane(figure.add_axes((0.01, 0.02, 0.3, 0.86)))
-    titles = (
-        '1 wind load',
-        '2 key segment solved',
-        '3 followers placed',
-        '4 joined from the root',
-    )
+    titles = '1 wind load', '2 key segment solved', '3 followers placed', '4 joined from the root'
     for step, title in enumerate(titles):
         axes = figure.add_axes((0.33 + 0.165 * step, 0.02, 0.16, 0.86))
         _branch_step(axes, step)

@@ -45,13 +45,9 @@ class Spectrum(NamedTuple):
 
 
 def kaimal_spectrum(
-    frequency: ArrayLike,
-    mean_speed: float,
-    deviation: float,
-    scale: float,
-    *,
-    across: bool = False,
-) -> Floats:
+    frequency: ArrayLike, mean_speed: float, deviation: float, scale: float,
+    *, across: bool = False,
+) -> Floats:  # fmt: skip
     """
     Kaimal spectrum of one component, one-sided.
 
@@ -81,13 +77,9 @@ def kaimal_spectrum(
 
 
 def von_karman_spectrum(
-    frequency: ArrayLike,
-    mean_speed: float,
-    deviation: float,
-    scale: float,
-    *,
-    across: bool = False,
-) -> Floats:
+    frequency: ArrayLike, mean_speed: float, deviation: float, scale: float,
+    *, across: bool = False,
+) -> Floats:  # fmt: skip
     """
     Von Karman spectrum of one component, one-sided; arguments as of `kaimal_spectrum`.
 
