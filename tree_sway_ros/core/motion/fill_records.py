@@ -413,7 +413,7 @@ class _SlantingWinds:
         x, y, _ = direction
         points = math.hypot(x, y) > 1e-6 * float(np.linalg.norm(direction))
         bearing = (math.atan2(y, x) if points else 0.0) + np.arange(16) * np.pi / 8.0
-        rise = np.radians([-20.0, 0.0, 20.0])[:, None]
+        rise = np.radians([-10.0, 0.0, 10.0])[:, None]
         level, up = np.cos(rise), np.broadcast_to(np.sin(rise), (3, 16))
         winds = np.stack([level * np.cos(bearing), level * np.sin(bearing), up], axis=2)
         self.winds = winds.reshape(48, 3)
