@@ -73,7 +73,7 @@ def missing(seed, reason):
     [
         1, 2, 9, 20, 22,
         missing(
-            11, 'a stiff arching tree: coupled errs by 0.036 in 3 m/s for the twist of its long '
+            11, 'a stiff arching tree: coupled errs by 0.031 in 3 m/s for the twist of its long '
             'twigs, and it takes 135 m/s to lean it by 30 %'
         ),
         missing(
