@@ -210,7 +210,7 @@ def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Pat
     assert len(described.header['trees']) == 1000
     assert len(described.header['kinds']) == 4
     assert len(state.description) < 300_000
-    wind = simulate_turbulence(12.0, rate=60.0, duration=5.0, rng=np.random.default_rng(3))
+    wind = simulate_turbulence(14.0, rate=60.0, duration=5.0, rng=np.random.default_rng(3))
     for each in wind:
         stand.step(each, 1.0 / 60.0)
     frame = state.frame(0)
