@@ -52,10 +52,10 @@ def gaps(sim, basis, speed, steps=600):
 
 @pytest.fixture(scope='module')
 def fine_basis(benjamina):
-    return state_basis(benjamina, 36)
+    return state_basis(benjamina, 38)
 
 
-def test_thirty_six_coordinates_hold_the_modes_and_their_static_rest(benjamina, fine_basis):
+def test_thirty_eight_coordinates_hold_the_modes_and_their_static_rest(benjamina, fine_basis):
     assert len(benjamina.bank.frequencies) == 23
     gap, motion = gaps(benjamina, fine_basis, 2.0)
     assert 1.5e-3 < np.sqrt(np.square(motion).sum(axis=2).mean())
