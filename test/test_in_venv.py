@@ -113,7 +113,7 @@ def test_every_extra_that_is_asked_for_is_one_of_setup_py(script: ModuleType) ->
     asked = {*script.ALWAYS, *script.NEEDS_OF_FILES.values(), *sum(script.NEEDS.values(), ())}
     assert len(asked) > 3
     setup = (ROOT / 'setup.py').read_text()
-    assert not [extra for extra in asked if f'"{extra}": [' not in setup]
+    assert not [extra for extra in asked if f"'{extra}': [" not in setup]
 
 
 def test_a_python_without_ensurepip(
